@@ -208,23 +208,13 @@ static void free_lattice(struct lattice *lattice)
     free(lattice->kind);
 }
 
-static int by_value(const void *left, const void *right, void *values)
-{
-    const double *value = values, x = value[*(const size_t *)left],
-                 y = value[*(const size_t *)right];
-    return (x > y) - (x < y);
-}
-
 /* The places of a start axis, sorted. */
 static bool sort_axis(struct lattice *lattice, int d, const struct results_axis *axis)
 {
-    size_t *order = lattice->order[d] = malloc(axis->count * sizeof *order);
+    size_t *order = lattice->order[d] = basin_order(axis);
     double *place = lattice->place[d] = malloc(axis->count * sizeof *place);
     if (!order || !place)
         return false;
-    for (size_t i = 0; i < axis->count; i++)
-        order[i] = i;
-    qsort_r(order, axis->count, sizeof *order, by_value, axis->value);
     const size_t zero = statistics_nearest_zero(axis);
     for (size_t i = 0; i < axis->count; i++) {
         place[i] = axis->value[order[i]];
@@ -239,12 +229,9 @@ static bool sort_axis(struct lattice *lattice, int d, const struct results_axis 
 static bool make_lattice(struct lattice *lattice, const struct basin *b)
 {
     const struct results *r = b->r;
-    uint64_t product = 1;
     *lattice = (struct lattice){.map = {.axes = b->start_axes, .cases = 1}};
-    for (int a = r->axes - 1; a >= 0; a--) {
-        lattice->stride[a] = product;
-        product *= r->axis[a].count;
-    }
+    for (int a = 0; a < r->axes; a++)
+        lattice->stride[a] = statistics_stride(r, a);
     bool good = true;
     for (int d = 0; good && d < b->start_axes; d++)
         good = sort_axis(lattice, d, &r->axis[b->start[d]]);
@@ -267,8 +254,7 @@ static void take_slice(struct lattice *lattice, const struct basin *b, const siz
         for (int d = 0; d < b->start_axes; d++)
             index += lattice->order[d][at[d]] * lattice->stride[b->start[d]];
         lattice->kind[i] = b->r->kind[index];
-        for (int d = b->start_axes - 1; d >= 0 && ++at[d] == lattice->map.count[d]; d--)
-            at[d] = 0;
+        basin_next_point(b->start_axes, lattice->map.count, at);
     }
 }
 
@@ -285,12 +271,22 @@ static bool next_slice(const struct basin *b, size_t *point)
     return false;
 }
 
-static struct basin_row *row_of(const struct basin *b, const size_t *point)
+size_t basin_row_of(const struct basin *b, const size_t *point)
 {
     size_t row = 0;
     for (int k = 0; k < b->by_axes; k++)
         row = row * b->r->axis[b->by[k]].count + point[b->by[k]];
-    return &b->row[row];
+    return row;
+}
+
+/* The row of a slice that is added to it. */
+static struct basin_row *begin_slice(const struct basin *b, const size_t *point)
+{
+    struct basin_row *const row = &b->row[basin_row_of(b, point)];
+    for (int k = 0; k < b->by_axes; k++)
+        row->point[b->by[k]] = point[b->by[k]];
+    row->slices++;
+    return row;
 }
 
 /* ---- rows --------------------------------------------------------------------------------- */
@@ -357,16 +353,13 @@ static bool add_part(const struct basin *b, const struct lattice *lattice, struc
 static bool add_slice(struct basin *b, const struct lattice *lattice, const size_t *point,
                       struct block *blocks)
 {
-    struct basin_row *row = row_of(b, point);
+    struct basin_row *row = begin_slice(b, point);
     struct basin_volume volume;
     const double deviations = basin_map_deviations(b->choice.level);
-    for (int k = 0; k < b->by_axes; k++)
-        row->point[b->by[k]] = point[b->by[k]];
     count_cases(lattice, b->choice.of, row);
     if (!basin_map_volume(&lattice->map, b->choice.of, &volume))
         return false;
     b->box = volume.box;
-    row->slices++;
     row->low += volume.low;
     row->high += volume.high;
     if (isfinite(volume.estimate)) {
@@ -433,10 +426,8 @@ struct point {
 static void add_sampled(struct basin *b, const struct lattice *lattice, const size_t *point,
                         struct point *points)
 {
-    struct basin_row *row = row_of(b, point);
+    struct basin_row *row = begin_slice(b, point);
     struct point *own = points + (size_t)(row - b->row) * b->sample.points;
-    for (int k = 0; k < b->by_axes; k++)
-        row->point[b->by[k]] = point[b->by[k]];
     for (size_t i = 0; i < lattice->map.cases; i++) {
         if (basin_sample_counts(&b->sample, i)) {
             const uint8_t kind = lattice->kind[i];
@@ -449,7 +440,6 @@ static void add_sampled(struct basin *b, const struct lattice *lattice, const si
             own[i].unknown += kind == RESULTS_FAILED || kind == RESULTS_PENDING;
         }
     }
-    row->slices++;
 }
 
 /* The nearest point of a sample that is lost in the only slice. */
@@ -512,7 +502,7 @@ static void find_cuts(struct basin *b)
         if (b->r->kind[i] == b->choice.of) {
             size_t point[SCENARIO_MAX_AXES];
             results_point(b->r, i, point);
-            row_of(b, point)->cut |= faces_at(&b->faces, point);
+            b->row[basin_row_of(b, point)].cut |= faces_at(&b->faces, point);
         }
     }
 }
@@ -583,14 +573,6 @@ bool basin_make(struct basin *basin, const struct results *r, const struct basin
     if (!good)
         basin_free(basin);
     return good;
-}
-
-size_t basin_row_of(const struct basin *b, const size_t *point)
-{
-    size_t row = 0;
-    for (int k = 0; k < b->by_axes; k++)
-        row = row * b->r->axis[b->by[k]].count + point[b->by[k]];
-    return row;
 }
 
 size_t basin_averaged(const struct basin *basin, const char **paths, size_t most)

@@ -46,13 +46,6 @@ struct motion {
     double *slip, *footfalls, *least;
 };
 
-static bool read_motion(const struct results *r, struct motion *m, stance_message *message)
-{
-    return basin_numbers(r, "slip_distance", &m->slip, message) &&
-           basin_numbers(r, "footfalls", &m->footfalls, message) &&
-           basin_numbers(r, "least_normal_force", &m->least, message);
-}
-
 static enum excuse excuse_of(const struct motion *m, uint64_t i)
 {
     const double slip = m->slip ? m->slip[i] : NAN, steps = m->footfalls ? m->footfalls[i] : NAN,
@@ -170,12 +163,11 @@ static bool print_text(struct table *t, const struct basin *b, const struct row 
 {
     char view[300];
     size_t used = (size_t)snprintf(view, sizeof view, "at/");
-    const struct results *const r = b->r;
-    printf("%s\n%s: %" PRIu64 " cases\n\n"
-           "Starts from which linear theory allows some controller to recover with these torques, "
+    basin_print_title(b->r);
+    printf("Starts from which linear theory allows some controller to recover with these torques, "
            "while the\ncontacts stand; of that, what ends as %s; and what does from outside of "
            "it\n\n",
-           r->title[0] ? r->title : r->name, r->file, r->cases, basin_asked(b));
+           basin_asked(b));
     print_remarks(b, rows);
     if (!table_write_text(t, stdout, "at/ starts allowed used outside why", BASIN_SHOWN))
         return false;
@@ -228,8 +220,10 @@ bool basin_print_allowed(const struct basin *b, enum table_form form, bool *usag
         return statistics_no_memory(b->r, message);
     bool good = results_swept(b->r, &s, message);
     if (good) {
-        good = read_motion(b->r, &motion, message) && count_rows(b, &s, rows, &motion, message) &&
-               print_rows(b, rows, form);
+        good = basin_numbers(b->r, "slip_distance", &motion.slip, message) &&
+               basin_numbers(b->r, "footfalls", &motion.footfalls, message) &&
+               basin_numbers(b->r, "least_normal_force", &motion.least, message) &&
+               count_rows(b, &s, rows, &motion, message) && print_rows(b, rows, form);
         scenario_free(&s);
     }
     for (size_t k = 0; k < b->rows; k++)

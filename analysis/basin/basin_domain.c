@@ -2,6 +2,7 @@
  * boundary; see basin_map.h. */
 #include "basin_map.h"
 
+#include "analysis/statistics/statistics.h"
 #include "runner/scenario/doe.h"
 
 #include <math.h>
@@ -10,37 +11,19 @@
 
 /* ---- the part that hangs together --------------------------------------------------------- */
 
-/* Cases that are marked as of the part, of which `queued` are to be looked at. */
+/* Cases that are taken into the part, of which those in the queue are to be looked at. */
 struct flood {
     const struct basin_map *map;
     uint64_t stride[SCENARIO_MAX_AXES];
     uint8_t *kind; /* what the map has; the outcome is left to the part alone */
-    uint8_t *seen; /* [cases / 8] */
-    uint64_t *queue, queued, room;
+    struct basin_flood of;
 };
-
-static bool enqueue(struct flood *flood, uint64_t index)
-{
-    if (flood->seen[index / 8] >> index % 8 & 1)
-        return true;
-    if (flood->queued == flood->room) {
-        const uint64_t room = flood->room ? 2 * flood->room : 256;
-        uint64_t *queue = realloc(flood->queue, room * sizeof *queue);
-        if (!queue)
-            return false;
-        flood->queue = queue;
-        flood->room = room;
-    }
-    flood->seen[index / 8] |= (uint8_t)(1 << index % 8);
-    flood->queue[flood->queued++] = index;
-    return true;
-}
 
 static bool spread(struct flood *flood, enum results_kind of, struct basin_part *part)
 {
     const struct basin_map *map = flood->map;
-    while (flood->queued > 0) {
-        const uint64_t index = flood->queue[--flood->queued];
+    while (flood->of.queued > 0) {
+        const uint64_t index = flood->of.queue[--flood->of.queued];
         for (int side = 0; side < 2 * map->axes; side++) {
             const int a = side / 2;
             const size_t at = index / flood->stride[a] % map->count[a];
@@ -50,7 +33,7 @@ static bool spread(struct flood *flood, enum results_kind of, struct basin_part 
             }
             const uint64_t next = side % 2 ? index + flood->stride[a] : index - flood->stride[a];
             part->unknown = part->unknown || !basin_is_known(map->kind[next]);
-            if (map->kind[next] == of && !enqueue(flood, next))
+            if (map->kind[next] == of && !basin_take(&flood->of, next))
                 return false;
         }
     }
@@ -64,7 +47,7 @@ static bool measure(struct flood *flood, enum results_kind of, struct basin_volu
     const uint8_t other = of == RESULTS_FELL ? RESULTS_UNDECIDED : RESULTS_FELL;
     struct basin_map own = *map;
     for (uint64_t i = 0; i < map->cases; i++) {
-        const bool seen = flood->seen[i / 8] >> i % 8 & 1;
+        const bool seen = basin_has_taken(&flood->of, i);
         flood->kind[i] = map->kind[i] == of && !seen ? other : map->kind[i];
     }
     own.kind = flood->kind;
@@ -75,17 +58,17 @@ bool basin_map_part(const struct basin_map *map, enum results_kind of, const siz
                     struct basin_part *part)
 {
     struct flood flood = {
-        .map = map, .kind = malloc(map->cases), .seen = calloc(map->cases / 8 + 1, 1)};
+        .map = map, .kind = malloc(map->cases), .of = {.seen = calloc(map->cases / 8 + 1, 1)}};
     *part = (struct basin_part){.inside = false};
     basin_strides(map, flood.stride);
     const uint64_t first = basin_index(map, flood.stride, origin);
     part->inside = map->kind[first] == of;
     part->unknown = !basin_is_known(map->kind[first]);
-    const bool good = flood.kind && flood.seen && (!part->inside || enqueue(&flood, first)) &&
-                      spread(&flood, of, part) && measure(&flood, of, &part->volume);
+    const bool good = flood.kind && flood.of.seen &&
+                      (!part->inside || basin_take(&flood.of, first)) && spread(&flood, of, part) &&
+                      measure(&flood, of, &part->volume);
     free(flood.kind);
-    free(flood.seen);
-    free(flood.queue);
+    basin_flood_free(&flood.of);
     return good;
 }
 
@@ -176,15 +159,9 @@ static double follow(const struct basin_map *map, enum results_kind of, const si
     }
 }
 
-static int by_number(const void *left, const void *right)
-{
-    const double x = *(const double *)left, y = *(const double *)right;
-    return (x > y) - (x < y);
-}
-
 static double median_of(double *value, size_t n)
 {
-    qsort(value, n, sizeof *value, by_number);
+    statistics_sort(value, n);
     const double median = 0.5 * (value[(n - 1) / 2] + value[n / 2]);
     return isfinite(median) ? median : NAN;
 }

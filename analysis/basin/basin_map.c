@@ -2,6 +2,7 @@
 #include "basin_map.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 bool basin_next_point(int axes, const size_t *count, size_t *point)
@@ -12,6 +13,46 @@ bool basin_next_point(int axes, const size_t *count, size_t *point)
         point[a] = 0;
     }
     return false;
+}
+
+static int by_value(const void *left, const void *right, void *values)
+{
+    const double *value = values, x = value[*(const size_t *)left],
+                 y = value[*(const size_t *)right];
+    return (x > y) - (x < y);
+}
+
+size_t *basin_order(const struct results_axis *axis)
+{
+    size_t *const order = malloc(axis->count * sizeof *order);
+    for (size_t i = 0; order && i < axis->count; i++)
+        order[i] = i;
+    if (order)
+        qsort_r(order, axis->count, sizeof *order, by_value, axis->value);
+    return order;
+}
+
+bool basin_take(struct basin_flood *flood, uint64_t number)
+{
+    if (basin_has_taken(flood, number))
+        return true;
+    if (flood->queued == flood->room) {
+        const uint64_t room = flood->room ? 2 * flood->room : 256;
+        uint64_t *const queue = realloc(flood->queue, room * sizeof *queue);
+        if (!queue)
+            return false;
+        flood->queue = queue;
+        flood->room = room;
+    }
+    flood->seen[number / 8] |= (uint8_t)(1 << number % 8);
+    flood->queue[flood->queued++] = number;
+    return true;
+}
+
+void basin_flood_free(struct basin_flood *flood)
+{
+    free(flood->seen);
+    free(flood->queue);
 }
 
 void basin_strides(const struct basin_map *map, uint64_t stride[SCENARIO_MAX_AXES])

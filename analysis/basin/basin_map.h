@@ -57,6 +57,21 @@ static inline bool basin_is_known(uint8_t kind)
 }
 /* Moves to the next point of a lattice of these counts; false after the last. */
 bool basin_next_point(int axes, const size_t *count, size_t *point);
+/* The points of an axis by rising value, freed by the caller; NULL: no memory. */
+size_t *basin_order(const struct results_axis *axis);
+/* Numbers below a count, each taken once and put behind a queue: {0} but for `seen`, zero, with a
+ * bit for each. */
+struct basin_flood {
+    uint8_t *seen;
+    uint64_t *queue, queued, room;
+};
+static inline bool basin_has_taken(const struct basin_flood *flood, uint64_t number)
+{
+    return flood->seen[number / 8] >> number % 8 & 1;
+}
+/* False: no memory. */
+bool basin_take(struct basin_flood *flood, uint64_t number);
+void basin_flood_free(struct basin_flood *flood);
 void basin_strides(const struct basin_map *map, uint64_t stride[SCENARIO_MAX_AXES]);
 uint64_t basin_index(const struct basin_map *map, const uint64_t *stride, const size_t *point);
 

@@ -438,7 +438,8 @@ static json_t *weights(const struct basin *b)
     return object;
 }
 
-static bool print_json(const struct basin *b, const struct table *t)
+/* Of all rows. */
+static json_t *head_json(const struct basin *b)
 {
     const bool grid = b->starts == BASIN_GRID;
     const char *path[256];
@@ -446,27 +447,24 @@ static bool print_json(const struct basin *b, const struct table *t)
     const size_t count = basin_averaged(b, path, sizeof path / sizeof path[0]);
     for (size_t k = 0; k < count; k++)
         table_append(averaged, as_text(path[k]));
-    return table_write_json(
-        TABLE_OBJECT({"outcome", as_text(results_kind_names[b->choice.of])},
-                     {"within", as_text(b->choice.within)}, {"level", as_number(b->choice.level)},
-                     {"box_side", as_whole(b->choice.side)},
-                     {"design", as_text(grid ? "grid" : doe_words[b->sample.method])},
-                     {"starts", as_tree(grid ? names(b, b->start, b->start_axes)
-                                             : basin_factor_names(&b->sample))},
-                     {"parameters", as_tree(names(b, b->by, b->by_axes))},
-                     {"averaged", as_tree(averaged)}, {"box", as_number(b->box)},
-                     {"unit", as_text(b->unit)}, {"weights", as_tree(weights(b))},
-                     {"rows", as_tree(table_json(t, false))}),
-        stdout);
+    return TABLE_OBJECT(
+        {"outcome", as_text(results_kind_names[b->choice.of])},
+        {"within", as_text(b->choice.within)}, {"level", as_number(b->choice.level)},
+        {"box_side", as_whole(b->choice.side)},
+        {"design", as_text(grid ? "grid" : doe_words[b->sample.method])},
+        {"starts",
+         as_tree(grid ? names(b, b->start, b->start_axes) : basin_factor_names(&b->sample))},
+        {"parameters", as_tree(names(b, b->by, b->by_axes))}, {"averaged", as_tree(averaged)},
+        {"box", as_number(b->box)}, {"unit", as_text(b->unit)}, {"weights", as_tree(weights(b))});
 }
 
 bool basin_print(const struct basin *b, enum table_form form)
 {
     struct table t = {0};
     make_table(&t, b);
-    const bool good = form == TABLE_AS_JSON  ? print_json(b, &t)
-                      : form == TABLE_AS_CSV ? table_write_csv(&t, stdout)
-                                             : print_text(b, &t);
+    if (form != TABLE_AS_TEXT)
+        return basin_table_write(&t, form, "", head_json(b));
+    const bool good = print_text(b, &t);
     table_free(&t);
     return good;
 }

@@ -44,6 +44,8 @@ bool basin_table_write(struct table *t, enum table_form form, const char *view, 
 /* "stabilised with settle_time <= 2": what starts are asked for, until the next call. */
 const char *basin_asked(const struct basin *basin);
 
+/* What the file is, and a blank line. */
+void basin_print_title(const struct results *r);
 /* What both say of their starts: a line without its end; a line, `otherwise` without a range. */
 void basin_print_axis(const struct results_axis *axis);
 void basin_print_factor(const struct basin_factor *factor, const char *otherwise);

@@ -26,7 +26,7 @@ bool basin_table_write(struct table *t, enum table_form form, const char *view, 
     return good;
 }
 
-static void print_title(const struct results *r)
+void basin_print_title(const struct results *r)
 {
     printf("%s\n%s: %" PRIu64 " cases\n\n", r->title[0] ? r->title : r->name, r->file, r->cases);
 }
@@ -94,7 +94,7 @@ bool basin_print_threshold(const struct basin *b, const char *path, double thres
         char first[96], last[96];
         results_value_text(axis, 0, true, first, sizeof first);
         results_value_text(axis, axis->count - 1, true, last, sizeof last);
-        print_title(b->r);
+        basin_print_title(b->r);
         printf("Where the share of starts that end as %s %s %.6g %% of what it is at %s = %s\n"
                "(up to %s; interval at %.4g %%)\n\n",
                basin_asked(b), threshold < 1 ? "falls below" : "rises above", 100 * threshold,
@@ -174,7 +174,7 @@ bool basin_print_loss(const struct results *r, const char *path, enum results_ki
     if (form == TABLE_AS_TEXT) {
         char from[96], to[96], where[600];
         results_value_text(axis, loss.down ? last : 0, true, from, sizeof from);
-        print_title(r);
+        basin_print_title(r);
         printf("%" PRIu64 " starts end as %s at %s = %s", loss.starts, results_kind_names[of],
                axis->name, from);
         if (loss.unknown > 0)
@@ -307,7 +307,7 @@ bool basin_print_answer(const struct basin *b, const char *answer, enum table_fo
     free(begin);
     free(value);
     if (form == TABLE_AS_TEXT) {
-        print_title(b->r);
+        basin_print_title(b->r);
         printf("%s of the starts that end as %s\n\n", answer, basin_asked(b));
     }
     return basin_table_write(&t, form, "at/ cases smallest median q90 q99 largest largest_case",

@@ -1,5 +1,6 @@
 /* basin_rays.c - follows each ray from the smallest scale to where the outcome is lost. */
 #include "basin_rays.h"
+#include "basin_map.h"
 
 #include "analysis/statistics/statistics.h"
 
@@ -20,13 +21,6 @@ bool basin_is_rays(const struct results *r, const struct basin_sample *sample)
 {
     return sample->axis >= 0 && sample->method == DOE_SPHERE && !sample->others &&
            find_scale(r) >= 0;
-}
-
-static int by_scale(const void *left, const void *right, void *values)
-{
-    const double *value = values, x = value[*(const size_t *)left],
-                 y = value[*(const size_t *)right];
-    return (x > y) - (x < y);
 }
 
 /* One ray: its cases are kind[place * stride]. */
@@ -60,20 +54,16 @@ size_t basin_rays_point(const struct basin_rays *rays, size_t row, int k)
 static void follow_all(struct basin_rays *rays, const size_t *order)
 {
     const struct results *r = rays->r;
-    uint64_t stride[SCENARIO_MAX_AXES], product = 1;
-    for (int a = r->axes - 1; a >= 0; a--) {
-        stride[a] = product;
-        product *= r->axis[a].count;
-    }
+    const struct results_axis *const scale = &r->axis[rays->scale];
+    const uint64_t step = statistics_stride(r, rays->scale),
+                   next = statistics_stride(r, rays->sample.axis);
     for (size_t row = 0; row < rays->rows; row++) {
         uint64_t first = 0;
         for (int k = 0; k < rays->by_axes; k++)
-            first += basin_rays_point(rays, row, k) * stride[rays->by[k]];
-        for (size_t p = 0; p < rays->sample.points; p++) {
-            rays->ray[row * rays->sample.points + p] = follow(
-                &r->axis[rays->scale], order, r->kind + first + p * stride[rays->sample.axis],
-                stride[rays->scale], rays->of);
-        }
+            first += basin_rays_point(rays, row, k) * statistics_stride(r, rays->by[k]);
+        for (size_t p = 0; p < rays->sample.points; p++)
+            rays->ray[row * rays->sample.points + p] =
+                follow(scale, order, r->kind + first + p * next, step, rays->of);
     }
 }
 
@@ -89,17 +79,13 @@ bool basin_rays_make(struct basin_rays *rays, const struct results *r, enum resu
             rays->rows *= r->axis[a].count;
         }
     }
-    const size_t count = r->axis[rays->scale].count;
-    size_t *order = malloc(count * sizeof *order);
+    size_t *const order = basin_order(&r->axis[rays->scale]);
     rays->ray = malloc(rays->rows * rays->sample.points * sizeof *rays->ray);
     if (!order || !rays->ray) {
         free(order);
         basin_rays_free(rays);
         return statistics_no_memory(r, message);
     }
-    for (size_t i = 0; i < count; i++)
-        order[i] = i;
-    qsort_r(order, count, sizeof *order, by_scale, r->axis[rays->scale].value);
     follow_all(rays, order);
     free(order);
     return true;
@@ -112,12 +98,6 @@ void basin_rays_free(struct basin_rays *rays)
     free(rays->nearest);
     rays->ray = NULL;
     rays->nearest = NULL;
-}
-
-static int by_number(const void *left, const void *right)
-{
-    const double x = *(const double *)left, y = *(const double *)right;
-    return (x > y) - (x < y);
 }
 
 bool basin_rays_reach(const struct basin_rays *rays, size_t row, struct basin_reach *reach)
@@ -140,7 +120,7 @@ bool basin_rays_reach(const struct basin_rays *rays, size_t row, struct basin_re
         }
         n++;
     }
-    qsort(middle, n, sizeof *middle, by_number);
+    statistics_sort(middle, n);
     if (n > 0) {
         const double median = 0.5 * (middle[(n - 1) / 2] + middle[n / 2]);
         reach->median = isfinite(median) ? median : NAN;

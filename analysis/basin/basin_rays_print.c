@@ -49,16 +49,6 @@ static double unseen(const struct basin_nearest *nearest)
 
 /* ---- the table ---------------------------------------------------------------------------- */
 
-static json_t *at_json(const struct basin_rays *rays, size_t point, const struct basin_ray *ray)
-{
-    json_t *at = json_object();
-    for (size_t k = 0; k < rays->sample.factors; k++) {
-        const struct results_axis *of = rays->sample.factor[k].of;
-        json_object_set_new(at, of->name, json_real(of->value[point] * basin_ray_middle(ray)));
-    }
-    return at;
-}
-
 static json_t *nearest_json(const struct basin_rays *rays, const struct basin_nearest *nearest)
 {
     json_t *at = json_object(), *of = json_object();
@@ -84,6 +74,11 @@ static bool make_table(struct table *t, const struct basin_rays *rays)
         const struct basin_ray *first =
             reach.count[RAY_CROSSES] > 0 ? ray_of(rays, row, reach.first) : NULL;
         const struct basin_nearest *nearest = nearest_of(rays, row);
+        json_t *const at = first ? json_object() : NULL;
+        for (size_t k = 0; first && k < rays->sample.factors; k++) {
+            const struct results_axis *of = rays->sample.factor[k].of;
+            table_put(at, of->name, as_number(of->value[reach.first] * basin_ray_middle(first)));
+        }
         add_parameters(t, rays, row);
         add_end(t, rays, reach.first, first);
         TABLE_FACTS(
@@ -108,8 +103,7 @@ static bool make_table(struct table *t, const struct basin_rays *rays)
             {{.name = "first_high", .hidden = TABLE_NO_JSON}, as_number(first ? first->high : NAN)},
             {{.name = "first_bracket", .hidden = TABLE_NO_CSV},
              as_tree(first ? json_pack("[f,f]", first->low, first->high) : NULL)},
-            {{.name = "first_at", .hidden = TABLE_NO_CSV},
-             as_tree(first ? at_json(rays, reach.first, first) : NULL)});
+            {{.name = "first_at", .hidden = TABLE_NO_CSV}, as_tree(at)});
         table_end_row(t);
     }
     return true;
@@ -120,9 +114,8 @@ static bool make_table(struct table *t, const struct basin_rays *rays)
 static void print_head(const struct basin_rays *rays)
 {
     const struct results *r = rays->r;
-    printf("%s\n%s: %" PRIu64
-           " cases\n\n%zu rays from the equilibrium, along which starts stay %s\n",
-           r->title[0] ? r->title : r->name, r->file, r->cases, rays->sample.points,
+    basin_print_title(r);
+    printf("%zu rays from the equilibrium, along which starts stay %s\n", rays->sample.points,
            results_kind_names[rays->of]);
     for (size_t k = 0; k < rays->sample.factors; k++)
         basin_print_factor(&rays->sample.factor[k], "");
@@ -193,23 +186,17 @@ static bool print_text(const struct basin_rays *rays, const struct table *t)
 
 /* ---- all forms ---------------------------------------------------------------------------- */
 
-static bool print_json(const struct basin_rays *rays, const struct table *t)
-{
-    return table_write_json(TABLE_OBJECT({"outcome", as_text(results_kind_names[rays->of])},
-                                         {"starts", as_tree(basin_factor_names(&rays->sample))},
-                                         {"rays", as_whole(rays->sample.points)},
-                                         {"rows", as_tree(table_json(t, false))}),
-                            stdout);
-}
-
 bool basin_rays_print(const struct basin_rays *rays, enum table_form form)
 {
     struct table t = {0};
     bool good = make_table(&t, rays);
-    if (good)
-        good = form == TABLE_AS_JSON  ? print_json(rays, &t)
-               : form == TABLE_AS_CSV ? table_write_csv(&t, stdout)
-                                      : print_text(rays, &t);
+    if (good && form != TABLE_AS_TEXT)
+        return basin_table_write(
+            &t, form, "",
+            TABLE_OBJECT({"outcome", as_text(results_kind_names[rays->of])},
+                         {"starts", as_tree(basin_factor_names(&rays->sample))},
+                         {"rays", as_whole(rays->sample.points)}));
+    good = good && print_text(rays, &t);
     table_free(&t);
     return good;
 }

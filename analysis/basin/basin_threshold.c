@@ -110,11 +110,6 @@ struct basin_threshold basin_threshold(const struct basin *basin, size_t row, in
 
 /* ---- the first start that is lost ---------------------------------------------------------- */
 
-static bool is_known(uint8_t kind)
-{
-    return kind != RESULTS_PENDING && kind != RESULTS_FAILED && kind != RESULTS_DONE;
-}
-
 bool basin_more_at_last(const struct results *r, int axis, enum results_kind of)
 {
     struct statistics_counts ends[2];
@@ -127,9 +122,7 @@ bool basin_lose(const struct results *r, int axis, bool down, enum results_kind 
                 struct basin_loss *loss)
 {
     const size_t count = r->axis[axis].count;
-    uint64_t stride = 1;
-    for (int a = r->axes - 1; a > axis; a--)
-        stride *= r->axis[a].count;
+    const uint64_t stride = statistics_stride(r, axis);
     *loss =
         (struct basin_loss){.down = down, .lost = calloc(count, sizeof *loss->lost), .at = count};
     for (uint64_t i = 0; loss->lost && i < r->cases; i++) {
@@ -141,7 +134,7 @@ bool basin_lose(const struct results *r, int axis, bool down, enum results_kind 
             if (k == 0 && kind != of)
                 break;
             loss->starts += k == 0;
-            if (!is_known(kind)) {
+            if (!basin_is_known(kind)) {
                 loss->unknown++;
                 break;
             }

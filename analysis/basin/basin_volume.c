@@ -16,8 +16,7 @@ struct cells {
     uint64_t count;
     size_t along[SCENARIO_MAX_AXES];
     uint64_t case_stride[SCENARIO_MAX_AXES], cell_stride[SCENARIO_MAX_AXES];
-    uint8_t *seen; /* [count / 8]: crossed cells that a patch has */
-    uint64_t *queue, queued, room;
+    struct basin_flood patch; /* crossed cells that some patch has; in the queue: this one */
 };
 
 /* What the corners of a cell are. */
@@ -66,26 +65,6 @@ static double cell_volume(const struct cells *cells, const size_t *point)
 
 /* ---- patches ------------------------------------------------------------------------------ */
 
-static bool is_seen(const struct cells *cells, uint64_t cell)
-{
-    return cells->seen[cell / 8] >> cell % 8 & 1;
-}
-
-static bool enqueue(struct cells *cells, uint64_t cell)
-{
-    if (cells->queued == cells->room) {
-        const uint64_t room = cells->room ? 2 * cells->room : 256;
-        uint64_t *queue = realloc(cells->queue, room * sizeof *queue);
-        if (!queue)
-            return false;
-        cells->queue = queue;
-        cells->room = room;
-    }
-    cells->seen[cell / 8] |= (uint8_t)(1 << cell % 8);
-    cells->queue[cells->queued++] = cell;
-    return true;
-}
-
 /* Whether the neighbour of a cell of a patch along an axis, in direction `up`, is of the patch: it
  * shares a face with it, so it is if no edge along the axis is crossed there either. *step: by how
  * many corners more the face beyond is inside; `edge` where the map ends. */
@@ -131,11 +110,11 @@ static bool add_patch(struct cells *cells, uint64_t start, uint32_t varies, doub
     size_t point[SCENARIO_MAX_AXES] = {0};
     int step;
 
-    cells->queued = 0;
-    if (!enqueue(cells, start))
+    cells->patch.queued = 0;
+    if (!basin_take(&cells->patch, start))
         return false;
-    for (uint64_t k = 0; k < cells->queued; k++) {
-        const uint64_t cell = cells->queue[k];
+    for (uint64_t k = 0; k < cells->patch.queued; k++) {
+        const uint64_t cell = cells->patch.queue[k];
         find_point(cells, cell, point);
         volume += cell_volume(cells, point);
         for (int a = 0; a < axes; a++) {
@@ -145,7 +124,7 @@ static bool add_patch(struct cells *cells, uint64_t start, uint32_t varies, doub
                 const uint64_t next =
                     up ? cell + cells->cell_stride[a] : cell - cells->cell_stride[a];
                 if (goes_on(cells, cell, a, up, &step)) {
-                    if (!is_seen(cells, next) && !enqueue(cells, next))
+                    if (!basin_take(&cells->patch, next))
                         return false;
                 } else if (!up) {
                     weight[a] += row_weight(cells, cell, a, step);
@@ -154,7 +133,7 @@ static bool add_patch(struct cells *cells, uint64_t start, uint32_t varies, doub
         }
     }
     for (int a = 0; a < axes; a++)
-        together *= varies >> a & 1 ? 1 : weight[a] / (double)cells->queued;
+        together *= varies >> a & 1 ? 1 : weight[a] / (double)cells->patch.queued;
     *variance += volume * together * volume * together / 12;
     return true;
 }
@@ -218,17 +197,15 @@ static bool find_rhythm(const struct cells *cells, double *variance)
 /* The cells without their tables; false: no memory. */
 static bool begin(struct cells *cells, const struct basin_map *map, enum results_kind of)
 {
-    uint64_t cases = 1;
     *cells = (struct cells){.map = map, .of = of, .count = 1};
+    basin_strides(map, cells->case_stride);
     for (int a = map->axes - 1; a >= 0; a--) {
         cells->along[a] = map->count[a] - 1;
-        cells->case_stride[a] = cases;
         cells->cell_stride[a] = cells->count;
-        cases *= map->count[a];
         cells->count *= cells->along[a];
     }
-    cells->seen = calloc(cells->count / 8 + 1, 1);
-    return cells->seen != NULL;
+    cells->patch.seen = calloc(cells->count / 8 + 1, 1);
+    return cells->patch.seen != NULL;
 }
 
 bool basin_map_volume(const struct basin_map *map, enum results_kind of,
@@ -257,15 +234,14 @@ bool basin_map_volume(const struct basin_map *map, enum results_kind of,
         volume->crossed++;
         if (at.unknown > 0)
             volume->variance += cell * cell / 12;
-        else if (!is_seen(&cells, i))
+        else if (!basin_has_taken(&cells.patch, i))
             good = add_patch(&cells, i, at.varies, &volume->variance);
     }
     double rhythm = 0;
     good = good && find_rhythm(&cells, &rhythm);
     volume->variance = fmax(volume->variance, rhythm);
     volume->estimate = known > 0 ? volume->box * inside / known : NAN;
-    free(cells.seen);
-    free(cells.queue);
+    basin_flood_free(&cells.patch);
     return good;
 }
 

@@ -89,21 +89,16 @@ static int show_basin(const struct report *report, const struct results *r,
     return good ? EXIT_DONE : usage ? EXIT_USAGE : EXIT_IO;
 }
 
-static int show_loss(const struct report *report, const struct results *r, stance_message *message)
-{
-    const struct request *request = (const struct request *)report;
-    bool usage = false;
-    const bool good =
-        basin_print_loss(r, request->lost, request->choice.of, report->form, &usage, message);
-    return good ? EXIT_DONE : usage ? EXIT_USAGE : EXIT_IO;
-}
-
 static int show(struct report *report, const struct results *r, stance_message *message)
 {
     const struct request *request = (const struct request *)report;
     struct basin_sample sample;
+    bool usage = false;
     if (request->lost)
-        return show_loss(report, r, message);
+        return basin_print_loss(r, request->lost, request->choice.of, report->form, &usage, message)
+                   ? EXIT_DONE
+               : usage ? EXIT_USAGE
+                       : EXIT_IO;
     if (!basin_sample_make(&sample, r, message))
         return EXIT_IO;
     return (basin_is_rays(r, &sample) ? show_rays : show_basin)(report, r, &sample, message);

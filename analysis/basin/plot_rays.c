@@ -176,12 +176,6 @@ static bool put_plane(struct page *page, stance_message *message)
 
 /* ---- by scale ----------------------------------------------------------------------------- */
 
-static int by_number(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 static bool put_distribution(struct page *page, stance_message *message)
 {
     const struct basin_rays *rays = page->rays;
@@ -196,7 +190,7 @@ static bool put_distribution(struct page *page, stance_message *message)
         for (size_t p = 0; p < points; p++)
             if (ray[p].end == RAY_CROSSES || ray[p].end == RAY_OUTSIDE)
                 end[n++] = ray[p].end == RAY_CROSSES ? basin_ray_middle(&ray[p]) : 0;
-        qsort(end, n, sizeof *end, by_number);
+        statistics_sort(end, n);
         gnuplot_block(&page->g, "curve%zu", c + 1);
         GNUPLOT_ROW(&page->g, 0, 0);
         for (size_t i = 0; i < n; i++)

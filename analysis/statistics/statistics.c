@@ -35,7 +35,7 @@ void statistics_wilson_of(double z, double p, double n, double *low, double *hig
 /* ---- counts ------------------------------------------------------------------------------- */
 
 /* Number of cases per step along an axis. */
-static uint64_t stride_of(const struct results *r, int axis)
+uint64_t statistics_stride(const struct results *r, int axis)
 {
     uint64_t stride = 1;
     for (int a = r->axes - 1; a > axis; a--)
@@ -53,7 +53,7 @@ static void finish_counts(struct statistics_counts *counts)
 void statistics_count(const struct results *r, int axis, size_t point,
                       struct statistics_counts *counts)
 {
-    uint64_t stride = axis < 0 ? 1 : stride_of(r, axis);
+    uint64_t stride = axis < 0 ? 1 : statistics_stride(r, axis);
     size_t length = axis < 0 ? 1 : r->axis[axis].count;
 
     memset(counts, 0, sizeof *counts);
@@ -64,7 +64,7 @@ void statistics_count(const struct results *r, int axis, size_t point,
 
 void statistics_count_axis(const struct results *r, int axis, struct statistics_counts *counts)
 {
-    uint64_t stride = stride_of(r, axis);
+    uint64_t stride = statistics_stride(r, axis);
     size_t length = r->axis[axis].count;
 
     memset(counts, 0, length * sizeof *counts);
@@ -76,7 +76,7 @@ void statistics_count_axis(const struct results *r, int axis, struct statistics_
 
 void statistics_count_pair(const struct results *r, int a, int b, struct statistics_counts *counts)
 {
-    uint64_t stride_a = stride_of(r, a), stride_b = stride_of(r, b);
+    uint64_t stride_a = statistics_stride(r, a), stride_b = statistics_stride(r, b);
     size_t rows = r->axis[a].count, columns = r->axis[b].count;
 
     memset(counts, 0, rows * columns * sizeof *counts);
@@ -92,6 +92,11 @@ static int compare_doubles(const void *a, const void *b)
 {
     double x = *(const double *)a, y = *(const double *)b;
     return (x > y) - (x < y);
+}
+
+void statistics_sort(double *values, size_t n)
+{
+    qsort(values, n, sizeof *values, compare_doubles);
 }
 
 double statistics_quantile(const double *sorted, size_t n, double p)
@@ -118,7 +123,7 @@ void statistics_summarise(double *values, size_t n, struct statistics_numbers *n
     *numbers = (struct statistics_numbers){kept, NAN, NAN, NAN, NAN, NAN, sum};
     if (kept == 0)
         return;
-    qsort(values, kept, sizeof *values, compare_doubles);
+    statistics_sort(values, kept);
     numbers->low = values[0];
     numbers->median = statistics_quantile(values, kept, 0.5);
     numbers->q90 = statistics_quantile(values, kept, 0.9);
@@ -174,7 +179,7 @@ bool statistics_extent(const struct results *r, int axis, const size_t *point,
                        struct statistics_extent *extent)
 {
     const struct results_axis *along = &r->axis[axis];
-    uint64_t base = 0, stride = stride_of(r, axis);
+    uint64_t base = 0, stride = statistics_stride(r, axis);
     bool first_open, first_unknown, second_open, second_unknown;
 
     *extent = (struct statistics_extent){.low = NAN, .high = NAN};
@@ -182,7 +187,7 @@ bool statistics_extent(const struct results *r, int axis, const size_t *point,
         return false;
     for (int a = 0; a < r->axes; a++) {
         extent->point[a] = r->axis[a].offset ? statistics_nearest_zero(&r->axis[a]) : point[a];
-        base += a == axis ? 0 : extent->point[a] * stride_of(r, a);
+        base += a == axis ? 0 : extent->point[a] * statistics_stride(r, a);
     }
     size_t start = extent->point[axis];
     extent->kind = (enum results_kind)r->kind[base + start * stride];

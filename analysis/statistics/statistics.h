@@ -45,6 +45,8 @@ struct statistics_numbers {
     size_t n;
     double low, median, q90, q99, high, sum; /* NAN when n is 0, sum 0 */
 };
+/* Rising; in place. */
+void statistics_sort(double *values, size_t n);
 /* Sorts values[n] in place. */
 void statistics_summarise(double *values, size_t n, struct statistics_numbers *numbers);
 /* Quantile p (0 ... 1) of sorted values[n], n > 0, linear between them. */
@@ -66,6 +68,9 @@ struct statistics_extent {
  * last stabilised case and the next. */
 bool statistics_extent(const struct results *r, int axis, const size_t *point,
                        struct statistics_extent *extent);
+
+/* How many cases lie between neighbours along an axis. */
+uint64_t statistics_stride(const struct results *r, int axis);
 
 /* The point of an axis nearest to zero; the first of two equally near. */
 size_t statistics_nearest_zero(const struct results_axis *axis);
