@@ -1,5 +1,6 @@
 /* accuracy.c - compares every method and step of a file with its most exact one. */
 #include "accuracy.h"
+#include "studies.h"
 
 #include "runner/base/message.h"
 
@@ -13,11 +14,6 @@ static const double least_error = 1e-11;
 
 /* ---- rows --------------------------------------------------------------------------------- */
 
-static bool path_is(const struct scenario_axis *axis, int k, const char *path)
-{
-    return k < axis->paths && strcmp(axis->path[k], path) == 0;
-}
-
 /* Cases of each row: all but the first axis. */
 size_t accuracy_cases(const struct accuracy *a, const struct results *r)
 {
@@ -26,7 +22,7 @@ size_t accuracy_cases(const struct accuracy *a, const struct results *r)
 
 bool accuracy_fits(const struct scenario *s, stance_message *message)
 {
-    if (s->axes < 1 || s->sample.given || !path_is(&s->axis[0], 0, "method.name"))
+    if (s->axes < 1 || s->sample.given || strcmp(s->axis[0].path[0], "method.name") != 0)
         return complain(message, "the first axis does not vary method.name");
     const size_t rows = s->axis[0].count;
     for (size_t k = 0; k < rows; k++) {
@@ -55,9 +51,7 @@ static bool make_rows(struct accuracy *a, const struct scenario *s, const struct
         scenario_case_values(s, k * n, &values);
         row->method = stance_methods()[values.method];
         row->step = values.step;
-        row->tolerance = row->method->tolerance > 0
-                             ? (isnan(values.tolerance) ? row->method->tolerance : values.tolerance)
-                             : NAN;
+        row->tolerance = study_tolerance(row->method, &values);
         row->cases = n;
         if (a->truth == a->rows && strcmp(row->method->name, "event-driven") == 0)
             a->truth = k;
@@ -208,14 +202,6 @@ void accuracy_label(const struct accuracy *a, const struct results *r, size_t ce
     }
 }
 
-static void compare_labels(struct accuracy *a, const struct results *r)
-{
-    const size_t n = accuracy_cases(a, r);
-    for (size_t k = 0; k < a->rows; k++)
-        for (size_t i = 0; i < n; i++)
-            accuracy_label(a, r, i, r->kind[k * n + i], &a->row[k]);
-}
-
 /* ---- orders ------------------------------------------------------------------------------- */
 
 /* Slope of y over x, by least squares. */
@@ -277,16 +263,11 @@ static void fit_orders(struct accuracy *a)
 static bool measure(struct accuracy *a, const struct scenario *s, const struct results *r,
                     double budget, stance_message *message)
 {
-    struct parallel alone = parallel_alone();
     struct plan plan;
-    struct plan_error error = {0};
     const size_t n = accuracy_cases(a, r);
-
-    if (!plan_make(&plan, s, false, 0, false, &error))
-        return complain(message, "%s", error.message.text);
-    bool good = plan_compute_designs(&plan, &alone, &error);
-    if (!good)
-        complain(message, "%s", error.message.text);
+    bool good = true;
+    if (!study_plan(&plan, s, message))
+        return false;
     for (size_t k = 0; good && k < a->rows; k++)
         good = measure_rows(&plan, k * n, n, budget, &a->row[k].cost, message);
     plan_free(&plan);
@@ -299,11 +280,12 @@ static bool compare(struct accuracy *a, const struct results *r, stance_message 
     size_t count;
     if (!results_recorded(r, &list, &count, message))
         return false;
+    const size_t n = accuracy_cases(a, r);
     bool good = true;
     a->labels = count != r->cases;
-    if (a->labels)
-        compare_labels(a, r);
-    for (size_t i = 0; good && !a->labels && i < accuracy_cases(a, r); i++)
+    for (size_t i = 0; a->labels && i < r->cases; i++)
+        accuracy_label(a, r, i % n, r->kind[i], &a->row[i / n]);
+    for (size_t i = 0; good && !a->labels && i < n; i++)
         good = compare_case(a, r, list, i, message);
     free(list);
     return good;
@@ -312,16 +294,13 @@ static bool compare(struct accuracy *a, const struct results *r, stance_message 
 bool accuracy_make(struct accuracy *a, const struct results *r, double budget,
                    stance_message *message)
 {
-    struct scenario *s = calloc(1, sizeof *s);
+    struct scenario *const s = study_scenario(r, message);
     *a = (struct accuracy){.rows = 0};
-    if (!s || !results_scenario(r, s)) {
-        free(s);
-        return complain(message, "this version cannot read the file's scenario");
-    }
-    bool good = make_rows(a, s, r, message) && read_answers(a, r, message) &&
-                compare(a, r, message) && measure(a, s, r, budget, message);
-    scenario_free(s);
-    free(s);
+    if (!s)
+        return false;
+    const bool good = make_rows(a, s, r, message) && read_answers(a, r, message) &&
+                      compare(a, r, message) && measure(a, s, r, budget, message);
+    study_scenario_free(s);
     if (good && !a->labels)
         fit_orders(a);
     if (!good)

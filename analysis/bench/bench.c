@@ -1,6 +1,7 @@
 /* bench.c - the workloads of the speed benchmarks, and their results as CSV. */
 #include "bench.h"
 
+#include "analysis/statistics/statistics.h"
 #include "engine/control/design.h"
 #include "runner/store/build_info.h"
 
@@ -84,15 +85,9 @@ double bench_clock(void)
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-static int ascending(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 struct bench_spread bench_spread(double *values, int n)
 {
-    qsort(values, (size_t)n, sizeof *values, ascending);
+    statistics_sort(values, (size_t)n);
     return (struct bench_spread){(values[(n - 1) / 2] + values[n / 2]) / 2, values[0],
                                  values[n - 1]};
 }

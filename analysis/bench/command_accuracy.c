@@ -135,18 +135,11 @@ static int run(int argc, char **argv)
     return studies_run(&command_accuracy, &kind, argc, argv);
 }
 
-static const struct option options[] = {
-    {.rows = studies_options},
-    {"--json", OPTION_TO(struct studies, json),
-     .text = "the same as JSON, without pictures: a list `studies` of"},
-    {0},
-};
-
 const struct command command_accuracy = {
     "bench accuracy",
     "error against cost of every method, on scenes with known answers",
     run,
-    options,
+    studies_options,
     "Runs studies of methods and steps, by default those of scenarios/accuracy, like any other "
     "scenario, and compares each row with the first one of event-driven. The first axis of a "
     "study varies method.name with method.step (and method.tolerance); the other axes vary the "

@@ -9,14 +9,6 @@ extern const struct command command_failure; /* below */
 
 /* ---- text --------------------------------------------------------------------------------- */
 
-static void name_of(const struct failure_row *row, char text[40])
-{
-    if (isnan(row->tolerance))
-        snprintf(text, 40, "%s", row->method->name);
-    else
-        snprintf(text, 40, "%s %.0e", row->method->name, row->tolerance);
-}
-
 static bool print_shares(const struct failure *f)
 {
     struct table t = {0};
@@ -31,7 +23,7 @@ static bool print_shares(const struct failure *f)
                  as_text(failure_styles[v].text)});
         for (size_t k = 0; k < f->rows; k++) {
             char name[40];
-            name_of(&f->row[k], name);
+            failure_row_name(&f->row[k], name);
             TABLE_FACTS(&t, {{name, name, "%.2f", .width = 18, .percent = true, .group = "seen"},
                              as_number((double)f->row[k].count[v] / (double)f->cells)});
         }
@@ -45,11 +37,10 @@ static bool print_shares(const struct failure *f)
 static void print_row(const struct failure *f, const struct failure_row *row)
 {
     char name[40];
-    name_of(row, name);
     printf("  %-18s energy created at most %.2g J, %.2g of that at the start; penetration %.0e m, "
            "residuals %.0e, %.0e, %.0e\n",
-           name, row->energy_gain, row->energy_share, row->penetration, row->signorini,
-           row->coulomb, row->dissipation);
+           failure_row_name(row, name), row->energy_gain, row->energy_share, row->penetration,
+           row->signorini, row->coulomb, row->dissipation);
     const char *separator = "failed: ";
     for (int k = 0; k < STANCE_FAILURE_COUNT; k++) {
         if (row->reason[k] > 0) {
@@ -81,15 +72,6 @@ static bool print_text(const struct failure *f, const struct results *r)
 }
 
 /* ---- JSON --------------------------------------------------------------------------------- */
-
-static json_t *axis_json(const struct results_axis *axis)
-{
-    json_t *values = json_array();
-    for (size_t i = 0; i < axis->count; i++)
-        table_append(values, as_place(axis, i));
-    return TABLE_OBJECT({"name", as_text(axis->name)}, {"unit", as_text(axis->unit)},
-                        {"values", as_tree(values)});
-}
 
 static json_t *row_json(const struct failure *f, size_t k)
 {
@@ -134,8 +116,15 @@ static json_t *theory_json(const struct failure *f, const struct results *r)
 static json_t *study_json(const struct failure *f, const struct results *r)
 {
     json_t *rows = json_array(), *axes = json_array();
-    for (int a = 1; a < 3; a++)
-        json_array_append_new(axes, axis_json(&r->axis[a]));
+    for (int a = 1; a < 3; a++) {
+        const struct results_axis *const axis = &r->axis[a];
+        json_t *const values = json_array();
+        for (size_t i = 0; i < axis->count; i++)
+            table_append(values, as_place(axis, i));
+        json_array_append_new(axes, TABLE_OBJECT({"name", as_text(axis->name)},
+                                                 {"unit", as_text(axis->unit)},
+                                                 {"values", as_tree(values)}));
+    }
     for (size_t k = 0; k < f->rows; k++)
         json_array_append_new(rows, row_json(f, k));
     return TABLE_OBJECT({"name", as_text(r->name)}, {"title", as_text(r->title)},
@@ -167,18 +156,11 @@ static int run(int argc, char **argv)
     return studies_run(&command_failure, &kind, argc, argv);
 }
 
-static const struct option options[] = {
-    {.rows = studies_options},
-    {"--json", OPTION_TO(struct studies, json),
-     .text = "the same as JSON, without pictures: a list `studies` of"},
-    {0},
-};
-
 const struct command command_failure = {
     "bench failure",
     "where each method fails, as maps with the lines of theory",
     run,
-    options,
+    studies_options,
     "Runs studies, by default those of scenarios/failure, like any other scenario. The first axis "
     "of a study varies method.name (with method.tolerance), the other two are a map. Every cell "
     "is compared with event-driven, or with the most exact row of capturing where event-driven "

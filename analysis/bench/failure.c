@@ -1,8 +1,8 @@
 /* failure.c - judges every cell of the maps of a failure study. */
 #include "failure.h"
+#include "studies.h"
 
 #include "runner/base/message.h"
-#include "runner/plan/plan.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -19,41 +19,28 @@ const struct failure_style failure_styles[FAILURE_VERDICT_COUNT] = {
 static const double least_energy = 1e-3;
 
 /* The answers that verdicts rest on, each [cases], and final states [cases][2 n]. */
+enum { GAIN, PENETRATION, SIGNORINI, COULOMB, DISSIPATION, END_TIME, ANSWERS };
 struct answers {
-    double *gain, *penetration, *signorini, *coulomb, *dissipation, *end_time, *final;
+    double *of[ANSWERS], *final;
     size_t coordinates;
 };
 
 /* ---- reading ------------------------------------------------------------------------------ */
 
-static void answers_free(struct answers *x)
-{
-    free(x->gain);
-    free(x->penetration);
-    free(x->signorini);
-    free(x->coulomb);
-    free(x->dissipation);
-    free(x->end_time);
-    free(x->final);
-}
-
 static bool answers_read(struct answers *x, const struct results *r, const stance_scene *scene,
                          stance_message *message)
 {
-    const struct {
-        const char *name;
-        double **values;
-    } wanted[] = {{"energy_gain", &x->gain},
-                  {"max_penetration", &x->penetration},
-                  {"signorini_residual", &x->signorini},
-                  {"coulomb_residual", &x->coulomb},
-                  {"dissipation_residual", &x->dissipation},
-                  {"end_time", &x->end_time}};
-    for (size_t i = 0; i < sizeof wanted / sizeof *wanted; i++) {
-        if (!results_answer(r, wanted[i].name, wanted[i].values, message))
+    static const char *const name[ANSWERS] = {[GAIN] = "energy_gain",
+                                              [PENETRATION] = "max_penetration",
+                                              [SIGNORINI] = "signorini_residual",
+                                              [COULOMB] = "coulomb_residual",
+                                              [DISSIPATION] = "dissipation_residual",
+                                              [END_TIME] = "end_time"};
+    for (int i = 0; i < ANSWERS; i++) {
+        if (!results_answer(r, name[i], &x->of[i], message))
             return false;
-        if (!*wanted[i].values)
-            return complain(message, "%s was not recorded", wanted[i].name);
+        if (!x->of[i])
+            return complain(message, "%s was not recorded", name[i]);
     }
     x->coordinates = (size_t)scene->coordinates;
     const size_t size = (size_t)r->cases * 2 * x->coordinates;
@@ -91,8 +78,7 @@ static bool make_rows(struct failure *f, const struct scenario *s, const struct 
         struct scenario_values values;
         scenario_case_values(s, k * f->cells, &values);
         f->row[k].method = stance_methods()[values.method];
-        const double own = f->row[k].method->tolerance;
-        f->row[k].tolerance = own > 0 ? (isnan(values.tolerance) ? own : values.tolerance) : NAN;
+        f->row[k].tolerance = study_tolerance(f->row[k].method, &values);
     }
     return true;
 }
@@ -101,13 +87,10 @@ static bool make_rows(struct failure *f, const struct scenario *s, const struct 
 static bool start_energies(const struct scenario *s, uint64_t cases, double *energy,
                            stance_message *message)
 {
-    struct parallel alone = parallel_alone();
     struct plan plan;
-    struct plan_error error = {0};
-    if (!plan_make(&plan, s, false, 0, false, &error))
-        return complain(message, "%s", error.message.text);
-    const bool good = plan_compute_designs(&plan, &alone, &error);
-    for (uint64_t i = 0; good && i < cases; i++) {
+    if (!study_plan(&plan, s, message))
+        return false;
+    for (uint64_t i = 0; i < cases; i++) {
         stance_case c;
         int method;
         energy[i] = plan_resolve(&plan, i, &c, &method)
@@ -116,7 +99,7 @@ static bool start_energies(const struct scenario *s, uint64_t cases, double *ene
         energy[i] = fmax(energy[i], least_energy);
     }
     plan_free(&plan);
-    return good || complain(message, "%s", error.message.text);
+    return true;
 }
 
 /* ---- the truth ---------------------------------------------------------------------------- */
@@ -174,7 +157,7 @@ static bool stands(const struct results *r, uint64_t index)
 static double position_error(const struct answers *x, uint64_t mine, uint64_t true_one)
 {
     double largest = 0;
-    if (fabs(x->end_time[mine] - x->end_time[true_one]) > 1e-9)
+    if (fabs(x->of[END_TIME][mine] - x->of[END_TIME][true_one]) > 1e-9)
         return 0;
     for (size_t i = 0; i < x->coordinates; i++) {
         const double difference =
@@ -182,12 +165,6 @@ static double position_error(const struct answers *x, uint64_t mine, uint64_t tr
         largest = fmax(fabs(difference), largest);
     }
     return largest;
-}
-
-static bool breaks_law(const struct answers *x, uint64_t i)
-{
-    return !(x->penetration[i] <= FAILURE_PENETRATION && x->signorini[i] <= FAILURE_RESIDUAL &&
-             x->coulomb[i] <= FAILURE_RESIDUAL && x->dissipation[i] <= FAILURE_RESIDUAL);
 }
 
 static enum failure_verdict judge(const struct failure *f, const struct results *r,
@@ -202,7 +179,8 @@ static enum failure_verdict judge(const struct failure *f, const struct results 
     }
     if (!(f->share[i] <= FAILURE_ENERGY))
         return FAILURE_RAN_AWAY;
-    if (breaks_law(x, i))
+    if (!(x->of[PENETRATION][i] <= FAILURE_PENETRATION && x->of[SIGNORINI][i] <= FAILURE_RESIDUAL &&
+          x->of[COULOMB][i] <= FAILURE_RESIDUAL && x->of[DISSIPATION][i] <= FAILURE_RESIDUAL))
         return FAILURE_BROKE_LAW;
     if (f->truth[cell] < 0)
         return FAILURE_UNJUDGED;
@@ -241,12 +219,12 @@ static void judge_row(struct failure *f, const struct results *r, const struct a
             row->reason[reason < STANCE_FAILURE_COUNT ? reason : 0]++;
             continue;
         }
-        row->energy_gain = fmax(x->gain[i], row->energy_gain);
+        row->energy_gain = fmax(x->of[GAIN][i], row->energy_gain);
         row->energy_share = fmax(f->share[i], row->energy_share);
-        row->penetration = fmax(x->penetration[i], row->penetration);
-        row->signorini = fmax(x->signorini[i], row->signorini);
-        row->coulomb = fmax(x->coulomb[i], row->coulomb);
-        row->dissipation = fmax(x->dissipation[i], row->dissipation);
+        row->penetration = fmax(x->of[PENETRATION][i], row->penetration);
+        row->signorini = fmax(x->of[SIGNORINI][i], row->signorini);
+        row->coulomb = fmax(x->of[COULOMB][i], row->coulomb);
+        row->dissipation = fmax(x->of[DISSIPATION][i], row->dissipation);
     }
 }
 
@@ -258,30 +236,38 @@ static bool judge_all(struct failure *f, const struct scenario *s, const struct 
         answers_read(&x, r, s->scene, message) && start_energies(s, r->cases, f->share, message);
     if (good) {
         for (uint64_t i = 0; i < r->cases; i++)
-            f->share[i] = is_done(r, i) ? x.gain[i] / f->share[i] : NAN;
+            f->share[i] = is_done(r, i) ? x.of[GAIN][i] / f->share[i] : NAN;
         find_truth(f, r);
         for (size_t k = 0; k < f->rows; k++)
             judge_row(f, r, &x, k);
     }
-    answers_free(&x);
+    for (int i = 0; i < ANSWERS; i++)
+        free(x.of[i]);
+    free(x.final);
     return good;
 }
 
 bool failure_make(struct failure *f, const struct results *r, stance_message *message)
 {
-    struct scenario *s = calloc(1, sizeof *s);
+    struct scenario *const s = study_scenario(r, message);
     *f = (struct failure){.rows = 0};
-    if (!s || !results_scenario(r, s)) {
-        free(s);
-        return complain(message, "this version cannot read the file's scenario");
-    }
+    if (!s)
+        return false;
     const bool good = make_rows(f, s, r, message) && failure_theory(&f->line, s, message) &&
                       judge_all(f, s, r, message);
-    scenario_free(s);
-    free(s);
+    study_scenario_free(s);
     if (!good)
         failure_free(f);
     return good;
+}
+
+const char *failure_row_name(const struct failure_row *row, char text[40])
+{
+    if (isnan(row->tolerance))
+        snprintf(text, 40, "%s", row->method->name);
+    else
+        snprintf(text, 40, "%s %.0e", row->method->name, row->tolerance);
+    return text;
 }
 
 void failure_free(struct failure *f)

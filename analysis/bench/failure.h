@@ -79,6 +79,9 @@ bool failure_fits(const struct scenario *s, stance_message *message);
 bool failure_make(struct failure *f, const struct results *r, stance_message *message);
 void failure_free(struct failure *f);
 
+/* "capturing 1e-08". Returns text. */
+const char *failure_row_name(const struct failure_row *row, char text[40]);
+
 /* The line of theory that goes with a scenario, *line zero where none is known:
  * - axes method.step and controller.kp of a robot that begins in free flight with its joints held
  *   by a servo that acts continuously: |R(h lambda)| = 1 of the classical Runge-Kutta formula;

@@ -11,9 +11,10 @@
  * Where D < 0 no single force fits.
  */
 #include "failure.h"
+#include "studies.h"
 
 #include "engine/control/design.h"
-#include "runner/plan/plan.h"
+#include "runner/base/message.h"
 
 #include <complex.h>
 #include <lapacke.h>
@@ -21,12 +22,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-static bool fail(stance_message *message, const char *text)
-{
-    snprintf(message->text, sizeof message->text, "%s", text);
-    return false;
-}
 
 static bool varies(const struct scenario_axis *axis, const char *path)
 {
@@ -40,13 +35,6 @@ static bool varies(const struct scenario_axis *axis, const char *path)
 static int axis_of(const struct scenario *s, const char *path)
 {
     return varies(&s->axis[1], path) ? 1 : varies(&s->axis[2], path) ? 2 : 0;
-}
-
-/* Flat index of the case in the middle of row 0 at point i of an axis of the map, first point of
- * the other. */
-static uint64_t case_at(const struct scenario *s, int axis, size_t i)
-{
-    return axis == 1 ? i * s->axis[2].count : i;
 }
 
 /* ---- the servo's joints in free flight ----------------------------------------------------- */
@@ -231,7 +219,8 @@ static bool make_line(struct failure_line *line, const struct scenario *s, enum 
     line->value = malloc(n * sizeof *line->value);
     snprintf(line->text, sizeof line->text, "%s", texts[theory]);
     for (size_t i = 0; line->value && i < n; i++) {
-        const uint64_t index = case_at(s, line->axis, i);
+        /* Of row 0, at point i of this axis of the map, first point of the other. */
+        const uint64_t index = line->axis == 1 ? i * s->axis[2].count : i;
         struct scenario_values values;
         stance_case c;
         int method;
@@ -250,21 +239,15 @@ static bool make_line(struct failure_line *line, const struct scenario *s, enum 
 
 bool failure_theory(struct failure_line *line, const struct scenario *s, stance_message *message)
 {
-    struct parallel alone = parallel_alone();
     struct plan plan;
-    struct plan_error error = {0};
     int axis = 0;
     const enum theory theory = which_theory(s, &axis);
     *line = (struct failure_line){.axis = axis};
     if (theory == NO_THEORY)
         return true;
-    if (!plan_make(&plan, s, false, 0, false, &error))
-        return fail(message, error.message.text);
-    bool good = plan_compute_designs(&plan, &alone, &error);
-    if (!good)
-        fail(message, error.message.text);
-    else
-        good = make_line(line, s, theory, &plan) || fail(message, "not enough memory");
+    if (!study_plan(&plan, s, message))
+        return false;
+    const bool good = make_line(line, s, theory, &plan) || no_memory(message);
     plan_free(&plan);
     return good;
 }

@@ -13,20 +13,6 @@
 
 enum { LEAST_REPETITIONS = 3, MOST_REPETITIONS = 101, LONG = 20 };
 
-static int ascending(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
-static double simulated(const stance_result *results, size_t n)
-{
-    double sum = 0;
-    for (size_t i = 0; i < n; i++)
-        sum += results[i].end_time;
-    return sum;
-}
-
 /* Seconds since then: of the processor, which others take no part in, once it is long enough for
  * the ticks in which some systems count those; else of the clock. */
 struct since {
@@ -42,35 +28,34 @@ static double seconds(struct since begin)
     return processor >= 0.1 ? processor : clock_seconds() - begin.clock;
 }
 
-/* Runs the cases once; *time is what that took. */
-static bool run_quickly(const stance_kernel *kernel, const stance_case *cases,
-                        stance_result *results, size_t n, double budget, double *time)
+/* Runs the cases once; what that took. */
+static double run_once(const stance_kernel *kernel, const stance_case *cases,
+                       stance_result *results, size_t n)
 {
     const struct since begin = now();
     kernel->run(cases, results, n);
-    *time = seconds(begin);
-    return *time < LONG * budget;
+    return seconds(begin);
 }
 
 static void repeat(const stance_kernel *kernel, const stance_case *cases, stance_result *results,
                    size_t n, double budget, struct measure_cost *cost)
 {
-    double time[MOST_REPETITIONS], spent = 0;
+    double time[MOST_REPETITIONS], spent = 0, simulated = 0;
     int k = 0;
-    if (run_quickly(kernel, cases, results, n, budget, &time[0]))
-        spent = 0; /* that was the warming up */
-    else
+    time[0] = run_once(kernel, cases, results, n);
+    if (time[0] >= LONG * budget) /* else that was the warming up */
         spent = time[k++];
     while (k < 1 || (k < LEAST_REPETITIONS && spent < LONG * budget) ||
            (k < MOST_REPETITIONS && spent < budget)) {
-        const struct since begin = now();
-        kernel->run(cases, results, n);
-        time[k] = seconds(begin);
+        time[k] = run_once(kernel, cases, results, n);
         spent += time[k++];
     }
-    qsort(time, (size_t)k, sizeof *time, ascending);
-    const double scale = 1e6 / simulated(results, n);
-    *cost = (struct measure_cost){time[k / 2] * scale, time[0] * scale, time[k - 1] * scale, k};
+    for (size_t i = 0; i < n; i++)
+        simulated += results[i].end_time;
+    const struct bench_spread spread = bench_spread(time, k);
+    const double scale = 1e6 / simulated;
+    *cost = (struct measure_cost){spread.median * scale, spread.lowest * scale,
+                                  spread.highest * scale, k};
 }
 
 bool measure_rows(const struct plan *plan, uint64_t first, size_t count, double budget,
@@ -82,13 +67,8 @@ bool measure_rows(const struct plan *plan, uint64_t first, size_t count, double 
     int method = 0;
 
     *cost = (struct measure_cost){NAN, NAN, NAN, 0};
-    if (!cases || !results) {
-        complain(message, "not enough memory");
-        free(cases);
-        free(results);
-        return false;
-    }
-    for (size_t i = 0; i < count; i++)
+    const bool good = (cases && results) || no_memory(message);
+    for (size_t i = 0; good && i < count; i++)
         n += plan_resolve(plan, first + i, &cases[n], &method);
     const stance_kernel *kernel =
         n > 0 ? instruction_set_kernel(plan->scenario->scene, stance_methods()[method]) : NULL;
@@ -96,5 +76,5 @@ bool measure_rows(const struct plan *plan, uint64_t first, size_t count, double 
         repeat(kernel, cases, results, n, budget, cost);
     free(cases);
     free(results);
-    return true;
+    return good;
 }

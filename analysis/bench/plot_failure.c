@@ -3,6 +3,7 @@
 #include "failure.h"
 
 #include "analysis/draw/plot.h"
+#include "runner/base/message.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -33,14 +34,6 @@ static void make_axis(struct plot_axis *along, const struct results_axis *axis)
     along->step = fabs(step);
     along->low = along->first - 0.5 * along->step;
     along->high = along->first + ((double)n - 0.5) * along->step;
-}
-
-static void row_name(const struct failure_row *row, char *text, size_t size)
-{
-    if (isnan(row->tolerance))
-        snprintf(text, size, "%s", row->method->name);
-    else
-        snprintf(text, size, "%s %.0e", row->method->name, row->tolerance);
 }
 
 /* Place of a value that need not be one of the axis; NAN: it has none. */
@@ -81,15 +74,14 @@ static bool begin_page(struct gnuplot *g, const struct maps *maps, const char *s
     const struct failure *f = maps->f;
     const size_t ny = maps->up.axis->count;
     struct plot_cells cells = {&maps->across, &maps->up, 0, {ny, 1}};
-    char text[64];
+    char text[40];
     if (!gnuplot_begin(g, maps->look, plot_failure_gp, maps->r->title, subtitle, message))
         return false;
     plot_axis_write(&maps->across, g, "x");
     plot_axis_write(&maps->up, g, "y");
     gnuplot_set(g, "panels = %zu\narray name[%zu]", f->rows, f->rows);
     for (size_t k = 0; k < f->rows; k++) {
-        row_name(&f->row[k], text, sizeof text);
-        gnuplot_text(g, text, "name[%zu]", k + 1);
+        gnuplot_text(g, failure_row_name(&f->row[k], text), "name[%zu]", k + 1);
         cells.first = k * f->cells;
         plot_cells_write(g, &cells, values, size);
     }
@@ -98,14 +90,6 @@ static bool begin_page(struct gnuplot *g, const struct maps *maps, const char *s
 }
 
 /* ---- verdicts ----------------------------------------------------------------------------- */
-
-static bool occurs(const struct failure *f, enum failure_verdict verdict)
-{
-    for (size_t k = 0; k < f->rows; k++)
-        if (f->row[k].count[verdict] > 0)
-            return true;
-    return false;
-}
 
 /* "painleve 12 %, events 1 %": why cases gave up, the two most frequent reasons. */
 static void reasons_text(const struct failure_row *row, uint64_t cells, char text[2][32])
@@ -139,7 +123,10 @@ static void put_table(struct gnuplot *g, const struct failure *f)
     for (enum failure_verdict v = 0; v < FAILURE_VERDICT_COUNT; v++) {
         snprintf(text, sizeof text, "0x%s", failure_styles[v].colour + 1);
         gnuplot_set(g, "verdict_colour[%d] = %s", v + 1, text);
-        if (!occurs(f, v))
+        uint64_t cells = 0;
+        for (size_t k = 0; k < f->rows; k++)
+            cells += f->row[k].count[v];
+        if (cells == 0)
             continue;
         gnuplot_legend(g, text, failure_styles[v].text, "");
         for (size_t k = 0; k < f->rows; k++) {
@@ -193,14 +180,11 @@ static bool draw_energy(const struct maps *maps, const char *directory, const ch
     struct gnuplot g;
     char path[300], text[64];
     double *power = malloc(f->rows * f->cells * sizeof *power);
-    if (!power) {
-        snprintf(message->text, sizeof message->text, "stance bench: not enough memory");
-        return false;
-    }
-    for (size_t i = 0; i < f->rows * f->cells; i++) {
+    if (!power)
+        return complain(message, "stance bench: not enough memory");
+    for (size_t i = 0; i < f->rows * f->cells; i++)
         power[i] =
             isnan(f->share[i]) ? NAN : log10(fmin(fmax(f->share[i], lowest_share), highest_share));
-    }
     const bool good = begin_page(&g, maps, subtitle, power, sizeof *power, message);
     free(power);
     if (!good)

@@ -31,14 +31,6 @@ static void add_series(struct chart *c, const char *name, unsigned colour)
     }
 }
 
-static bool has_series(const struct chart *c, size_t s)
-{
-    bool any = false;
-    for (size_t i = 0; i < c->groups; i++)
-        any |= c->row[s][i] != NULL;
-    return any;
-}
-
 /* Tells the script of a chart `which`: names, colours, groups, and $which<series>: group, median,
  * lowest, highest. Series without rows keep their place but are not drawn. */
 static void put_chart(struct gnuplot *g, const struct chart *c, const char *which)
@@ -54,9 +46,12 @@ static void put_chart(struct gnuplot *g, const struct chart *c, const char *whic
         plot_tic_text(g, c->within[i] ? c->within[i] : "", "%s_within[%zu]", which, i + 1);
     }
     for (size_t s = 0; s < c->series; s++) {
+        bool any = false;
+        for (size_t i = 0; i < c->groups; i++)
+            any |= c->row[s][i] != NULL;
         gnuplot_text(g, c->name[s], "%s_name[%zu]", which, s + 1);
         gnuplot_set(g, "%s_colour[%zu] = 0x%06x; %s_drawn[%zu] = %d", which, s + 1, c->colour[s],
-                    which, s + 1, has_series(c, s));
+                    which, s + 1, any);
         gnuplot_block(g, "%s%zu", which, s + 1);
         for (size_t i = 0; i < c->groups; i++) {
             const struct speed_row *row = c->row[s][i];
@@ -153,37 +148,24 @@ static void make_methods(const struct speed_table *table, struct chart *c)
 /* Wall time over cases: one line in full, one refined. */
 static const char *const map_names[] = {"basin full", "basin refined"};
 
-static bool is_map(const struct speed_row *row, size_t m, int ranks)
-{
-    return strcmp(row->quantity, "wall time") == 0 && strcmp(row->regime, map_names[m]) == 0 &&
-           row->ranks == ranks;
-}
-
-static int map_ranks(const struct speed_table *table)
-{
-    int ranks = 0;
-    for (size_t k = 0; k < table->rows; k++) {
-        const struct speed_row *row = &table->row[k];
-        if (strcmp(row->quantity, "wall time") == 0 && row->ranks > ranks)
-            ranks = row->ranks;
-    }
-    return ranks;
-}
-
 /* $map<line>: cases, median, lowest, highest. */
 static void put_map(struct gnuplot *g, const struct speed_table *table)
 {
-    const int ranks = map_ranks(table);
+    int ranks = 0; /* the most */
     double fewest = INFINITY, most = 0, shortest = INFINITY, longest = 0;
     char text[96] = "";
 
+    for (size_t k = 0; k < table->rows; k++)
+        if (strcmp(table->row[k].quantity, "wall time") == 0 && table->row[k].ranks > ranks)
+            ranks = table->row[k].ranks;
     gnuplot_set(g, "map_ranks = %d\narray map_drawn[2]", ranks);
     for (size_t m = 0; m < 2; m++) {
         bool any = false;
         gnuplot_block(g, "map%zu", m + 1);
         for (size_t k = 0; k < table->rows; k++) {
             const struct speed_row *row = &table->row[k];
-            if (!is_map(row, m, ranks))
+            if (strcmp(row->quantity, "wall time") != 0 || strcmp(row->regime, map_names[m]) != 0 ||
+                row->ranks != ranks)
                 continue;
             GNUPLOT_ROW(g, row->cases, row->median, row->lowest, row->highest);
             fewest = fmin(fewest, row->cases);

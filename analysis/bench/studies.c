@@ -16,6 +16,43 @@
 
 enum { MAX_STUDIES = 64, STEM = 256, FILE_NAME = 1024 };
 
+/* ---- their scenarios ---------------------------------------------------------------------- */
+
+struct scenario *study_scenario(const struct results *r, stance_message *message)
+{
+    struct scenario *const s = calloc(1, sizeof *s);
+    if (s && results_scenario(r, s))
+        return s;
+    free(s);
+    complain(message, "this version cannot read the file's scenario");
+    return NULL;
+}
+
+void study_scenario_free(struct scenario *s)
+{
+    scenario_free(s);
+    free(s);
+}
+
+bool study_plan(struct plan *plan, const struct scenario *s, stance_message *message)
+{
+    const struct parallel alone = parallel_alone();
+    struct plan_error error = {0};
+    if (!plan_make(plan, s, false, 0, false, &error))
+        return complain(message, "%s", error.message.text);
+    if (plan_compute_designs(plan, &alone, &error))
+        return true;
+    plan_free(plan);
+    return complain(message, "%s", error.message.text);
+}
+
+double study_tolerance(const stance_method *method, const struct scenario_values *values)
+{
+    return !(method->tolerance > 0)   ? NAN
+           : isnan(values->tolerance) ? method->tolerance
+                                      : values->tolerance;
+}
+
 /* ---- where they are ----------------------------------------------------------------------- */
 
 static bool ends_in_yaml(const char *name)
@@ -64,13 +101,6 @@ static size_t find_studies(const char *kind, char *path[MAX_STUDIES])
         count = list_studies(directory, path);
     }
     return count;
-}
-
-/* `stance run` of one study; its exit code. */
-static int run_study(const char *scenario, const char *file)
-{
-    char *argv[] = {"run", "--force", "--quiet", "-o", (char *)file, "--", (char *)scenario, NULL};
-    return command_run.run(7, argv);
 }
 
 /* ---- one after the other ------------------------------------------------------------------ */
@@ -174,7 +204,8 @@ static int one_study(const struct request *request, const char *scenario, json_t
     name_study(scenario, stem);
     name_file(request, stem, file);
     if (!request->reuse || access(file, R_OK) != 0) {
-        const int code = run_study(scenario, file);
+        char *argv[] = {"run", "--force", "--quiet", "-o", file, "--", (char *)scenario, NULL};
+        const int code = command_run.run(7, argv);
         if (code != EXIT_DONE && code != EXIT_CASES_FAILED)
             return code;
     }
@@ -257,5 +288,7 @@ const struct option studies_options[] = {
     {"--reuse", OPTION_TO(struct studies, reuse),
      .text = "take results files of the same scenario that are there"},
     {.at = offsetof(struct studies, look), .rows = look_drawn},
+    {"--json", OPTION_TO(struct studies, json),
+     .text = "the same as JSON, without pictures: a list `studies` of"},
     {0},
 };

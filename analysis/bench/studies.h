@@ -9,6 +9,7 @@
 #include "analysis/draw/look.h"
 #include "analysis/table/table.h"
 #include "runner/base/command.h"
+#include "runner/plan/plan.h"
 
 /* Evaluates one results file. With `object` NULL prints text and writes pictures into `directory`,
  * their names beginning with `stem`; else gives the same as JSON. false: one line in *message. */
@@ -23,8 +24,7 @@ struct study_kind {
     study_function evaluate;
 };
 
-/* Its options but --json, which says what is in it; the command's row is
- * {OPTION_JSON(struct studies, json)}. */
+/* Its options. */
 struct studies {
     struct option_texts scenarios;
     struct look look;
@@ -38,5 +38,14 @@ extern const struct option studies_options[];
  * Returns an exit code; numerical failures of cases are what such studies are about, no error. */
 int studies_run(const struct command *command, const struct study_kind *kind, int argc,
                 char **argv);
+
+/* The scenario of a results file, and a plan with its designs; freed by the caller. NULL, false:
+ * one line in *message. */
+struct scenario *study_scenario(const struct results *r, stance_message *message);
+void study_scenario_free(struct scenario *s);
+bool study_plan(struct plan *plan, const struct scenario *s, stance_message *message);
+
+/* The tolerance that a method uses; NAN: it does not control its error. */
+double study_tolerance(const stance_method *method, const struct scenario_values *values);
 
 #endif
