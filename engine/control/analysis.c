@@ -38,17 +38,6 @@ static int by_real_then_imaginary(const void *left, const void *right)
     return (a->im > b->im) - (a->im < b->im);
 }
 
-static void sort_eigenvalues(int n, double *re, double *im, eigenvalue *sorted)
-{
-    for (int i = 0; i < n; i++)
-        sorted[i] = (eigenvalue){re[i], im[i]};
-    qsort(sorted, (size_t)n, sizeof *sorted, by_real_then_imaginary);
-    for (int i = 0; i < n; i++) {
-        re[i] = sorted[i].re;
-        im[i] = sorted[i].im;
-    }
-}
-
 stance_error stance_eigenvalues(int n, const double *A, double *re, double *im)
 {
     const size_t entries = (size_t)n * (size_t)n;
@@ -63,19 +52,15 @@ stance_error stance_eigenvalues(int n, const double *A, double *re, double *im)
             LAPACKE_dgeev(LAPACK_COL_MAJOR, 'N', 'N', n, copy, n, re, im, NULL, 1, NULL, 1);
         error = info == 0 ? STANCE_OK : STANCE_NUMERICAL;
     }
+    for (int i = 0; i < n && error == STANCE_OK; i++)
+        sorted[i] = (eigenvalue){re[i], im[i]};
     if (error == STANCE_OK)
-        sort_eigenvalues(n, re, im, sorted);
+        qsort(sorted, (size_t)n, sizeof *sorted, by_real_then_imaginary);
+    for (int i = 0; i < n && error == STANCE_OK; i++)
+        re[i] = sorted[i].re, im[i] = sorted[i].im;
     free(sorted);
     free(copy);
     return error;
-}
-
-static double frobenius(int count, const double *x)
-{
-    double norm = 0;
-    for (int i = 0; i < count; i++)
-        norm = hypot(norm, x[i]);
-    return norm;
 }
 
 /* Column block k of the Kalman matrix [n][n m], scaled to unit Frobenius norm. A change of the
@@ -83,7 +68,7 @@ static double frobenius(int count, const double *x)
  * scaled blocks, and so the rank, do not notice. */
 static void store_block(int n, int m, int k, const double *block, double *kalman)
 {
-    const double norm = frobenius(n * m, block);
+    const double norm = matrix_norm(n * m, block);
     for (int i = 0; i < n; i++)
         for (int j = 0; j < m; j++)
             kalman[(i * n + k) * m + j] = norm > 0 ? block[i * m + j] / norm : 0;
@@ -94,8 +79,8 @@ static void store_block(int n, int m, int k, const double *block, double *kalman
 static void next_block(int n, int m, const double *A, const double *block, double *next)
 {
     matrix_multiply(n, n, m, A, block, next);
-    const double size = frobenius(n * n, A) * frobenius(n * m, block);
-    if (frobenius(n * m, next) <= BLOCK_ROUNDING * size)
+    const double size = matrix_norm(n * n, A) * matrix_norm(n * m, block);
+    if (matrix_norm(n * m, next) <= BLOCK_ROUNDING * size)
         memset(next, 0, (size_t)(n * m) * sizeof *next);
 }
 
@@ -187,7 +172,7 @@ stance_error stance_hautus(int n, int m, const double *A, const double *B, enum 
     /* A column to spare: OpenBLAS 0.3.21 (zgemv for Haswell) reads a stride beyond the last one,
      * now and then in a page that is not there. */
     double _Complex *matrix = calloc(side * (side + (size_t)m + 1), sizeof *matrix);
-    const double norm = frobenius(n * n, A);
+    const double norm = matrix_norm(n * n, A);
     int rank = 0;
 
     *reached = true;

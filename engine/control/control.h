@@ -21,6 +21,13 @@ const char *stance_complex_text(double _Complex number, char text[64]);
 /* Equal but for rounding. */
 bool stance_same_pole(double _Complex a, double _Complex b);
 
+/* What every pole assignment asks of A[n][n] and B[n][m]: that they are and are finite; and that
+ * inputs reach every mode, UNCONTROLLABLE where one has none. */
+stance_error stance_check_plant(int n, int m, const double *A, const double *B,
+                                stance_message *message);
+stance_error stance_check_controllable(int n, int m, const double *A, const double *B,
+                                       stance_message *message);
+
 /* Puts the poles re + i im in an order in which a pair stands in two places in a row, the one with
  * im > 0 first. BAD_POLES when one is not finite or lacks its conjugate. */
 stance_error stance_pair_poles(int n, const double *re, const double *im, double _Complex *pole,
@@ -92,6 +99,15 @@ static inline void matrix_close(int n, int m, const double *A, const double *B, 
 static inline double *matrix_room(size_t count)
 {
     return calloc(count ? count : 1, sizeof(double));
+}
+
+/* Its Frobenius norm. */
+static inline double matrix_norm(int count, const double *x)
+{
+    double norm = 0;
+    for (int i = 0; i < count; i++)
+        norm = hypot(norm, x[i]);
+    return norm;
 }
 
 static inline bool matrix_finite(size_t count, const double *x)

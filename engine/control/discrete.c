@@ -52,19 +52,17 @@ stance_error stance_exponential(int n, const double *A, double T, double *E, dou
     return error;
 }
 
-/* Room for one pair (n, m), so that a scan over T allocates once. */
+/* Room for one pair (n, m). */
 typedef struct sampled {
     int n, m;
     int side; /* of the loop: n + delay m */
     const double *A, *B, *K;
-    double *Ad, *Bd, *integral, *loop, *re, *im, *work;
-    int *integers;
+    double *Ad, *Bd, *integral, *loop, *re, *im;
 } sampled;
 
 static void sampled_free(sampled *s)
 {
     free(s->Ad);
-    free(s->integers);
 }
 
 static stance_error sampled_make(sampled *s, int n, int m, const double *A, const double *B,
@@ -77,35 +75,25 @@ static stance_error sampled_make(sampled *s, int n, int m, const double *A, cons
         return STANCE_BAD_ARGUMENT;
     *s = (sampled){.n = n, .m = m, .side = n + delay * m, .A = A, .B = B, .K = K};
     const size_t side = (size_t)s->side;
-    double *room = matrix_room(4 * nn + side * side + nm + 2 * side);
-    s->Ad = room;
-    s->integers = calloc((size_t)n, sizeof *s->integers);
-    if (!room || !s->integers) {
-        sampled_free(s);
+    s->Ad = matrix_room(2 * nn + side * side + nm + 2 * side);
+    if (!s->Ad)
         return STANCE_NO_MEMORY;
-    }
-    s->integral = room + nn;
-    s->work = room + 2 * nn; /* two matrices */
-    s->Bd = room + 4 * nn;
+    s->integral = s->Ad + nn;
+    s->Bd = s->integral + nn;
     s->loop = s->Bd + nm;
     s->re = s->loop + side * side;
     s->im = s->re + side;
     return STANCE_OK;
 }
 
-/* Ad and Bd for T. The transposes that Fortran sees have transposed exponentials. */
+/* Ad and Bd for T. */
 static stance_error sampled_discretise(sampled *s, double T)
 {
-    const int n = s->n, room = 2 * n * n;
-    const double tolerance = DBL_EPSILON;
-    int info = 0;
-    mb05nd_(&n, &T, s->A, &n, s->Ad, &n, s->integral, &n, &tolerance, s->integers, s->work, &room,
-            &info);
-    if (info != 0)
-        return STANCE_NUMERICAL;
-    matrix_multiply(n, n, s->m, s->integral, s->B, s->Bd);
-    const size_t nn = (size_t)n * (size_t)n, nm = (size_t)n * (size_t)s->m;
-    return matrix_finite(nn, s->Ad) && matrix_finite(nm, s->Bd) ? STANCE_OK : STANCE_NUMERICAL;
+    const stance_error error = stance_exponential(s->n, s->A, T, s->Ad, s->integral);
+    if (error != STANCE_OK)
+        return error;
+    matrix_multiply(s->n, s->n, s->m, s->integral, s->B, s->Bd);
+    return matrix_finite((size_t)s->n * (size_t)s->m, s->Bd) ? STANCE_OK : STANCE_NUMERICAL;
 }
 
 stance_error stance_discretise(int n, int m, const double *A, const double *B, double T, double *Ad,

@@ -36,12 +36,6 @@ static stance_error check_stable(int n, const double *loop, bool sampled, double
     return error;
 }
 
-static bool is_positive(int n, const double *P, double *scratch)
-{
-    memcpy(scratch, P, (size_t)n * (size_t)n * sizeof *P);
-    return LAPACKE_dpotrf(LAPACK_COL_MAJOR, 'U', n, scratch, n) == 0;
-}
-
 stance_error stance_solve_lyapunov(int n, const double *F, bool discrete, const double *C,
                                    double *X)
 {
@@ -86,7 +80,8 @@ stance_error stance_lyapunov(int n, const double *loop, bool sampled, const doub
         for (int i = 0; i < n; i++)
             P[i * n + i] = -weight[i];
         error = stance_solve_lyapunov(n, loop, sampled, P, P);
-        if (error == STANCE_OK && !is_positive(n, P, scratch))
+        memcpy(scratch, P, nn * sizeof *P);
+        if (error == STANCE_OK && LAPACKE_dpotrf(LAPACK_COL_MAJOR, 'U', n, scratch, n) != 0)
             error = STANCE_NUMERICAL;
         if (error == STANCE_NUMERICAL) {
             stance_refuse(message, error,

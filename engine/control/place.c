@@ -155,21 +155,6 @@ static stance_error split_inputs(problem *p, stance_message *message)
     return STANCE_OK;
 }
 
-static stance_error check_controllable(const problem *p, stance_message *message)
-{
-    double complex mode = 0;
-    bool reached = true;
-    const stance_error error = stance_hautus(p->n, p->m, p->A, p->B, EVERY_MODE, &mode, &reached);
-    if (error == STANCE_OK && !reached) {
-        char text[64];
-        return stance_refuse(message, STANCE_UNCONTROLLABLE,
-                             "the pair (A, B) is not controllable: no input reaches the mode "
-                             "with eigenvalue %s",
-                             stance_complex_text(mode, text));
-    }
-    return error;
-}
-
 /* Orthonormal bases of the S_j. */
 static stance_error find_spaces(problem *p)
 {
@@ -241,9 +226,7 @@ static void project(const problem *p, int j, const double *y, number *w)
 
 static bool normalise(int n, double *y)
 {
-    double norm = 0;
-    for (int i = 0; i < n; i++)
-        norm = hypot(norm, y[i]);
+    const double norm = matrix_norm(n, y);
     for (int i = 0; i < n; i++)
         y[i] /= norm;
     return norm > 0 && isfinite(norm);
@@ -362,25 +345,33 @@ static double log_height(problem *p)
 
 /* ---- starts and mirror images ---------------------------------------------------------------- */
 
+/* x_j: re + i im (NULL: none) projected on S_j; false when that is zero. */
+static bool put_projection(problem *p, int j, const double *re, const double *im)
+{
+    number *w = p->small, *part = w + p->r;
+    project(p, j, re, w);
+    if (im)
+        project(p, j, im, part);
+    for (int k = 0; k < p->r && im; k++)
+        w[k] += CMPLX(0, 1) * part[k];
+    if (!combine(p, j, w, p->vector + j * p->n))
+        return false;
+    store_columns(p, j);
+    return true;
+}
+
 /* x_j: fixed scattered vectors projected on S_j, so that the start does not depend on the bases. */
 static bool scatter(problem *p, int start)
 {
     uint64_t state = 0x9e3779b97f4a7c15u * (uint64_t)(start + 1);
-    for (int j = 0; j < p->n; j += is_pair(p, j) ? 2 : 1) {
-        number *w = p->small, *part = w + p->r;
-        memset(w, 0, (size_t)p->r * sizeof *w);
-        for (int c = 0; c < (is_pair(p, j) ? 2 : 1); c++) {
-            for (int i = 0; i < p->n; i++) {
-                state = state * 6364136223846793005u + 1442695040888963407u;
-                p->rhs[i] = (double)(state >> 11) * 0x1p-52 - 1;
-            }
-            project(p, j, p->rhs, part);
-            for (int k = 0; k < p->r; k++)
-                w[k] += c ? CMPLX(0, 1) * part[k] : part[k];
+    for (int j = 0, count; j < p->n; j += count) {
+        count = is_pair(p, j) ? 2 : 1;
+        for (int i = 0; i < count * p->n; i++) {
+            state = state * 6364136223846793005u + 1442695040888963407u;
+            p->rhs[i] = (double)(state >> 11) * 0x1p-52 - 1;
         }
-        if (!combine(p, j, w, p->vector + j * p->n))
+        if (!put_projection(p, j, p->rhs, count == 2 ? p->rhs + p->n : NULL))
             return false;
-        store_columns(p, j);
     }
     return true;
 }
@@ -484,9 +475,7 @@ static bool gains(problem *p, double *K, double *norm)
         }
     }
     matrix_multiply(p->m, r, n, p->pseudo, U0M, K);
-    *norm = 0;
-    for (int i = 0; i < p->m * n; i++)
-        *norm = hypot(*norm, K[i]);
+    *norm = matrix_norm(p->m * n, K);
     return isfinite(*norm);
 }
 
@@ -571,19 +560,13 @@ static stance_error finish(problem *p, double *K, candidate *c, stance_message *
 static bool solve_from(problem *p, const number *start, double *K, candidate *c)
 {
     for (int j = 0; j < p->n; j += is_pair(p, j) ? 2 : 1) {
-        number *w = p->small, *part = w + p->r;
         double *re = p->rhs, *im = re + p->n;
         for (int i = 0; i < p->n; i++) {
             re[i] = creal(start[j * p->n + i]);
             im[i] = cimag(start[j * p->n + i]);
         }
-        project(p, j, re, w);
-        project(p, j, im, part);
-        for (int k = 0; k < p->r; k++)
-            w[k] += CMPLX(0, 1) * part[k];
-        if (!combine(p, j, w, p->vector + j * p->n))
+        if (!put_projection(p, j, re, im))
             return false;
-        store_columns(p, j);
     }
     return finish(p, K, c, NULL) == STANCE_OK;
 }
@@ -627,7 +610,7 @@ static stance_error prepare(problem *p, int n, int m, const double *A, const dou
     if (error == STANCE_OK)
         error = check_multiplicity(p, message);
     if (error == STANCE_OK)
-        error = check_controllable(p, message);
+        error = stance_check_controllable(n, m, A, B, message);
     if (error == STANCE_OK)
         error = find_spaces(p);
     if (error != STANCE_OK)
@@ -651,15 +634,12 @@ stance_error stance_place(int n, int m, const double *A, const double *B, const 
                           const double *im, double *K, int *sweeps, double *condition,
                           stance_message *message)
 {
-    if (n < 1 || m < 1) {
-        return stance_refuse(message, STANCE_BAD_ARGUMENT,
-                             "pole placement needs at least one state and one input");
-    }
-    if (!matrix_finite((size_t)n * (size_t)n, A) || !matrix_finite((size_t)n * (size_t)m, B))
-        return stance_refuse(message, STANCE_BAD_ARGUMENT, "A and B must be finite");
     problem p;
     candidate c = {0};
-    stance_error error = prepare(&p, n, m, A, B, re, im, message);
+    stance_error error = stance_check_plant(n, m, A, B, message);
+    if (error != STANCE_OK)
+        return error;
+    error = prepare(&p, n, m, A, B, re, im, message);
     if (error == STANCE_OK) {
         error = solve(&p, K, &c, message);
         free(p.memory);

@@ -22,15 +22,6 @@ void sb01bd_(const char *dico, const int *n, const int *m, const int *np, const 
              const double *tol, double *dwork, const int *ldwork, int *iwarn, int *info,
              size_t dico_length);
 
-static stance_error uncontrollable(stance_message *message, double complex mode)
-{
-    char text[64];
-    return stance_refuse(message, STANCE_UNCONTROLLABLE,
-                         "the pair (A, B) is not controllable: no input reaches the mode with "
-                         "eigenvalue %s",
-                         stance_complex_text(mode, text));
-}
-
 /* A block of a real Schur form: is it of two rows? */
 static bool is_pair(int n, const double *T, int i)
 {
@@ -105,21 +96,17 @@ static stance_error assign(int n, int m, const double *A, const double *B,
 stance_error stance_place_schur(int n, int m, const double *A, const double *B, const double *re,
                                 const double *im, double *K, stance_message *message)
 {
-    if (n < 1 || m < 1) {
-        return stance_refuse(message, STANCE_BAD_ARGUMENT,
-                             "pole placement needs at least one state and one input");
-    }
-    if (!matrix_finite((size_t)n * (size_t)n, A) || !matrix_finite((size_t)n * (size_t)m, B))
-        return stance_refuse(message, STANCE_BAD_ARGUMENT, "A and B must be finite");
-    double complex *pole = calloc((size_t)n, sizeof *pole), mode = 0;
-    bool reached = true;
-    stance_error error = pole ? STANCE_OK : STANCE_NO_MEMORY;
+    stance_error error = stance_check_plant(n, m, A, B, message);
+    if (error != STANCE_OK)
+        return error;
+    double complex *const pole = calloc((size_t)n, sizeof *pole);
+    error = pole ? STANCE_OK : STANCE_NO_MEMORY;
     if (error == STANCE_OK)
         error = stance_pair_poles(n, re, im, pole, message);
     if (error == STANCE_OK)
-        error = stance_hautus(n, m, A, B, EVERY_MODE, &mode, &reached);
+        error = stance_check_controllable(n, m, A, B, message);
     if (error == STANCE_OK)
-        error = reached ? assign(n, m, A, B, pole, K, message) : uncontrollable(message, mode);
+        error = assign(n, m, A, B, pole, K, message);
     if (error == STANCE_NO_MEMORY || error == STANCE_NUMERICAL)
         stance_refuse(message, error, "pole placement: %s", stance_error_text(error));
     free(pole);

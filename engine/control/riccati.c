@@ -256,34 +256,6 @@ static stance_error check_weights(int n, int m, const double *A, const double *B
     return check_seen(n, A, states, message);
 }
 
-static stance_error finish(stance_error error, stance_message *message)
-{
-    if (error == STANCE_NO_MEMORY)
-        stance_refuse(message, error, "linear quadratic regulator: %s", stance_error_text(error));
-    return error;
-}
-
-stance_error stance_lqr(int n, int m, const double *A, const double *B, const double *states,
-                        const double *torques, double *K, stance_message *message)
-{
-    regulator g;
-    stance_error error = check_weights(n, m, A, B, states, torques, message);
-    if (error != STANCE_OK)
-        return finish(error, message);
-    error = regulator_make(&g, n, m, false);
-    if (error != STANCE_OK)
-        return finish(error, message);
-    memcpy(g.A, A, (size_t)(n * n) * sizeof *A);
-    memcpy(g.B, B, (size_t)(n * m) * sizeof *B);
-    for (int i = 0; i < n; i++)
-        g.Q[i * n + i] = states[i];
-    for (int j = 0; j < m; j++)
-        g.R[j * m + j] = torques[j];
-    error = regulate(&g, K, message);
-    regulator_free(&g);
-    return finish(error, message);
-}
-
 /* Fills g with Ad, Bd, Qd, Sd, Rd. */
 static stance_error sample_cost(regulator *g, const double *A, const double *B, double T,
                                 const double *states, const double *torques)
@@ -330,28 +302,50 @@ static stance_error sample_cost(regulator *g, const double *A, const double *B, 
     return error;
 }
 
+/* T NULL: of continuous time. */
+static stance_error design(int n, int m, const double *A, const double *B, const double *T,
+                           const double *states, const double *torques, double *K,
+                           stance_message *message)
+{
+    regulator g;
+    stance_error error = check_weights(n, m, A, B, states, torques, message);
+    if (error == STANCE_OK && T && (!isfinite(*T) || *T <= 0))
+        return stance_refuse(message, STANCE_BAD_ARGUMENT,
+                             "a sampled regulator needs a sample time above 0, not %.6g s", *T);
+    if (error == STANCE_OK)
+        error = regulator_make(&g, n, m, T != NULL);
+    if (error == STANCE_OK) {
+        if (T) {
+            error = sample_cost(&g, A, B, *T, states, torques);
+        } else {
+            memcpy(g.A, A, (size_t)(n * n) * sizeof *A);
+            memcpy(g.B, B, (size_t)(n * m) * sizeof *B);
+            for (int i = 0; i < n; i++)
+                g.Q[i * n + i] = states[i];
+            for (int j = 0; j < m; j++)
+                g.R[j * m + j] = torques[j];
+        }
+        if (error == STANCE_OK)
+            error = regulate(&g, K, message);
+        else
+            stance_refuse(message, error, "discretisation over %.6g s: %s", T ? *T : 0,
+                          stance_error_text(error));
+        regulator_free(&g);
+    }
+    if (error == STANCE_NO_MEMORY)
+        stance_refuse(message, error, "linear quadratic regulator: %s", stance_error_text(error));
+    return error;
+}
+
+stance_error stance_lqr(int n, int m, const double *A, const double *B, const double *states,
+                        const double *torques, double *K, stance_message *message)
+{
+    return design(n, m, A, B, NULL, states, torques, K, message);
+}
+
 stance_error stance_lqr_sampled(int n, int m, const double *A, const double *B, double T,
                                 const double *states, const double *torques, double *K,
                                 stance_message *message)
 {
-    regulator g;
-    stance_error error = check_weights(n, m, A, B, states, torques, message);
-    if (error != STANCE_OK)
-        return finish(error, message);
-    if (!isfinite(T) || T <= 0) {
-        return stance_refuse(message, STANCE_BAD_ARGUMENT,
-                             "a sampled regulator needs a sample time above 0, not %.6g s", T);
-    }
-    error = regulator_make(&g, n, m, true);
-    if (error != STANCE_OK)
-        return finish(error, message);
-    error = sample_cost(&g, A, B, T, states, torques);
-    if (error == STANCE_OK) {
-        error = regulate(&g, K, message);
-    } else {
-        stance_refuse(message, error, "discretisation over %.6g s: %s", T,
-                      stance_error_text(error));
-    }
-    regulator_free(&g);
-    return finish(error, message);
+    return design(n, m, A, B, &T, states, torques, K, message);
 }

@@ -223,8 +223,7 @@ static stance_error make_plant(struct plant *p, int m, const double *A, const do
     for (int i = 0; i < n; i++)
         for (int j = 0; j < m; j++)
             scaled[i * m + j] = scale[i] * B[i * m + j];
-    for (int i = 0; i < n * n; i++)
-        p->norm = hypot(p->norm, p->A[i]);
+    p->norm = matrix_norm(n * n, p->A);
     memcpy(p->T, p->A, (size_t)n * (size_t)n * sizeof *A);
     stance_error error = info == 0 ? schur(n, p->T, p->Z, p->re, p->im) : STANCE_NUMERICAL;
     if (error == STANCE_OK)
