@@ -77,19 +77,6 @@ static void put_part(struct page *page, size_t column, size_t from, size_t to)
     gnuplot_row(&page->g, row, sizeof row / sizeof *row);
 }
 
-/* Unit of a path; "" where it has none. */
-static void unit_of(const struct search_study *study, const char *path, char *unit, size_t size)
-{
-    const struct scenario *const s = study->first;
-    unit[0] = '\0';
-    for (int a = 0; s && a < s->axes; a++)
-        for (int k = 0; k < s->axis[a].paths; k++)
-            if (strcmp(s->axis[a].path[k], path) == 0 && s->axis[a].meaning)
-                snprintf(unit, size, "%s", s->axis[a].meaning[k].unit);
-    if (strcmp(unit, "1") == 0)
-        unit[0] = '\0';
-}
-
 static void put_panel(struct page *page, size_t column)
 {
     const struct search_file *const f = &page->study->f;
@@ -97,7 +84,8 @@ static void put_panel(struct page *page, size_t column)
                                                       : n / LEAST > 2    ? n / LEAST
                                                                          : 2;
     const char *const path = f->varied[column], *const label = look_label(page->g.look, path);
-    char text[200], unit[24];
+    struct results_axis axis = {.unit = ""};
+    char text[200];
     for (size_t i = 0; i < n; i++)
         page->order[i] = i;
     by_file = f;
@@ -105,9 +93,10 @@ static void put_panel(struct page *page, size_t column)
     qsort(page->order, n, sizeof *page->order, compare);
     const double low = coordinate(f, page->order[0], column),
                  high = coordinate(f, page->order[n - 1], column);
-    unit_of(page->study, path, unit, sizeof unit);
+    snprintf(axis.name, sizeof axis.name, "%s", path);
+    search_describe(page->study, &axis);
     snprintf(text, sizeof text, "%.120s%s%s%s", label == path ? schema_last_name(path) : label,
-             unit[0] ? " (" : "", unit, unit[0] ? ")" : "");
+             axis.unit[0] ? " (" : "", axis.unit, axis.unit[0] ? ")" : "");
     gnuplot_text(&page->g, text, "panel_text[%zu]", column + 1);
     const double margin = low < high ? 0.04 * (high - low) : 0.5;
     gnuplot_number(&page->g, low - margin, "panel_low[%zu]", column + 1);

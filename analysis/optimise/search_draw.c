@@ -30,39 +30,24 @@ static bool (*const pictures[])(const struct search_study *, struct look *, cons
 #undef PICTURE
 };
 
-static bool draw_one(struct look *look, const char *file, const char *directory,
-                     stance_message *message)
-{
-    struct search_study study;
-    bool good = search_study_open(&study, file, message);
-    if (!good)
-        return false;
-    for (size_t k = 0; good && k < sizeof pictures / sizeof *pictures; k++)
-        good = pictures[k](&study, look, directory, message);
-    search_study_close(&study);
-    return good;
-}
-
-static bool draw_front(struct look *look, const char *const *file, size_t files,
-                       const char *directory, stance_message *message)
-{
-    struct search_front front;
-    if (!search_front_open(&front, file, files, message))
-        return false;
-    const bool good = plot_search_front(&front, look, directory, message);
-    search_front_close(&front);
-    return good;
-}
-
 int search_draw(struct look *look, const char *const *file, size_t files)
 {
+    struct search_study study;
+    struct search_front front;
     stance_message message = {""};
+    bool good = false;
     char own[1024];
     const char *const directory = look_directory(look, file[0], own, sizeof own);
     if (!gnuplot_directory(directory))
         return EXIT_IO;
-    const bool good = files == 1 ? draw_one(look, file[0], directory, &message)
-                                 : draw_front(look, file, files, directory, &message);
+    if (files == 1 && (good = search_study_open(&study, file[0], &message))) {
+        for (size_t k = 0; good && k < sizeof pictures / sizeof *pictures; k++)
+            good = pictures[k](&study, look, directory, &message);
+        search_study_close(&study);
+    } else if (files > 1 && (good = search_front_open(&front, file, files, &message))) {
+        good = plot_search_front(&front, look, directory, &message);
+        search_front_close(&front);
+    }
     if (!good)
         fprintf(stderr, "%s\n", message.text);
     return good ? EXIT_DONE : EXIT_IO;

@@ -1,5 +1,6 @@
 /* search_front.c - see search_front.h. */
 #include "search_front.h"
+#include "search_summary.h"
 
 #include "runner/base/message.h"
 #include "runner/plan/allowed.h"
@@ -167,25 +168,6 @@ static void find_also(struct search_front *front, const struct leaves *l)
     results_clean(front->also);
 }
 
-/* Unit and text, where the format has them. */
-static void describe(struct search_front *front)
-{
-    struct results_axis *const axis = &front->against;
-    const struct scenario *const s = front->study[0].first;
-    struct schema *const schema = s ? malloc(sizeof *schema) : NULL;
-    size_t index[2];
-    const struct scenario_field *const field = schema && schema_build(schema, s->scene)
-                                                   ? schema_find_concrete(schema, axis->name, index)
-                                                   : NULL;
-    if (field) {
-        snprintf(axis->unit, sizeof axis->unit, "%s",
-                 strcmp(field->unit, "1") == 0 ? "" : field->unit);
-        snprintf(axis->text, sizeof axis->text, "%s", field->text);
-    }
-    free(schema);
-    results_clean(axis->name);
-}
-
 static bool compare_scenarios(struct search_front *front, struct leaves *l, stance_message *message)
 {
     size_t read = 0;
@@ -249,7 +231,8 @@ bool search_front_open(struct search_front *front, const char *const *file, size
     sort(front);
     front->against.count = count;
     front->against.value = front->at;
-    describe(front);
+    search_describe(&front->study[0], &front->against);
+    results_clean(front->against.name);
     return true;
 }
 
@@ -264,19 +247,6 @@ void search_front_close(struct search_front *front)
 
 /* ---- the table ---------------------------------------------------------------------------- */
 
-static void share_facts(struct table *t, const struct search_study *study, size_t k,
-                        const char *names[3], const char *heading)
-{
-    const struct interval interval = search_interval(study, k, SEARCH_OVERALL);
-    TABLE_FACTS(t,
-                {{names[0], heading, "%.2f", .width = 8, .percent = true},
-                 as_number(search_share(study, k, SEARCH_OVERALL))},
-                {{names[1], "", "(%.2f", .before = " ", .left = true, .empty = "", .percent = true},
-                 as_number(interval.low)},
-                {{names[2], NULL, "%.2f)", .joined = true, .before = " ... ", .percent = true},
-                 as_number(interval.high)});
-}
-
 void search_front_table(struct table *t, const struct search_front *front)
 {
     for (size_t i = 0; i < front->count; i++) {
@@ -285,13 +255,18 @@ void search_front_table(struct table *t, const struct search_front *front)
         const size_t chosen = (size_t)f->chosen, circumstances = f->length[SEARCH_CIRCUMSTANCE];
         const char *where;
         const double allowed = search_limit(study, chosen, &where);
-        TABLE_FACTS(t, {{front->against.name, schema_last_name(front->against.name), .width = 10},
-                        as_number(front->at[i])});
-        share_facts(t, study, 0, (const char *[]){"first", "first_low", "first_high"}, "first %");
-        share_facts(t, study, chosen, (const char *[]){"chosen", "chosen_low", "chosen_high"},
-                    "chosen %");
         TABLE_FACTS(
-            t, {{"allowed", "allowed %", "%.2f", .width = 9, .percent = true}, as_number(allowed)},
+            t,
+            {{front->against.name, schema_last_name(front->against.name), .width = 10},
+             as_number(front->at[i])},
+            {{"first", "first %", "%.2f", .width = 8, .percent = true},
+             as_number(search_share(study, 0, SEARCH_OVERALL))},
+            SEARCH_INTERVAL("first_low", "first_high", search_interval(study, 0, SEARCH_OVERALL)),
+            {{"chosen", "chosen %", "%.2f", .width = 8, .percent = true},
+             as_number(search_share(study, chosen, SEARCH_OVERALL))},
+            SEARCH_INTERVAL("chosen_low", "chosen_high",
+                            search_interval(study, chosen, SEARCH_OVERALL)),
+            {{"allowed", "allowed %", "%.2f", .width = 9, .percent = true}, as_number(allowed)},
             {{"of_allowed", "of that", "%.1f", .width = 7, .percent = true},
              as_number(search_share(study, chosen, SEARCH_OVERALL) / allowed)},
             {{"glued", .hidden = TABLE_NO_CSV}, as_truth(study->glued)},

@@ -3,19 +3,14 @@
 
 #include <stdlib.h>
 
-static json_t *released(struct table *t)
-{
-    json_t *const json = table_json(t, false);
-    table_free(t);
-    return json;
-}
-
 static json_t *table_of(const struct search_study *study,
                         void (*make)(struct table *, const struct search_study *))
 {
     struct table t = {0};
     make(&t, study);
-    return released(&t);
+    json_t *const json = table_json(&t, false);
+    table_free(&t);
+    return json;
 }
 
 static json_t *words(char **word, size_t count)
@@ -24,15 +19,6 @@ static json_t *words(char **word, size_t count)
     for (size_t i = 0; i < count; i++)
         table_append(list, as_text(word[i]));
     return list;
-}
-
-static json_t *counts(const struct search_study *study)
-{
-    json_t *const object = json_object();
-    for (int label = 0; label < TRIAL_LABELS; label++)
-        table_put(object, study->f.kind[label],
-                  as_whole((uint64_t)search_count(study, (size_t)study->f.chosen, label)));
-    return object;
 }
 
 static json_t *gains(const struct search_study *study)
@@ -77,9 +63,13 @@ static json_t *poles(const struct search_study *study)
 static json_t *chosen(const struct search_study *study)
 {
     char name[80];
+    json_t *const counts = json_object();
+    for (int label = 0; label < TRIAL_LABELS; label++)
+        table_put(counts, study->f.kind[label],
+                  as_whole((uint64_t)search_count(study, (size_t)study->f.chosen, label)));
     search_name(study, (size_t)study->f.chosen, name, sizeof name);
     const struct search_gain gain = search_gain(study, SEARCH_OVERALL);
-    return TABLE_OBJECT({"which", as_text(name)}, {"starts", as_tree(counts(study))},
+    return TABLE_OBJECT({"which", as_text(name)}, {"starts", as_tree(counts)},
                         {"gain", as_number(gain.share)}, {"gain_low", as_number(gain.interval.low)},
                         {"gain_high", as_number(gain.interval.high)}, {"won", as_whole(gain.won)},
                         {"lost", as_whole(gain.lost)}, {"values", as_tree(values(study))},

@@ -7,6 +7,7 @@
 #include "runner/optimise/linear_limit.h"
 #include "runner/optimise/search.h"
 #include "runner/plan/allowed.h"
+#include "runner/scenario/schema.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -14,19 +15,19 @@
 
 /* ---- opening ------------------------------------------------------------------------------ */
 
-static void clean_words(char **words, size_t count)
-{
-    for (size_t i = 0; i < count; i++)
-        results_clean(words[i]);
-}
-
 static void clean(struct search_file *f)
 {
-    clean_words(f->parameter, f->length[SEARCH_PARAMETER]);
-    clean_words(f->circumstance, f->length[SEARCH_CIRCUMSTANCE]);
-    clean_words(f->varied, f->length[SEARCH_VARIED]);
-    clean_words(f->elsewhere, f->length[SEARCH_ELSEWHERE]);
-    clean_words((char *[]){f->title, f->revision, f->date, f->note}, 4);
+    const struct {
+        char **word;
+        size_t count;
+    } list[] = {{f->parameter, f->length[SEARCH_PARAMETER]},
+                {f->circumstance, f->length[SEARCH_CIRCUMSTANCE]},
+                {f->varied, f->length[SEARCH_VARIED]},
+                {f->elsewhere, f->length[SEARCH_ELSEWHERE]},
+                {(char *[]){f->title, f->revision, f->date, f->note}, 4}};
+    for (size_t k = 0; k < sizeof list / sizeof *list; k++)
+        for (size_t i = 0; i < list[k].count; i++)
+            results_clean(list[k].word[i]);
 }
 
 /* Labels are numbers in the file, and words. */
@@ -264,6 +265,22 @@ void search_aim(const struct search_study *study, char *text, size_t size)
                 s->worst ? ", in the worst of %zu circumstances" : ", mean of %zu circumstances",
                 circumstances);
     fclose(to);
+}
+
+void search_describe(const struct search_study *study, struct results_axis *axis)
+{
+    const struct scenario *const s = study->first;
+    struct schema *const schema = s ? malloc(sizeof *schema) : NULL;
+    size_t index[2];
+    const struct scenario_field *const field = schema && schema_build(schema, s->scene)
+                                                   ? schema_find_concrete(schema, axis->name, index)
+                                                   : NULL;
+    if (field) {
+        snprintf(axis->unit, sizeof axis->unit, "%s",
+                 strcmp(field->unit, "1") == 0 ? "" : field->unit);
+        snprintf(axis->text, sizeof axis->text, "%s", field->text);
+    }
+    free(schema);
 }
 
 int64_t search_best(const struct search_study *study)

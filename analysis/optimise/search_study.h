@@ -78,6 +78,8 @@ void search_name(const struct search_study *study, size_t k, char *text, size_t 
 /* What is maximised: "share of stabilised starts, in the worst of 6 circumstances". */
 void search_aim(const struct search_study *study, char *text, size_t size);
 /* The best candidate so far, the last stage's. */
+/* Unit ("": none) and meaning of the path that is the axis's name, where the format has them. */
+void search_describe(const struct search_study *study, struct results_axis *axis);
 int64_t search_best(const struct search_study *study);
 
 /* Stages, over all beginnings: the last generation of each, in their order. */

@@ -11,21 +11,17 @@ static bool print_csv(const struct search_study *study)
     return good;
 }
 
-static int summarise_front(struct report *report, stance_message *message)
-{
-    struct search_front front;
-    if (!search_front_open(&front, report->files.text, report->files.count, message))
-        return EXIT_IO;
-    const bool good = search_front_print(&front, report->form);
-    search_front_close(&front);
-    return good ? EXIT_DONE : EXIT_IO;
-}
-
 int search_summarise(struct report *report, stance_message *message)
 {
     struct search_study study;
-    if (report->files.count > 1)
-        return summarise_front(report, message);
+    struct search_front front;
+    if (report->files.count > 1) {
+        if (!search_front_open(&front, report->files.text, report->files.count, message))
+            return EXIT_IO;
+        const bool good = search_front_print(&front, report->form);
+        search_front_close(&front);
+        return good ? EXIT_DONE : EXIT_IO;
+    }
     if (!search_study_open(&study, report->file, message))
         return EXIT_IO;
     const bool good = (report->form == TABLE_AS_JSON  ? search_print_json

@@ -12,6 +12,15 @@
  */
 int search_summarise(struct report *report, stance_message *message);
 
+/* Two facts of a table that people see as one cell: "(22.3 ... 23.6 %)". */
+#define SEARCH_INTERVAL(least, most, interval)                                                     \
+    {{least, "", .format = "(%.2f", .before = " ", .left = true, .empty = "", .percent = true},    \
+     as_number((interval).low)},                                                                   \
+    {                                                                                              \
+        {most, .format = "%.2f)", .joined = true, .before = " ... ", .percent = true},             \
+            as_number((interval).high)                                                             \
+    }
+
 /* Rows: a stage; a candidate tried from fresh starts; a circumstance; a change of the scenario. */
 void search_table_stages(struct table *t, const struct search_study *study);
 void search_table_confirmed(struct table *t, const struct search_study *study);

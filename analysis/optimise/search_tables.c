@@ -8,25 +8,6 @@
 
 enum { MOST_STAGES = SCENARIO_MAX_STAGES * (SCENARIO_MAX_RESTARTS + 1) };
 
-/* ---- facts -------------------------------------------------------------------------------- */
-
-/* Two facts that people see as one cell: "(22.3 ... 23.6 %)". */
-static void interval_facts(struct table *t, const char *low, const char *high,
-                           struct interval interval)
-{
-    TABLE_FACTS(
-        t,
-        {{low, "", .format = "(%.2f", .before = " ", .left = true, .empty = "", .percent = true},
-         as_number(interval.low)},
-        {{high, .format = "%.2f)", .joined = true, .before = " ... ", .percent = true},
-         as_number(interval.high)});
-}
-
-static struct table_value as_signed(int64_t whole)
-{
-    return whole < 0 ? as_nothing(NULL) : as_whole((uint64_t)whole);
-}
-
 /* ---- stages ------------------------------------------------------------------------------- */
 
 void search_table_stages(struct table *t, const struct search_study *study)
@@ -66,13 +47,14 @@ void search_table_confirmed(struct table *t, const struct search_study *study)
         TABLE_FACTS(
             t, {{"mark", "", .hidden = TABLE_VIEW_ONLY, .width = 1}, as_text(chosen ? "*" : " ")},
             {{"which", "", .left = true}, as_text(name)},
-            {{"candidate", "candidate", .width = 9}, as_signed(f->confirmed_candidate[k])},
+            {{"candidate", "candidate", .width = 9},
+             f->confirmed_candidate[k] < 0 ? as_nothing(NULL)
+                                           : as_whole((uint64_t)f->confirmed_candidate[k])},
             {{"share", study->plain ? "share %" : "recovered %", "%.2f", .width = 7,
               .percent = true},
-             as_number(search_share(study, k, SEARCH_OVERALL))});
-        interval_facts(t, "low", "high", search_interval(study, k, SEARCH_OVERALL));
-        TABLE_FACTS(
-            t, {{"objective", "objective", .width = 9}, as_number(f->confirmed_objective[k])},
+             as_number(search_share(study, k, SEARCH_OVERALL))},
+            SEARCH_INTERVAL("low", "high", search_interval(study, k, SEARCH_OVERALL)),
+            {{"objective", "objective", .width = 9}, as_number(f->confirmed_objective[k])},
             {{"training", "training", .format = format, .width = 8, .percent = study->plain},
              as_number(f->confirmed_training[k])},
             {{"gap", "gap", study->plain ? "%+.2f" : "%+.6g", .width = 6, .percent = study->plain},
@@ -98,13 +80,11 @@ void search_table_circumstances(struct table *t, const struct search_study *stud
             t, {{"circumstance", "", .left = true}, as_text(f->circumstance[c])},
             {{"first", "first %", "%.2f", .width = 7, .percent = true},
              as_number(search_share(study, 0, c))},
-            {{"chosen", "chosen %", "%.2f", .width = 8, .percent = true}, as_number(share)});
-        interval_facts(t, "chosen_low", "chosen_high", search_interval(study, chosen, c));
-        TABLE_FACTS(
-            t, {{"gain", "gained", "%+.2f", .width = 7, .percent = true}, as_number(gain.share)});
-        interval_facts(t, "gain_low", "gain_high", gain.interval);
-        TABLE_FACTS(
-            t, {{"won", .heading = NULL}, as_whole(gain.won)},
+            {{"chosen", "chosen %", "%.2f", .width = 8, .percent = true}, as_number(share)},
+            SEARCH_INTERVAL("chosen_low", "chosen_high", search_interval(study, chosen, c)),
+            {{"gain", "gained", "%+.2f", .width = 7, .percent = true}, as_number(gain.share)},
+            SEARCH_INTERVAL("gain_low", "gain_high", gain.interval),
+            {{"won", .heading = NULL}, as_whole(gain.won)},
             {{"lost", .heading = NULL}, as_whole(gain.lost)},
             {{"allowed", "allowed %", "%.2f", .width = 9, .percent = true}, as_number(allowed)},
             {{"of_allowed", "of that", "%.1f", .width = 7, .percent = true},

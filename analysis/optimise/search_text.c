@@ -43,15 +43,11 @@ static void print_range(const struct search_study *study, const char *path)
     const struct scenario_varied *const v = varied_of(study, path);
     if (!v || !v->bounded)
         return;
-    struct schema *const schema = malloc(sizeof *schema);
-    size_t index[2];
-    const struct scenario_field *const field = schema && schema_build(schema, study->first->scene)
-                                                   ? schema_find_concrete(schema, path, index)
-                                                   : NULL;
-    const char *const unit = field && strcmp(field->unit, "1") != 0 ? field->unit : "";
-    printf("  %g ... %g%s%s%s", v->low, v->high, unit[0] ? " " : "", unit,
+    struct results_axis axis = {.unit = ""};
+    snprintf(axis.name, sizeof axis.name, "%s", path);
+    search_describe(study, &axis);
+    printf("  %g ... %g%s%s%s", v->low, v->high, axis.unit[0] ? " " : "", axis.unit,
            v->scale == SCALE_EVEN ? "" : ", by ratios");
-    free(schema);
 }
 
 static void print_varied(const struct search_study *study)
@@ -111,19 +107,26 @@ static void print_aim(const struct search_study *study)
 
 /* ---- how it went -------------------------------------------------------------------------- */
 
+/* One of the tables. */
+static bool print_table(const struct search_study *study,
+                        void (*make)(struct table *, const struct search_study *), const char *view)
+{
+    struct table t = {0};
+    make(&t, study);
+    const bool good = table_write_text(&t, stdout, view, 0);
+    table_free(&t);
+    return good;
+}
+
 static bool print_stages(const struct search_study *study)
 {
     const struct search_file *const f = &study->f;
-    struct table t = {0};
     puts("\nSearch");
-    search_table_stages(&t, study);
-    const bool good = table_write_text(
-        &t, stdout,
-        f->restart[f->length[SEARCH_GENERATION] - 1] > 0
-            ? "beginning stage starts generations candidates best best_candidate step"
-            : "stage starts generations candidates best best_candidate step",
-        0);
-    table_free(&t);
+    const bool good =
+        print_table(study, search_table_stages,
+                    f->restart[f->length[SEARCH_GENERATION] - 1] > 0
+                        ? "beginning stage starts generations candidates best best_candidate step"
+                        : "stage starts generations candidates best best_candidate step");
     if (f->finished)
         printf("  ended: %s\n", f->note);
     return good;
@@ -198,16 +201,12 @@ static void print_counts(const struct search_study *study)
 
 static bool print_confirmed(const struct search_study *study)
 {
-    const struct search_file *const f = &study->f;
-    struct table t = {0};
-    printf("\nFrom %zu fresh starts, with 95 %% intervals\n", f->length[SEARCH_START]);
-    search_table_confirmed(&t, study);
+    printf("\nFrom %zu fresh starts, with 95 %% intervals\n", study->f.length[SEARCH_START]);
     const bool apart = search_chosen_apart(study);
     char view[90];
     snprintf(view, sizeof view, "mark which candidate share low high%s training gap%s",
              study->plain ? "" : " objective", apart ? " choice" : "");
-    const bool good = table_write_text(&t, stdout, view, 0);
-    table_free(&t);
+    const bool good = print_table(study, search_table_confirmed, view);
     puts("  (training: objective of the starts by which the search went; gap: training - fresh;");
     puts(apart ? "  * chosen, for the largest choice: the objective of as many other starts)"
                : "  * chosen, by these very starts, as in files of earlier versions: too high)");
@@ -221,37 +220,21 @@ static bool print_circumstances(const struct search_study *study)
 {
     const struct search_file *const f = &study->f;
     const size_t circumstances = f->length[SEARCH_CIRCUMSTANCE];
-    struct table t = {0};
     bool limited = false;
     if (circumstances == 1)
         return true;
     for (size_t c = 0; c < circumstances; c++)
         limited = limited || isfinite(f->confirmed_allowed[(size_t)f->chosen * circumstances + c]);
     puts("\nIn each circumstance");
-    search_table_circumstances(&t, study);
-    const bool good = table_write_text(
-        &t, stdout,
+    const bool good = print_table(
+        study, search_table_circumstances,
         limited
             ? "circumstance first chosen chosen_low chosen_high gain gain_low gain_high allowed "
               "of_allowed critical_chosen"
             : "circumstance first chosen chosen_low chosen_high gain gain_low gain_high "
-              "critical_chosen",
-        0);
-    table_free(&t);
+              "critical_chosen");
     if (limited)
         puts("  (allowed: from there linear theory allows any controller to recover)");
-    return good;
-}
-
-static bool print_elsewhere(const struct search_study *study)
-{
-    struct table t = {0};
-    if (study->f.length[SEARCH_ELSEWHERE] == 0)
-        return true;
-    puts("\nElsewhere, where nothing was sought");
-    search_table_elsewhere(&t, study);
-    const bool good = table_write_text(&t, stdout, "where first chosen", 0);
-    table_free(&t);
     return good;
 }
 
@@ -324,7 +307,10 @@ bool search_print_text(const struct search_study *study)
     }
     good = print_confirmed(study) && good;
     good = print_circumstances(study) && good;
-    good = print_elsewhere(study) && good;
+    if (study->f.length[SEARCH_ELSEWHERE] > 0) {
+        puts("\nElsewhere, where nothing was sought");
+        good = print_table(study, search_table_elsewhere, "where first chosen") && good;
+    }
     print_chosen(study);
     return good && !ferror(stdout);
 }
