@@ -18,14 +18,6 @@ static bool is_start(const struct results_axis *axis)
     return !axis->word && scenario_is_start(axis->name);
 }
 
-static int find_axis(const struct results *r, const char *name)
-{
-    for (int a = 0; a < r->axes; a++)
-        if (strcmp(r->axis[a].name, name) == 0)
-            return a;
-    return -1;
-}
-
 const char *basin_meant(const struct results *r, const char *word, char text[128])
 {
     enum { MOST = SCENARIO_MAX_AXES + 256 };
@@ -56,9 +48,11 @@ static bool choose_by(struct basin *b, stance_message *message)
     const struct results *r = b->r;
     bool wanted[SCENARIO_MAX_AXES] = {false};
     for (size_t k = 0; k < b->choice.by_count; k++) {
-        const int a = find_axis(r, b->choice.by[k]);
+        int a = 0;
         char meant[128];
-        if (a < 0 || strcmp(r->axis[a].name, "sample") == 0)
+        while (a < r->axes && strcmp(r->axis[a].name, b->choice.by[k]) != 0)
+            a++;
+        if (a == r->axes || strcmp(r->axis[a].name, "sample") == 0)
             return complain(
                 message,
                 "stance basin: --by takes an axis of the grid, and '%.40s' is none of %.60s%s",
@@ -291,16 +285,6 @@ static struct basin_row *begin_slice(const struct basin *b, const size_t *point)
 
 /* ---- rows --------------------------------------------------------------------------------- */
 
-static void count_cases(const struct lattice *lattice, enum results_kind of, struct basin_row *row)
-{
-    for (uint64_t i = 0; i < lattice->map.cases; i++) {
-        row->inside += lattice->kind[i] == of;
-        row->failed += lattice->kind[i] == RESULTS_FAILED;
-        row->pending += lattice->kind[i] == RESULTS_PENDING;
-    }
-    row->cases += lattice->map.cases;
-}
-
 /* Of an interval about an estimate, which need not lie in its middle. */
 static double longer_side(double estimate, struct interval interval)
 {
@@ -356,7 +340,12 @@ static bool add_slice(struct basin *b, const struct lattice *lattice, const size
     struct basin_row *row = begin_slice(b, point);
     struct basin_volume volume;
     const double deviations = basin_map_deviations(b->choice.level);
-    count_cases(lattice, b->choice.of, row);
+    for (uint64_t i = 0; i < lattice->map.cases; i++) {
+        row->inside += lattice->kind[i] == b->choice.of;
+        row->failed += lattice->kind[i] == RESULTS_FAILED;
+        row->pending += lattice->kind[i] == RESULTS_PENDING;
+    }
+    row->cases += lattice->map.cases;
     if (!basin_map_volume(&lattice->map, b->choice.of, &volume))
         return false;
     b->box = volume.box;

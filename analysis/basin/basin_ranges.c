@@ -38,11 +38,6 @@ static int coordinate_at(const struct scenario *s, size_t offset)
     return offset >= begin && i < 2 * (size_t)s->scene->coordinates ? (int)i : -1;
 }
 
-static bool is_angle(const struct scenario *s, int i)
-{
-    return i < s->scene->coordinates && strcmp(s->scene->coordinate[i].unit, "rad") == 0;
-}
-
 static bool add_field(struct ranges *r, struct ranges_axis *axis, const char *path, size_t offset,
                       double along)
 {
@@ -56,12 +51,14 @@ static bool add_field(struct ranges *r, struct ranges_axis *axis, const char *pa
     field->centre = base->state_given ? base->state[i] : 0;
     field->along = along;
     const double size = fmax(fabs(along), 1e-300);
-    const double most = i >= n ? RANGES_RATE : is_angle(r->s, i) ? RANGES_ANGLE : RANGES_PLACE;
+    const char *const unit = r->s->scene->coordinate[i % n].unit;
+    const double most = i >= n                     ? RANGES_RATE
+                        : strcmp(unit, "rad") == 0 ? RANGES_ANGLE
+                                                   : RANGES_PLACE;
     axis->limit = fmin(axis->limit, most / size);
     axis->window = fmin(axis->window, (i >= n ? base->settle_rate : base->settle_angle) / size);
     if (axis->fields++ == 0)
-        snprintf(axis->unit, sizeof axis->unit, "%s%s", r->s->scene->coordinate[i % n].unit,
-                 i >= n ? "/s" : "");
+        snprintf(axis->unit, sizeof axis->unit, "%s%s", unit, i >= n ? "/s" : "");
     return true;
 }
 
@@ -137,8 +134,7 @@ static void add_postures(struct ranges *r, const struct scenario_values *values)
     double model[STANCE_MAX_ROBOT];
     stance_equilibrium equilibrium;
     stance_message ignored;
-    const bool known =
-        resolve_equilibrium(scene, values, model, &equilibrium, &ignored);
+    const bool known = resolve_equilibrium(scene, values, model, &equilibrium, &ignored);
     for (int k = 0; k < scene->postures; k++) {
         bool free = !known;
         for (int p = 0; known && p < equilibrium.freedoms; p++)
@@ -195,14 +191,6 @@ static void limit_ranges(struct ranges *r, struct starts *starts, int a, int up)
     axis->possible[up] = low;
 }
 
-static void limit_ray(const struct ranges *r, struct ray *ray)
-{
-    ray->most = INFINITY;
-    for (int a = 0; a < r->axes; a++)
-        if (ray->v[a] != 0)
-            ray->most = fmin(ray->most, r->axis[a].limit / fabs(ray->v[a]));
-}
-
 static bool is_settled(const struct ray *ray, double first)
 {
     return isfinite(ray->high)
@@ -219,7 +207,10 @@ static bool end_rays(struct ranges *r, struct starts *starts, struct ray *ray, s
     size_t which[RAYS], open;
     const size_t n = (size_t)r->axes;
     for (size_t k = 0; k < count; k++) {
-        limit_ray(r, &ray[k]);
+        ray[k].most = INFINITY;
+        for (size_t a = 0; a < n; a++)
+            if (ray[k].v[a] != 0)
+                ray[k].most = fmin(ray[k].most, r->axis[a].limit / fabs(ray[k].v[a]));
         ray[k].low = 0;
         ray[k].high = INFINITY;
         ray[k].beyond = RANGES_OPEN;
@@ -421,10 +412,10 @@ static bool measure_share(struct ranges *r, struct starts *starts)
                 r->axis[a].whole.from + u[a] * (r->axis[a].whole.to - r->axis[a].whole.from);
     }
     good = good && ask(r, starts, RANGES_STARTS, x, end);
-    for (size_t i = 0; good && i < RANGES_STARTS; i++)
+    for (size_t i = 0; good && i < RANGES_STARTS; i++) {
         inside += end[i] == r->of;
-    for (size_t i = 0; good && i < RANGES_STARTS; i++)
         r->impossible += end[i] == STARTS_IMPOSSIBLE;
+    }
     const double share = (double)inside / RANGES_STARTS;
     r->share[0] = fmin(r->share[0], share);
     r->share[1] = fmax(r->share[1], share);

@@ -84,14 +84,6 @@ static void print_sample(const struct doe *design, const char *before)
     printf("%s    vary:\n", before);
 }
 
-/* The axis along which the scenario goes out on rays. */
-static void print_scale(const struct scenario_axis *axis, const char *before)
-{
-    printf("%s    - {path: %s, from: %.9g, to: %.9g, count: %zu}\n", before, axis->path[0],
-           scenario_axis_value(axis, 0, 0), scenario_axis_value(axis, axis->count - 1, 0),
-           axis->count);
-}
-
 /* The sweep, of the grid before those of the sample; where it does not count as a comment. */
 static void print_axes(const struct ranges *r, bool counts, bool close)
 {
@@ -100,10 +92,13 @@ static void print_axes(const struct ranges *r, bool counts, bool close)
     for (int sampled = 0; sampled < 2; sampled++) {
         bool any = false;
         for (int a = 0; !sampled && a < r->s->axes; a++) {
-            if (r->s->axis[a].offset[0] != offsetof(struct scenario_values, offset_scale))
+            /* The axis along which the scenario goes out on rays. */
+            const struct scenario_axis *const axis = &r->s->axis[a];
+            if (axis->offset[0] != offsetof(struct scenario_values, offset_scale))
                 continue;
-            printf("%s  grid:\n", before);
-            print_scale(&r->s->axis[a], before);
+            printf("%s  grid:\n%s    - {path: %s, from: %.9g, to: %.9g, count: %zu}\n", before,
+                   before, axis->path[0], scenario_axis_value(axis, 0, 0),
+                   scenario_axis_value(axis, axis->count - 1, 0), axis->count);
             any = true;
         }
         for (int a = 0; a < r->axes; a++) {
@@ -137,18 +132,13 @@ static json_t *range_json(const struct ranges *r, const struct ranges_axis *axis
                         {"count", range->points ? as_whole(range->points) : as_nothing(NULL)});
 }
 
-static json_t *paths_json(const struct ranges *r, const struct ranges_axis *axis)
-{
-    json_t *paths = json_array();
-    for (int k = 0; k < axis->fields; k++)
-        table_append(paths, as_text(r->field[axis->first + k].path));
-    return paths;
-}
-
 static void add_axis(struct table *t, const struct ranges *r, const struct ranges_axis *axis)
 {
     const struct ranges_field *field = &r->field[axis->first];
     char name[128], beyond[64];
+    json_t *const paths = json_array();
+    for (int k = 0; k < axis->fields; k++)
+        table_append(paths, as_text(field[k].path));
     snprintf(beyond, sizeof beyond, "%s, %s", ranges_end(axis->beyond[0]),
              ranges_end(axis->beyond[1]));
     const bool chosen = axis - r->axis < r->axes;
@@ -176,8 +166,7 @@ static void add_axis(struct table *t, const struct ranges *r, const struct range
           .before = " ... ",
           .hidden = TABLE_NO_JSON},
          as_number(most)},
-        {{"unit", "", .left = true}, as_text(axis->unit)},
-        {{.name = "paths"}, as_tree(paths_json(r, axis))},
+        {{"unit", "", .left = true}, as_text(axis->unit)}, {{.name = "paths"}, as_tree(paths)},
         {{.name = "whole"}, as_tree(range_json(r, axis, &axis->whole))},
         {{.name = "close"}, as_tree(range_json(r, axis, &axis->close))},
         {{.name = "alone"}, as_tree(json_pack("[f,f]", low, high))},

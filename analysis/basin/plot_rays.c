@@ -22,12 +22,6 @@ struct page {
     struct basin_nearest nearest[CURVES]; /* of each; without starts: not sought */
 };
 
-static bool no_memory(stance_message *message)
-{
-    snprintf(message->text, sizeof message->text, "stance plot: not enough memory");
-    return false;
-}
-
 static size_t row_of(const struct page *page, size_t curve)
 {
     const size_t rows = page->rays->rows;
@@ -164,12 +158,12 @@ static bool put_plane(struct page *page, stance_message *message)
 {
     struct direction *order = sort_directions(&page->rays->sample);
     if (!order)
-        return no_memory(message);
+        return statistics_no_memory(page->rays->r, message);
     put_range(page, 0, "x");
     put_range(page, 1, "y");
     bool good = true;
     for (size_t c = 0; good && c < page->curves; c++)
-        good = put_curve(page, c, order) || no_memory(message);
+        good = put_curve(page, c, order) || statistics_no_memory(page->rays->r, message);
     free(order);
     return good;
 }
@@ -182,7 +176,7 @@ static bool put_distribution(struct page *page, stance_message *message)
     const size_t points = rays->sample.points;
     double *end = malloc(points * sizeof *end);
     if (!end)
-        return no_memory(message);
+        return statistics_no_memory(rays->r, message);
     plot_label_write(&rays->r->axis[rays->scale], &page->g, "x");
     for (size_t c = 0; c < page->curves; c++) {
         const struct basin_ray *ray = rays->ray + row_of(page, c) * points;
@@ -205,16 +199,6 @@ static bool put_distribution(struct page *page, stance_message *message)
 }
 
 /* ---- the page ----------------------------------------------------------------------------- */
-
-/* Its direction in units of half the ranges. */
-static void nearest_text(const struct page *page, char *text, size_t size)
-{
-    const struct basin_sample *sample = &page->rays->sample;
-    size_t used = (size_t)snprintf(text, size, "; nearest end in units of half the ranges:");
-    for (size_t k = 0; k < sample->factors && used < size; k++)
-        used += (size_t)snprintf(text + used, size - used, "%s %s %.2g", k ? "," : "",
-                                 sample->factor[k].of->name, page->nearest[0].of[k]);
-}
 
 static void put_legend(struct page *page, bool plane)
 {
@@ -249,11 +233,14 @@ static bool draw(const struct plot *plot, const struct basin_rays *rays, stance_
 
     page.curves = rays->rows < CURVES ? rays->rows : CURVES;
     seek_nearest(&page);
-    const int used =
-        snprintf(what, sizeof what, "Where %zu rays from the equilibrium cease to be %s",
-                 rays->sample.points, results_kind_names[rays->of]);
-    if (page.curves == 1 && is_found(&page.nearest[0]))
-        nearest_text(&page, what + used, sizeof what - (size_t)used);
+    const bool nearest = page.curves == 1 && is_found(&page.nearest[0]);
+    size_t used =
+        (size_t)snprintf(what, sizeof what, "Where %zu rays from the equilibrium cease to be %s%s",
+                         rays->sample.points, results_kind_names[rays->of],
+                         nearest ? "; nearest end in units of half the ranges:" : "");
+    for (size_t k = 0; nearest && k < rays->sample.factors && used < sizeof what; k++)
+        used += (size_t)snprintf(what + used, sizeof what - used, "%s %s %.2g", k ? "," : "",
+                                 rays->sample.factor[k].of->name, page.nearest[0].of[k]);
     if (!plot_begin(plot, &page.g, plot_rays_gp, what, message))
         return false;
     put_legend(&page, plane);

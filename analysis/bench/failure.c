@@ -192,14 +192,6 @@ static enum failure_verdict judge(const struct failure *f, const struct results 
     return stands(r, i) ? FAILURE_RIGHT_STANDS : FAILURE_RIGHT_OTHER;
 }
 
-/* 1 beyond the line of theory, 0 before it. */
-static int side_of_line(const struct failure *f, const struct results *r, size_t cell)
-{
-    const size_t point[3] = {0, cell / f->count[2], cell % f->count[2]};
-    const int along = f->line.axis, across = 3 - along;
-    return r->axis[across].value[point[across]] > f->line.value[point[along]];
-}
-
 static void judge_row(struct failure *f, const struct results *r, const struct answers *x, size_t k)
 {
     struct failure_row *row = &f->row[k];
@@ -209,7 +201,9 @@ static void judge_row(struct failure *f, const struct results *r, const struct a
         f->verdict[i] = (uint8_t)verdict;
         row->count[verdict]++;
         if (f->line.axis > 0) {
-            const int side = side_of_line(f, r, cell);
+            const size_t point[3] = {0, cell / f->count[2], cell % f->count[2]};
+            const int along = f->line.axis, across = 3 - along; /* side 1: beyond the line */
+            const int side = r->axis[across].value[point[across]] > f->line.value[point[along]];
             row->side[side]++;
             row->bad[side] += verdict == FAILURE_GAVE_UP || verdict == FAILURE_RAN_AWAY;
             row->stands[side] += stands(r, i);

@@ -65,13 +65,6 @@ static bool read_leaves(struct leaves *l, const char *text)
     return l->problems && !l->failed;
 }
 
-static void free_leaves(struct leaves *l)
-{
-    tree_free(&l->tree);
-    free(l->leaf);
-    free(l->problems);
-}
-
 /* NULL: it is not given. */
 static const char *text_at(const struct leaves *l, const char *path)
 {
@@ -185,8 +178,11 @@ static bool compare_scenarios(struct search_front *front, struct leaves *l, stan
         front->at[i] = number_at(&l[i], front->against.name);
     if (good)
         find_also(front, l);
-    for (size_t i = 0; i < front->count; i++)
-        free_leaves(&l[i]);
+    for (size_t i = 0; i < front->count; i++) {
+        tree_free(&l[i].tree);
+        free(l[i].leaf);
+        free(l[i].problems);
+    }
     return good;
 }
 

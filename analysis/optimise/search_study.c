@@ -30,15 +30,6 @@ static void clean(struct search_file *f)
             results_clean(list[k].word[i]);
 }
 
-/* Labels are numbers in the file, and words. */
-static bool has_labels(const struct search_file *f)
-{
-    bool same = f->length[SEARCH_KIND] == TRIAL_LABELS;
-    for (size_t i = 0; same && i < TRIAL_LABELS; i++)
-        same = strcmp(f->kind[i], search_kinds[i]) == 0;
-    return same;
-}
-
 /* NULL: this version does not read it. */
 static struct scenario *read_scenario(const char *file, const char *text)
 {
@@ -76,7 +67,11 @@ bool search_study_open(struct search_study *study, const char *file, stance_mess
     sandbox_limit(false);
     if (!good)
         return false;
-    if (!has_labels(f)) {
+    /* Labels are numbers in the file, and words. */
+    bool same = f->length[SEARCH_KIND] == TRIAL_LABELS;
+    for (size_t i = 0; same && i < TRIAL_LABELS; i++)
+        same = strcmp(f->kind[i], search_kinds[i]) == 0;
+    if (!same) {
         search_study_close(study);
         return complain(message, "%.150s: has other outcomes than this version knows", file);
     }

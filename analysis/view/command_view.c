@@ -166,13 +166,6 @@ static bool is_directory(const char *place)
     return stat(place, &status) == 0 && S_ISDIR(status.st_mode);
 }
 
-/* By its ending: nothing else is written over. */
-static bool is_page(const char *place)
-{
-    const size_t length = strlen(place);
-    return length > 5 && strcmp(place + length - 5, ".html") == 0;
-}
-
 /* FILE.html beside the file, PLACE, or in the directory PLACE. False: it is too long. */
 static bool name_page(struct request *request)
 {
@@ -278,8 +271,10 @@ static int run(int argc, char **argv)
         request.page.whole = request.page.whole || strcmp(request.answers.text[k], "all") == 0;
     if (request.files.count > 1 && !request.place)
         return command_usage(&command_view, "pages of several files need a directory: -o DIR");
+    /* What has another ending is not written over. */
+    const size_t length = request.place ? strlen(request.place) : 0;
     if (request.files.count == 1 && request.place && !is_directory(request.place) &&
-        !is_page(request.place))
+        (length <= 5 || strcmp(request.place + length - 5, ".html") != 0))
         return command_usage(&command_view, "-o takes a directory, or a name that ends in .html");
     if (!names_differ(&request))
         return EXIT_USAGE;

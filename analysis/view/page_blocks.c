@@ -19,13 +19,6 @@ void page_base64(FILE *out, const char *id, const uint8_t *bytes, size_t size)
     fputs("</script>\n", out);
 }
 
-static void shuffle(uint8_t *to, const uint8_t *from, size_t size, size_t count)
-{
-    for (size_t b = 0; b < size; b++)
-        for (size_t i = 0; i < count; i++)
-            *to++ = from[i * size + b];
-}
-
 bool page_block(FILE *out, json_t *blocks, const char *name, const char *type, const void *numbers,
                 size_t size, size_t count, size_t limit, size_t *bytes)
 {
@@ -33,8 +26,9 @@ bool page_block(FILE *out, json_t *blocks, const char *name, const char *type, c
     uLongf length = compressBound(plain);
     uint8_t *const shuffled = malloc(plain ? plain : 1), *const packed = malloc(length);
     bool good = shuffled && packed;
-    if (good)
-        shuffle(shuffled, numbers, size, count);
+    for (size_t b = 0; good && b < size; b++)
+        for (size_t i = 0; i < count; i++)
+            shuffled[b * count + i] = ((const uint8_t *)numbers)[i * size + b];
     good = good && compress2(packed, &length, shuffled, plain, 6) == Z_OK;
     if (bytes)
         *bytes = good ? length : 0;

@@ -53,12 +53,6 @@ static void add_chart(json_t *charts, const char *title, const char *text, json_
 
 /* ---- shares along an axis ----------------------------------------------------------------- */
 
-static bool is_start(const struct results_axis *a)
-{
-    return strncmp(a->name, "initial.offset.", 15) == 0 ||
-           strncmp(a->name, "initial.state.", 14) == 0;
-}
-
 /* The share of each outcome that occurs, at each value of an axis. */
 static bool put_shares(json_t *charts, const struct results *r, int k, stance_message *message)
 {
@@ -222,6 +216,13 @@ static bool put_accuracy(json_t *charts, const struct results *r)
               series);
     accuracy_free(&a);
     return true;
+}
+
+/* Or the scale of starts. */
+static bool is_start(const struct results_axis *a)
+{
+    return strncmp(a->name, "initial.offset.", 15) == 0 ||
+           strncmp(a->name, "initial.state.", 14) == 0;
 }
 
 json_t *page_charts(const struct results *r, stance_message *message)

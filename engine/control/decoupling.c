@@ -59,17 +59,6 @@ stance_error stance_selection_condition(const stance_scene *scene, const double 
     return STANCE_OK;
 }
 
-/* The posture with running number k of resolution^postures in -pi ... pi. Each angle has its own
- * offset, or a good part of them would have parallel legs. */
-static void place(const stance_scene *scene, int resolution, long k, double *position)
-{
-    for (int i = 0; i < scene->postures; i++) {
-        const double at = ((double)(k % resolution) + 0.2 + 0.23 * i) / resolution;
-        position[scene->posture[i]] = M_PI * (2 * at - 1);
-        k /= resolution;
-    }
-}
-
 stance_error stance_selection_survey(const stance_scene *scene, const double *robot,
                                      long evaluations, int selections,
                                      stance_selection_report *report)
@@ -84,7 +73,13 @@ stance_error stance_selection_survey(const stance_scene *scene, const double *ro
     for (int p = 0; p < selections; p++)
         report[p].best = INFINITY;
     for (long k = 0; k < postures; k++) {
-        place(scene, resolution, k, position);
+        /* The posture with this number in -pi ... pi. Each angle has its own offset, or a good part
+         * of them would have parallel legs. */
+        long left = k;
+        for (int i = 0; i < scene->postures; i++, left /= resolution) {
+            const double at = ((double)(left % resolution) + 0.2 + 0.23 * i) / resolution;
+            position[scene->posture[i]] = M_PI * (2 * at - 1);
+        }
         if (!respond(scene, robot, position, X))
             return STANCE_NUMERICAL;
         for (int p = 0; p < selections; p++) {

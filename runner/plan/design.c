@@ -182,17 +182,6 @@ static stance_error sampled_loop(struct design_report *r)
 #define MARGIN_LEAST 1e-3 /* of the sample time: the shortest lag that is looked at */
 #define MARGIN_RATIO 1.1  /* of neighbouring lags */
 
-static stance_error find_delay_margin(struct design_report *r)
-{
-    double re[DESIGN_LOOP], im[DESIGN_LOOP], radius = 0;
-    stance_error error = STANCE_OK;
-    for (int d = 0; d <= STANCE_MAX_DELAY && error == STANCE_OK && radius < 1; d++) {
-        error = radius_of(r, r->lag, d, &radius, re, im);
-        r->delay_margin = radius < 1 ? d : r->delay_margin;
-    }
-    return error;
-}
-
 static stance_error find_lag_margin(struct design_report *r)
 {
     const double least = MARGIN_LEAST * r->scenario->base.sample_time;
@@ -249,6 +238,7 @@ static stance_error find_wander(struct design_report *r)
 
 static stance_error margins(struct design_report *r)
 {
+    double re[DESIGN_LOOP], im[DESIGN_LOOP], radius = 0;
     stance_error error = STANCE_OK;
     struct acting p;
     act(r, r->lag, &p);
@@ -258,7 +248,10 @@ static stance_error margins(struct design_report *r)
                                             DESIGN_LONGEST, &r->critical[late]);
     if (error != STANCE_OK || !r->sampled || !r->stable)
         return error;
-    error = find_delay_margin(r);
+    for (int d = 0; d <= STANCE_MAX_DELAY && error == STANCE_OK && radius < 1; d++) {
+        error = radius_of(r, r->lag, d, &radius, re, im);
+        r->delay_margin = radius < 1 ? d : r->delay_margin;
+    }
     return error == STANCE_OK ? find_lag_margin(r) : error;
 }
 
@@ -382,14 +375,6 @@ static bool loop(struct design_report *r, const struct resolved_design *known,
     return error == STANCE_OK || refuse(message, "closed loop", error);
 }
 
-static bool bounds(struct design_report *r, stance_message *message)
-{
-    const stance_error error = margins(r);
-    if (error != STANCE_OK)
-        return refuse(message, "closed loop", error);
-    return sublevel(r, message);
-}
-
 bool design_plant(struct design_report *r, const struct scenario *s, stance_message *message)
 {
     *r = (struct design_report){.scenario = s, .inputs = s->scene->actuators};
@@ -407,7 +392,10 @@ bool design_compute(struct design_report *r, const struct scenario *s, stance_me
     if (!design_loop(r, s, NULL, message))
         return false;
     find_allowed(r);
-    return !r->closed || bounds(r, message);
+    const stance_error error = r->closed ? margins(r) : STANCE_OK;
+    if (error != STANCE_OK)
+        return refuse(message, "closed loop", error);
+    return !r->closed || sublevel(r, message);
 }
 
 void design_beyond(const struct design_report *r, double *K)
