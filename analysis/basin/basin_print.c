@@ -314,16 +314,6 @@ static void print_at(const struct basin *b, const struct basin_distance *distanc
     putchar('\n');
 }
 
-/* Of a sample. */
-static void print_bound(const struct basin *b, const struct basin_distance *distance)
-{
-    printf("\nNearest start to the equilibrium that is not %s: ", results_kind_names[b->choice.of]);
-    print_at(b, distance);
-    print_weights(b);
-    puts(
-        "  (an upper bound of the distance, of these points; rays and --descend find the nearest)");
-}
-
 static void print_part(const struct basin *b, const struct basin_row *row)
 {
     char text[2048];
@@ -386,8 +376,14 @@ static bool print_text(const struct basin *b, const struct table *t)
     if (b->choice.rank > 0)
         printf("  (the %zu largest of %zu sampled points)\n", b->rows,
                b->r->axis[b->r->sample].count);
-    if (b->starts == BASIN_SAMPLE && b->rows == 1 && isfinite(b->row[0].distance.nearest))
-        print_bound(b, &b->row[0].distance);
+    if (b->starts == BASIN_SAMPLE && b->rows == 1 && isfinite(b->row[0].distance.nearest)) {
+        printf("\nNearest start to the equilibrium that is not %s: ",
+               results_kind_names[b->choice.of]);
+        print_at(b, &b->row[0].distance);
+        print_weights(b);
+        puts("  (an upper bound of the distance, of these points; rays and --descend find the "
+             "nearest)");
+    }
     if (b->starts == BASIN_SAMPLE || b->choice.rank > 0)
         return good;
     puts("\nBoundary");

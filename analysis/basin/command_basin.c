@@ -126,15 +126,12 @@ static bool read_bounds(const char *text, double bound[2])
 /* "settle_time <= 2", "0.1 <= ...": how it is said. */
 static void bounds_text(const char *name, const double bound[2], char *text, size_t size)
 {
-    char least[40] = "", most[40] = "";
-    if (isfinite(bound[0]))
-        snprintf(least, sizeof least, "%g <= ", bound[0]);
-    if (isfinite(bound[1]))
-        snprintf(most, sizeof most, " <= %g", bound[1]);
-    if (least[0] && !most[0])
+    if (!isfinite(bound[1]))
         snprintf(text, size, "%s >= %g", name, bound[0]);
+    else if (!isfinite(bound[0]))
+        snprintf(text, size, "%s <= %g", name, bound[1]);
     else
-        snprintf(text, size, "%s%s%s", least, name, most);
+        snprintf(text, size, "%g <= %s <= %g", bound[0], name, bound[1]);
 }
 
 /* Cases with the outcome but with another number than --within allows become undecided: they are

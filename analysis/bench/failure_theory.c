@@ -103,21 +103,16 @@ static double runge_kutta_limit(int n, const double *eigenvalue, double kp, doub
     return low;
 }
 
-static bool flies(const stance_scene *scene, const stance_case *c)
-{
-    double gap[STANCE_MAX_CONTACTS];
-    scene->gaps(scene, c->robot, c->position, gap);
-    for (int i = 0; i < scene->contacts; i++)
-        if ((c->contacts >> i & 1) && gap[i] <= 0)
-            return false;
-    return true;
-}
-
+/* NAN: it does not fly. */
 static double servo_limit(const struct scenario *s, const stance_case *c)
 {
     const stance_scene *scene = s->scene;
-    double eigenvalue[STANCE_MAX_ACTUATORS];
-    if (!flies(scene, c) || !servo_eigenvalues(scene, c, eigenvalue))
+    double eigenvalue[STANCE_MAX_ACTUATORS], gap[STANCE_MAX_CONTACTS];
+    scene->gaps(scene, c->robot, c->position, gap);
+    for (int i = 0; i < scene->contacts; i++)
+        if ((c->contacts >> i & 1) && gap[i] <= 0)
+            return NAN;
+    if (!servo_eigenvalues(scene, c, eigenvalue))
         return NAN;
     int joint = 0; /* the place of the first actuated coordinate in the law's state */
     while (scene->posture[joint] != scene->actuated[0])

@@ -7,19 +7,9 @@
 
 GNUPLOT_SCRIPT(plot_accuracy_gp, "analysis/bench/plot_accuracy.gp");
 
-/* What a panel shows of a row; NAN: nothing. */
+/* What a panel shows of a row. */
 enum shown { POSITION, VELOCITY, LABELS };
 enum { LINES = 8 }; /* under a method's name, at most */
-
-static double shown_value(const struct accuracy_row *row, enum shown shown)
-{
-    if (row->compared == 0)
-        return NAN;
-    const double value = shown == POSITION   ? row->position
-                         : shown == VELOCITY ? row->velocity
-                                             : (double)row->differ / (double)row->compared;
-    return value > 0 ? value : NAN; /* a logarithm has no place for zero */
-}
 
 struct range {
     double low, high;
@@ -55,7 +45,11 @@ static void put_rows(struct gnuplot *g, const struct accuracy *a, const stance_m
         const struct accuracy_row *row = &a->row[k];
         if (!belongs(a, k, method))
             continue;
-        const double value = shown_value(row, shown);
+        double value = shown == POSITION   ? row->position
+                       : shown == VELOCITY ? row->velocity
+                                           : (double)row->differ / (double)row->compared;
+        if (row->compared == 0 || !(value > 0)) /* a logarithm has no place for zero */
+            value = NAN;
         const bool none = shown == LABELS && isnan(value) && row->compared > 0;
         const double drawn = none ? 1 / (double)row->compared : value;
         widen(cost, row->cost.median);

@@ -36,12 +36,6 @@ static void make_axis(struct plot_axis *along, const struct results_axis *axis)
     along->high = along->first + ((double)n - 0.5) * along->step;
 }
 
-/* Place of a value that need not be one of the axis; NAN: it has none. */
-static double place_of(const struct plot_axis *along, double value)
-{
-    return along->scale == PLOT_LOG ? log10(value) : along->scale == PLOT_LINEAR ? value : NAN;
-}
-
 /* What both pictures show: axes 1 and 2 of the file, the rows' names, and the line of theory. */
 struct maps {
     const struct failure *f;
@@ -60,7 +54,8 @@ static void put_line(struct gnuplot *g, const struct maps *maps)
     gnuplot_text(g, any ? f->line.text : "", "theory_text");
     gnuplot_block(g, "theory");
     for (size_t i = 0; any && i < along->axis->count; i++) {
-        const double here = plot_axis_place(along, i), there = place_of(other, f->line.value[i]);
+        const double here = plot_axis_place(along, i), value = f->line.value[i];
+        const double there = other->scale == PLOT_LOG ? log10(value) : value;
         GNUPLOT_ROW(g, f->line.axis == 1 ? here : there, f->line.axis == 1 ? there : here);
     }
     if (!any)

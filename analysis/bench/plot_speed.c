@@ -75,8 +75,9 @@ static const char *const step_time = "time per step";
 static const stance_scene *rivals_scene(const struct speed_table *table)
 {
     for (size_t k = 0; k < table->rows; k++)
-        if (strcmp(table->row[k].subject, "stance") != 0 && stance_scene_find(table->row[k].scene))
-            return stance_scene_find(table->row[k].scene);
+        if (strcmp(table->row[k].field[BENCH_SUBJECT], "stance") != 0 &&
+            stance_scene_find(table->row[k].field[BENCH_SCENE]))
+            return stance_scene_find(table->row[k].field[BENCH_SCENE]);
     return stance_scenes()[0];
 }
 
@@ -125,17 +126,18 @@ static void make_methods(const struct speed_table *table, struct chart *c)
         add_series(c, stance_methods()[m]->name, colours[m % (sizeof colours / sizeof colours[0])]);
     for (size_t k = 0; k < table->rows; k++) {
         const struct speed_row *row = &table->row[k];
-        if (strcmp(row->subject, "stance") != 0 || strcmp(row->quantity, step_time) != 0)
+        if (strcmp(row->field[BENCH_SUBJECT], "stance") != 0 ||
+            strcmp(row->field[BENCH_QUANTITY], step_time) != 0)
             continue;
         size_t i = 0, s = 0;
-        while (i < c->groups &&
-               (strcmp(c->group[i], row->scene) != 0 || strcmp(c->within[i], row->regime) != 0))
+        while (i < c->groups && (strcmp(c->group[i], row->field[BENCH_SCENE]) != 0 ||
+                                 strcmp(c->within[i], row->field[BENCH_REGIME]) != 0))
             i++;
-        while (s < c->series && strcmp(c->name[s], row->method) != 0)
+        while (s < c->series && strcmp(c->name[s], row->field[BENCH_METHOD]) != 0)
             s++;
         if (i == c->groups && i < MOST_GROUPS) {
-            c->group[i] = row->scene;
-            c->within[i] = row->regime;
+            c->group[i] = row->field[BENCH_SCENE];
+            c->within[i] = row->field[BENCH_REGIME];
             c->groups++;
         }
         if (i < c->groups && s < c->series && (!c->row[s][i] || c->row[s][i]->lanes <= row->lanes))
@@ -156,7 +158,8 @@ static void put_map(struct gnuplot *g, const struct speed_table *table)
     char text[96] = "";
 
     for (size_t k = 0; k < table->rows; k++)
-        if (strcmp(table->row[k].quantity, "wall time") == 0 && table->row[k].ranks > ranks)
+        if (strcmp(table->row[k].field[BENCH_QUANTITY], "wall time") == 0 &&
+            table->row[k].ranks > ranks)
             ranks = table->row[k].ranks;
     gnuplot_set(g, "map_ranks = %d\narray map_drawn[2]", ranks);
     for (size_t m = 0; m < 2; m++) {
@@ -164,8 +167,8 @@ static void put_map(struct gnuplot *g, const struct speed_table *table)
         gnuplot_block(g, "map%zu", m + 1);
         for (size_t k = 0; k < table->rows; k++) {
             const struct speed_row *row = &table->row[k];
-            if (strcmp(row->quantity, "wall time") != 0 || strcmp(row->regime, map_names[m]) != 0 ||
-                row->ranks != ranks)
+            if (strcmp(row->field[BENCH_QUANTITY], "wall time") != 0 ||
+                strcmp(row->field[BENCH_REGIME], map_names[m]) != 0 || row->ranks != ranks)
                 continue;
             GNUPLOT_ROW(g, row->cases, row->median, row->lowest, row->highest);
             fewest = fmin(fewest, row->cases);
@@ -182,7 +185,7 @@ static void put_map(struct gnuplot *g, const struct speed_table *table)
                 most > 0 ? longest : 1);
     for (size_t k = 0; k < table->rows; k++) {
         const struct speed_row *row = &table->row[k];
-        if (strcmp(row->quantity, "parallel efficiency") == 0 && row->ranks > 1) {
+        if (strcmp(row->field[BENCH_QUANTITY], "parallel efficiency") == 0 && row->ranks > 1) {
             snprintf(text, sizeof text, "parallel efficiency of %d ranks: %.0f %% (%.0f ... %.0f)",
                      row->ranks, 100 * row->median, 100 * row->lowest, 100 * row->highest);
         }
@@ -201,7 +204,8 @@ bool speed_plot(const struct speed_table *table, struct look *look, const char *
     snprintf(
         subtitle, sizeof subtitle,
         "Steps of 1 ms. Medians; bars from the lowest to the highest. %s, %s, revision %s, %s.",
-        row->processor, row->compiler, row->revision, row->date);
+        row->field[BENCH_PROCESSOR], row->field[BENCH_COMPILER], row->field[BENCH_REVISION],
+        row->field[BENCH_DATE]);
     if (!gnuplot_begin(&g, look, plot_speed_gp, "Speed of the stepping kernels", subtitle, message))
         return false;
     make_rivals(table, &rivals);

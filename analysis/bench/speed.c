@@ -82,24 +82,14 @@ bool speed_read(const char *path, struct speed_table *table, stance_message *mes
         number++;
         good = cut(line, field);
         if (good) {
-            table->row[table->rows++] =
-                (struct speed_row){.subject = field[BENCH_SUBJECT],
-                                   .scene = field[BENCH_SCENE],
-                                   .regime = field[BENCH_REGIME],
-                                   .method = field[BENCH_METHOD],
-                                   .isa = field[BENCH_ISA],
-                                   .quantity = field[BENCH_QUANTITY],
-                                   .unit = field[BENCH_UNIT],
-                                   .revision = field[BENCH_REVISION],
-                                   .compiler = field[BENCH_COMPILER],
-                                   .processor = field[BENCH_PROCESSOR],
-                                   .date = field[BENCH_DATE],
-                                   .lanes = (int)strtol(field[BENCH_LANES], NULL, 10),
-                                   .ranks = (int)strtol(field[BENCH_RANKS], NULL, 10),
-                                   .cases = (int)strtol(field[BENCH_CASES], NULL, 10),
-                                   .median = strtod(field[BENCH_MEDIAN], NULL),
-                                   .lowest = strtod(field[BENCH_LOWEST], NULL),
-                                   .highest = strtod(field[BENCH_HIGHEST], NULL)};
+            struct speed_row *const row = &table->row[table->rows++];
+            memcpy(row->field, field, sizeof field);
+            row->lanes = (int)strtol(field[BENCH_LANES], NULL, 10);
+            row->ranks = (int)strtol(field[BENCH_RANKS], NULL, 10);
+            row->cases = (int)strtol(field[BENCH_CASES], NULL, 10);
+            row->median = strtod(field[BENCH_MEDIAN], NULL);
+            row->lowest = strtod(field[BENCH_LOWEST], NULL);
+            row->highest = strtod(field[BENCH_HIGHEST], NULL);
         }
     }
     if (!good || table->rows == 0) {
@@ -117,20 +107,19 @@ void speed_free(struct speed_table *table)
     *table = (struct speed_table){0};
 }
 
-static bool same(const char *wanted, const char *word)
-{
-    return !wanted || strcmp(wanted, word) == 0;
-}
-
 const struct speed_row *speed_find(const struct speed_table *table, const char *subject,
                                    const char *scene, const char *regime, const char *method,
                                    const char *isa, const char *quantity)
 {
+    const char *const wanted[BENCH_COLUMN_COUNT] = {
+        [BENCH_SUBJECT] = subject, [BENCH_SCENE] = scene, [BENCH_REGIME] = regime,
+        [BENCH_METHOD] = method,   [BENCH_ISA] = isa,     [BENCH_QUANTITY] = quantity};
     for (size_t k = table->rows; k-- > 0;) {
-        const struct speed_row *row = &table->row[k];
-        if (same(subject, row->subject) && same(scene, row->scene) && same(regime, row->regime) &&
-            same(method, row->method) && same(isa, row->isa) && same(quantity, row->quantity))
-            return row;
+        bool same = true;
+        for (int c = 0; c < BENCH_COLUMN_COUNT; c++)
+            same = same && (!wanted[c] || strcmp(wanted[c], table->row[k].field[c]) == 0);
+        if (same)
+            return &table->row[k];
     }
     return NULL;
 }

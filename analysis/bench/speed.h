@@ -2,13 +2,14 @@
 #ifndef STANCE_BENCH_SPEED_H
 #define STANCE_BENCH_SPEED_H
 
+#include "bench.h"
+
 #include "analysis/draw/look.h"
 #include "engine/stance.h"
 
-/* A line; texts point into the table's. */
+/* A line: its texts, which point into the table's, and what of them are numbers. */
 struct speed_row {
-    const char *subject, *scene, *regime, *method, *isa, *quantity, *unit;
-    const char *revision, *compiler, *processor, *date;
+    char *field[BENCH_COLUMN_COUNT];
     int lanes, ranks, cases; /* 0: does not apply */
     double median, lowest, highest;
 };

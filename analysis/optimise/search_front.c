@@ -243,7 +243,7 @@ void search_front_close(struct search_front *front)
 
 /* ---- the table ---------------------------------------------------------------------------- */
 
-void search_front_table(struct table *t, const struct search_front *front)
+static void make_table(struct table *t, const struct search_front *front)
 {
     for (size_t i = 0; i < front->count; i++) {
         const struct search_study *const study = &front->study[i];
@@ -279,7 +279,7 @@ bool search_front_print(const struct search_front *front, enum table_form form)
     const char *const title = front->study[0].f.title;
     struct table t = {0};
     bool good;
-    search_front_table(&t, front);
+    make_table(&t, front);
     if (form == TABLE_AS_CSV) {
         good = table_write_csv(&t, stdout);
     } else if (form == TABLE_AS_JSON) {

@@ -24,7 +24,6 @@ bool search_front_open(struct search_front *front, const char *const *file, size
 void search_front_close(struct search_front *front);
 
 /* A row for each search. */
-void search_front_table(struct table *t, const struct search_front *front);
 bool search_front_print(const struct search_front *front, enum table_form form);
 
 #endif

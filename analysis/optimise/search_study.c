@@ -49,15 +49,6 @@ static void drop_scenario(struct scenario **s)
     *s = NULL;
 }
 
-static void name_study(struct search_study *study)
-{
-    const char *const slash = strrchr(study->file, '/');
-    snprintf(study->name, sizeof study->name, "%s", slash ? slash + 1 : study->file);
-    char *const dot = strrchr(study->name, '.');
-    if (dot && dot != study->name && strcmp(dot, ".h5") == 0)
-        *dot = '\0';
-}
-
 bool search_study_open(struct search_study *study, const char *file, stance_message *message)
 {
     *study = (struct search_study){.file = file};
@@ -76,7 +67,11 @@ bool search_study_open(struct search_study *study, const char *file, stance_mess
         return complain(message, "%.150s: has other outcomes than this version knows", file);
     }
     clean(f);
-    name_study(study);
+    const char *const slash = strrchr(file, '/');
+    snprintf(study->name, sizeof study->name, "%s", slash ? slash + 1 : file);
+    char *const dot = strrchr(study->name, '.');
+    if (dot && dot != study->name && strcmp(dot, ".h5") == 0)
+        *dot = '\0';
     study->done = f->finished && f->chosen >= 0 && f->length[SEARCH_START] > 0;
     study->first = read_scenario(file, f->first_scenario);
     if (study->first && study->done) {

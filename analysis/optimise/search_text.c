@@ -151,16 +151,6 @@ static void print_unfinished(const struct search_study *study)
 
 /* ---- what came out ------------------------------------------------------------------------ */
 
-static void print_gain(const struct search_study *study)
-{
-    const struct search_gain gain = search_gain(study, SEARCH_OVERALL);
-    printf("  chosen - first%s: %+.2f points (%.2f ... %.2f), start by start: %" PRIu64
-           " won, %" PRIu64 " lost\n",
-           study->f.length[SEARCH_CIRCUMSTANCE] > 1 ? ", mean of the circumstances" : "",
-           100 * gain.share, 100 * gain.interval.low, 100 * gain.interval.high, gain.won,
-           gain.lost);
-}
-
 /* The limit is that of a posture, which may be varied, too. */
 static void print_limit(const struct search_study *study)
 {
@@ -210,7 +200,12 @@ static bool print_confirmed(const struct search_study *study)
     puts("  (training: objective of the starts by which the search went; gap: training - fresh;");
     puts(apart ? "  * chosen, for the largest choice: the objective of as many other starts)"
                : "  * chosen, by these very starts, as in files of earlier versions: too high)");
-    print_gain(study);
+    const struct search_gain gain = search_gain(study, SEARCH_OVERALL);
+    printf("  chosen - first%s: %+.2f points (%.2f ... %.2f), start by start: %" PRIu64
+           " won, %" PRIu64 " lost\n",
+           study->f.length[SEARCH_CIRCUMSTANCE] > 1 ? ", mean of the circumstances" : "",
+           100 * gain.share, 100 * gain.interval.low, 100 * gain.interval.high, gain.won,
+           gain.lost);
     print_limit(study);
     print_counts(study);
     return good;

@@ -203,14 +203,6 @@ static bool put_checksums(struct page *p)
     return good;
 }
 
-static bool is_asked(const struct page *p, const char *name)
-{
-    bool found = p->request->whole;
-    for (size_t i = 0; i < p->request->answers; i++)
-        found |= strcmp(p->request->answer[i], name) == 0;
-    return found;
-}
-
 /* NULL: it has none. */
 static json_t *answer_words(const struct page *p, int answer)
 {
@@ -235,7 +227,10 @@ static bool put_answer(struct page *p, int answer, json_t *list)
     if (!value)
         return true;
     json_t *const words = answer_words(p, answer);
-    const bool code = words != NULL, asked = is_asked(p, a->name) || code;
+    const bool code = words != NULL;
+    bool asked = p->request->whole || code;
+    for (size_t i = 0; i < p->request->answers; i++)
+        asked |= strcmp(p->request->answer[i], a->name) == 0;
     const size_t limit = asked || p->bytes < PAGE_BYTES ? SIZE_MAX : 0;
     void *const numbers = malloc(cases * (code ? 1 : sizeof(float)));
     bool good = numbers != NULL || no_memory(p->message);

@@ -25,15 +25,6 @@ static void put_text(FILE *out, const char *text)
             fputc(*text, out);
 }
 
-/* The name of a file as a relative address (RFC 3986): nothing in it is a scheme, a query or a
- * part. */
-static void put_address(FILE *out, const char *name)
-{
-    for (; *name; name++)
-        fprintf(out, isalnum((unsigned char)*name) || strchr("-._~", *name) ? "%c" : "%%%02X",
-                (unsigned char)*name);
-}
-
 /* ---- the small map ------------------------------------------------------------------------ */
 
 /* Place of cell i of n along an axis of `count` points. */
@@ -128,10 +119,14 @@ void page_index_begin(FILE *out)
           out);
 }
 
+/* Its link: the name of a file as a relative address (RFC 3986), nothing in it is a scheme, a query
+ * or a part. */
 static void put_head(FILE *out, const char *page)
 {
     fputs("<li><a href=\"", out);
-    put_address(out, page);
+    for (; *page; page++)
+        fprintf(out, isalnum((unsigned char)*page) || strchr("-._~", *page) ? "%c" : "%%%02X",
+                (unsigned char)*page);
     fputs("\">", out);
 }
 

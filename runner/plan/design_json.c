@@ -4,18 +4,6 @@
 
 #include <math.h>
 
-static json_t *json_matrix(int rows, int columns, const double *x)
-{
-    json_t *matrix = json_array();
-    for (int i = 0; i < rows; i++) {
-        json_t *row = json_array();
-        for (int j = 0; j < columns; j++)
-            json_array_append_new(row, json_real(x[i * columns + j]));
-        json_array_append_new(matrix, row);
-    }
-    return matrix;
-}
-
 static json_t *json_complex(int n, const double *re, const double *im)
 {
     json_t *list = json_array();
@@ -30,6 +18,14 @@ static json_t *json_vector(int n, const double *x)
     for (int i = 0; i < n; i++)
         json_array_append_new(list, json_real(x[i]));
     return list;
+}
+
+static json_t *json_matrix(int rows, int columns, const double *x)
+{
+    json_t *matrix = json_array();
+    for (int i = 0; i < rows; i++)
+        json_array_append_new(matrix, json_vector(columns, x + i * columns));
+    return matrix;
 }
 
 static json_t *json_equilibrium(const struct design_report *r)

@@ -97,21 +97,12 @@ static void print_complex(const char *label, int n, const double *re, const doub
     putchar('\n');
 }
 
-/* The ground's slope and gravity that the design believes in, where they are not the usual ones. */
-static void print_world(const struct design_report *r)
-{
-    const double slope = r->model[STANCE_ROBOT_SLOPE], gravity = r->model[STANCE_ROBOT_GRAVITY];
-    if (slope != 0)
-        printf("  %-8s %12.6f rad  of the ground, positive: +x is downhill\n", "slope", slope);
-    if (gravity != STANCE_GRAVITY)
-        printf("  %-8s %12.6f m/s^2, of the world\n", "gravity", gravity);
-}
-
 static void print_equilibrium(const struct design_report *r)
 {
     const stance_scene *scene = r->scenario->scene;
     const stance_equilibrium *e = &r->equilibrium;
-    const double scale = fmax(r->normal, largest(scene->actuators, e->torque));
+    const double scale = fmax(r->normal, largest(scene->actuators, e->torque)),
+                 slope = r->model[STANCE_ROBOT_SLOPE], gravity = r->model[STANCE_ROBOT_GRAVITY];
     char supports[STANCE_MAX_CONTACTS * 40];
 
     design_supports(scene, e, supports, sizeof supports);
@@ -127,8 +118,12 @@ static void print_equilibrium(const struct design_report *r)
     }
     if (e->supports)
         printf("  %-8s %12.6f N    normal force on %s, the robot's weight%s\n", "force", r->normal,
-               supports, r->model[STANCE_ROBOT_SLOPE] == 0 ? "" : " across the slope");
-    print_world(r);
+               supports, slope == 0 ? "" : " across the slope");
+    /* What the design believes of the ground and the world, where that is not the usual. */
+    if (slope != 0)
+        printf("  %-8s %12.6f rad  of the ground, positive: +x is downhill\n", "slope", slope);
+    if (gravity != STANCE_GRAVITY)
+        printf("  %-8s %12.6f m/s^2, of the world\n", "gravity", gravity);
     if (r->remark.text[0])
         printf("  %s\n", r->remark.text);
 }
@@ -212,11 +207,9 @@ const char *design_late(int delay, const char *verb, char buffer[64])
 static void print_margins(const struct design_report *r)
 {
     char state[SCENARIO_NAME];
-    if (r->delay_margin >= STANCE_MAX_DELAY)
-        printf("  %-18s above %d samples at this sample time\n", "critical delay",
-               STANCE_MAX_DELAY);
-    else
-        printf("  %-18s %d samples at this sample time\n", "critical delay", r->delay_margin + 1);
+    const bool above = r->delay_margin >= STANCE_MAX_DELAY;
+    printf("  %-18s %s%d samples at this sample time\n", "critical delay", above ? "above " : "",
+           above ? STANCE_MAX_DELAY : r->delay_margin + 1);
     print_critical("critical lag", r->lag_margin);
     if (!r->noisy)
         return;
@@ -279,27 +272,6 @@ static void print_set(const struct design_report *r)
     }
 }
 
-static const char *design_text(const struct scenario_values *values)
-{
-    static const char *const text[] = {
-        [DESIGN_PLACE] = "robust pole placement",
-        [DESIGN_PLACE_SCHUR] = "pole placement by the Schur method",
-        [DESIGN_LQR] = "linear quadratic regulator",
-        [DESIGN_GAINS] = "given gains",
-    };
-    return text[values->design];
-}
-
-static void print_weights(const struct design_report *r)
-{
-    const struct scenario_values *values = &r->scenario->base;
-    printf("  %-16s", "weights");
-    for (int i = 0; i < r->states; i++)
-        printf(" %.6g%s", design_weight(r, i), i + 1 < r->states ? "," : "; torques");
-    for (int i = 0; i < r->inputs; i++)
-        printf(" %.6g%s", values->torque_weights[i], i + 1 < r->inputs ? "," : "\n");
-}
-
 /* A bimodal law beyond its plane. */
 static void print_beyond(const struct design_report *r)
 {
@@ -319,6 +291,12 @@ static void print_beyond(const struct design_report *r)
 
 static void print_closed_loop(const struct design_report *r)
 {
+    static const char *const design[] = {
+        [DESIGN_PLACE] = "robust pole placement",
+        [DESIGN_PLACE_SCHUR] = "pole placement by the Schur method",
+        [DESIGN_LQR] = "linear quadratic regulator",
+        [DESIGN_GAINS] = "given gains",
+    };
     const struct scenario_values *values = &r->scenario->base;
     if (!r->closed) {
         puts("\nController: none");
@@ -333,7 +311,7 @@ static void print_closed_loop(const struct design_report *r)
             law->name);
     } else {
         printf("\nController: %s, %s%s;\ntorques = those of the equilibrium - K X\n",
-               r->bends ? "bimodal feedback" : "state feedback", design_text(values),
+               r->bends ? "bimodal feedback" : "state feedback", design[values->design],
                values->design != DESIGN_GAINS && values->design_time == DESIGN_SAMPLED
                    ? " for the sampled model"
                    : "");
@@ -343,8 +321,13 @@ static void print_closed_loop(const struct design_report *r)
     double re[SCENARIO_MAX_POLES], im[SCENARIO_MAX_POLES];
     if (places && scenario_poles(values, re, im) == r->states)
         print_complex("wanted poles", r->states, re, im);
-    else if (law->designed && values->design == DESIGN_LQR)
-        print_weights(r);
+    else if (law->designed && values->design == DESIGN_LQR) {
+        printf("  %-16s", "weights");
+        for (int i = 0; i < r->states; i++)
+            printf(" %.6g%s", design_weight(r, i), i + 1 < r->states ? "," : "; torques");
+        for (int i = 0; i < r->inputs; i++)
+            printf(" %.6g%s", values->torque_weights[i], i + 1 < r->inputs ? "," : "\n");
+    }
     print_complex("closed loop", r->states, r->closed_re, r->closed_im);
     if (r->how.sweeps > 0) {
         printf("  %-16s %.6g, condition number of the eigenvectors, after %d sweeps\n",
@@ -368,12 +351,13 @@ void design_print(const struct design_report *r)
     printf("\nRobot that the design believes in\n");
     int width = 14;
     for (int i = 0; i < scene->robot_count; i++)
-        width =
-            (int)strlen(scene->robot[i].name) > width ? (int)strlen(scene->robot[i].name) : width;
-    for (int i = 0; i < scene->robot_count; i++)
-        printf("  %-*s %10.6g%s%s\n", width, scene->robot[i].name, r->model[i],
-               strcmp(scene->robot[i].unit, "1") == 0 ? "" : " ",
-               strcmp(scene->robot[i].unit, "1") == 0 ? "" : scene->robot[i].unit);
+        width = (int)fmax(width, (double)strlen(scene->robot[i].name));
+    for (int i = 0; i < scene->robot_count; i++) {
+        const char *const unit = scene->robot[i].unit;
+        const bool has = strcmp(unit, "1") != 0;
+        printf("  %-*s %10.6g%s%s\n", width, scene->robot[i].name, r->model[i], has ? " " : "",
+               has ? unit : "");
+    }
     print_equilibrium(r);
     print_open_loop(r);
     print_allowed(r);
