@@ -439,19 +439,17 @@ static json_t *head_json(const struct basin *b)
 {
     const bool grid = b->starts == BASIN_GRID;
     const char *path[256];
-    json_t *averaged = json_array();
     const size_t count = basin_averaged(b, path, sizeof path / sizeof path[0]);
-    for (size_t k = 0; k < count; k++)
-        table_append(averaged, as_text(path[k]));
-    return TABLE_OBJECT(
-        {"outcome", as_text(results_kind_names[b->choice.of])},
-        {"within", as_text(b->choice.within)}, {"level", as_number(b->choice.level)},
-        {"box_side", as_whole(b->choice.side)},
-        {"design", as_text(grid ? "grid" : doe_words[b->sample.method])},
-        {"starts",
-         as_tree(grid ? names(b, b->start, b->start_axes) : basin_factor_names(&b->sample))},
-        {"parameters", as_tree(names(b, b->by, b->by_axes))}, {"averaged", as_tree(averaged)},
-        {"box", as_number(b->box)}, {"unit", as_text(b->unit)}, {"weights", as_tree(weights(b))});
+    return TABLE_OBJECT({"outcome", as_text(results_kind_names[b->choice.of])},
+                        {"within", as_text(b->choice.within)},
+                        {"level", as_number(b->choice.level)},
+                        {"box_side", as_whole(b->choice.side)},
+                        {"design", as_text(grid ? "grid" : doe_words[b->sample.method])},
+                        {"starts", as_tree(grid ? names(b, b->start, b->start_axes)
+                                                : basin_factor_names(&b->sample))},
+                        {"parameters", as_tree(names(b, b->by, b->by_axes))},
+                        {"averaged", as_tree(table_list(path, count))}, {"box", as_number(b->box)},
+                        {"unit", as_text(b->unit)}, {"weights", as_tree(weights(b))});
 }
 
 bool basin_print(const struct basin *b, enum table_form form)

@@ -61,56 +61,48 @@ static bool make_rows(struct accuracy *a, const struct scenario *s, const struct
 
 /* ---- answers ------------------------------------------------------------------------------ */
 
-/* Largest value of an answer among the cases of each row, or (sum) their sum. */
-static bool gather(struct accuracy *a, const struct results *r, const char *name, bool sum,
-                   double *out, stance_message *message)
-{
-    double *values;
-    const size_t n = accuracy_cases(a, r);
-    if (!results_answer(r, name, &values, message))
-        return false;
-    for (size_t k = 0; k < a->rows; k++) {
-        out[k] = values ? 0 : NAN;
-        for (size_t i = 0; values && i < n; i++) {
-            const double x = values[k * n + i];
-            out[k] = isnan(x) ? out[k] : sum ? out[k] + x : fmax(out[k], x);
-        }
-    }
-    free(values);
-    return true;
-}
-
+/* Of each row the largest value among its cases or (sum) their sum, NAN where it was not recorded;
+ * sums become rates. And its failures. */
 static bool read_answers(struct accuracy *a, const struct results *r, stance_message *message)
 {
-    double *column = malloc(a->rows * sizeof *column), *time = malloc(a->rows * sizeof *time);
-    static const char *const names[] = {
-        "signorini_residual", "coulomb_residual", "dissipation_residual", "max_penetration",
-        "energy_gain",        "events",           "evaluations"};
-    const size_t rates = 5; /* the first that is wanted per simulated second */
-    bool good = column && time && gather(a, r, "end_time", true, time, message);
-    for (size_t w = 0; good && w < sizeof names / sizeof *names; w++) {
-        good = gather(a, r, names[w], w >= rates, column, message);
-        for (size_t k = 0; good && k < a->rows; k++) {
-            struct accuracy_row *const row = &a->row[k];
-            double *const field[] = {&row->signorini,   &row->coulomb,     &row->dissipation,
-                                     &row->penetration, &row->energy_gain, &row->events,
-                                     &row->evaluations};
-            *field[w] = w >= rates ? column[k] / time[k] : column[k];
-        }
-    }
-    free(column);
-    free(time);
+    static const struct {
+        const char *name;
+        size_t member;
+        bool sum;
+    } wanted[] = {
+        {"end_time", offsetof(struct accuracy_row, time), true},
+        {"signorini_residual", offsetof(struct accuracy_row, signorini), false},
+        {"coulomb_residual", offsetof(struct accuracy_row, coulomb), false},
+        {"dissipation_residual", offsetof(struct accuracy_row, dissipation), false},
+        {"max_penetration", offsetof(struct accuracy_row, penetration), false},
+        {"energy_gain", offsetof(struct accuracy_row, energy_gain), false},
+        {"events", offsetof(struct accuracy_row, events), true},
+        {"evaluations", offsetof(struct accuracy_row, evaluations), true},
+    };
     const size_t n = accuracy_cases(a, r);
-    for (size_t k = 0; k < a->rows; k++) {
-        for (size_t i = 0; i < n; i++) {
-            const uint64_t index = k * n + i;
-            if (r->kind[index] == RESULTS_FAILED) {
-                a->row[k].failure =
-                    a->row[k].failed++ == 0 && r->failure ? r->failure[index] : a->row[k].failure;
+    for (size_t w = 0; w < sizeof wanted / sizeof *wanted; w++) {
+        double *values;
+        if (!results_answer(r, wanted[w].name, &values, message))
+            return false;
+        for (size_t k = 0; k < a->rows; k++) {
+            double *const out = (double *)((char *)&a->row[k] + wanted[w].member);
+            *out = values ? 0 : NAN;
+            for (size_t i = 0; values && i < n; i++) {
+                const double x = values[k * n + i];
+                *out = isnan(x) ? *out : wanted[w].sum ? *out + x : fmax(*out, x);
             }
         }
+        free(values);
     }
-    return good;
+    for (size_t k = 0; k < a->rows; k++) {
+        struct accuracy_row *const row = &a->row[k];
+        row->events /= row->time;
+        row->evaluations /= row->time;
+        for (size_t i = k * n; i < (k + 1) * n; i++)
+            if (r->kind[i] == RESULTS_FAILED)
+                row->failure = row->failed++ == 0 && r->failure ? r->failure[i] : row->failure;
+    }
+    return true;
 }
 
 /* ---- trajectories ------------------------------------------------------------------------- */

@@ -26,6 +26,7 @@ struct accuracy_row {
     uint64_t differ;        /* outcomes unlike the truth's ... */
     uint64_t inside;        /* ... in cells whose neighbours all have the truth's own outcome */
     struct measure_cost cost;
+    double time; /* s, simulated in all cases together */
     double signorini, coulomb, dissipation, penetration, energy_gain; /* largest of the cases */
     double events, evaluations;                                       /* per simulated second */
 };

@@ -13,14 +13,6 @@ static json_t *table_of(const struct search_study *study,
     return json;
 }
 
-static json_t *words(char **word, size_t count)
-{
-    json_t *const list = json_array();
-    for (size_t i = 0; i < count; i++)
-        table_append(list, as_text(word[i]));
-    return list;
-}
-
 static json_t *gains(const struct search_study *study)
 {
     const stance_scene *const scene = study->best->scene;
@@ -94,8 +86,10 @@ bool search_print_json(const struct search_study *study)
         {"most_generations", as_whole((uint64_t)f->most_generations)},
         {"candidates", as_whole(f->length[SEARCH_CANDIDATE])}, {"best", as_whole((uint64_t)best)},
         {"best_objective", as_number(f->objective[best])}, {"maximised", as_text(aim)},
-        {"varied", as_tree(words(f->parameter, f->length[SEARCH_PARAMETER]))},
-        {"starts_over", as_tree(words(f->varied, f->length[SEARCH_VARIED]))},
+        {"varied",
+         as_tree(table_list((const char *const *)f->parameter, f->length[SEARCH_PARAMETER]))},
+        {"starts_over",
+         as_tree(table_list((const char *const *)f->varied, f->length[SEARCH_VARIED]))},
         {"stages", as_tree(table_of(study, search_table_stages))},
         {"fresh_starts", as_whole(f->length[SEARCH_START])},
         {"confirmed", as_tree(table_of(study, search_table_confirmed))},

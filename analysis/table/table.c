@@ -442,11 +442,11 @@ json_t *table_value_json(struct table_value value)
     return json;
 }
 
-json_t *table_texts(const char *first, const char *second)
+json_t *table_list(const char *const *text, size_t count)
 {
-    json_t *list = json_array();
-    table_append(list, as_text(first));
-    table_append(list, as_text(second));
+    json_t *const list = text ? json_array() : NULL;
+    for (size_t i = 0; text && i < count; i++)
+        table_append(list, as_text(text[i]));
     return list;
 }
 

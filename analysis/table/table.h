@@ -155,8 +155,12 @@ json_t *table_object(const struct table_member *member, size_t count);
 #define TABLE_OBJECT(...) table_object(TABLE_LIST(table_member, __VA_ARGS__))
 /* New reference. */
 json_t *table_value_json(struct table_value value);
-/* A list of two. */
-json_t *table_texts(const char *first, const char *second);
+/* A list of texts; of NULL none, which is NULL. */
+json_t *table_list(const char *const *text, size_t count);
+static inline json_t *table_texts(const char *first, const char *second)
+{
+    return table_list((const char *[]){first, second}, 2);
+}
 /* {path: value} of the axes at one point[]; which[axes] of them, NULL: all. */
 json_t *table_at(const struct results *r, const bool *which, const size_t *point);
 /* Adds to an object, to a list. */

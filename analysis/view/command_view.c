@@ -25,8 +25,8 @@ struct request {
     const char *place;
     bool open;
     struct page_request page;
-    const char *file; /* the one at hand */
-    char out[NAME];   /* its page */
+    const char *file, *out;          /* the one at hand, its page */
+    char name[MOST_FILES + 1][NAME]; /* of the pages, and behind them of the index */
 };
 
 /* ---- writing ------------------------------------------------------------------------------ */
@@ -136,24 +136,18 @@ static int view(void *context)
 
 /* ---- several files ------------------------------------------------------------------------ */
 
-static bool name_page(struct request *request);
-
 static int write_index(void *context)
 {
     struct request *const request = context;
     stance_message message = {""};
     struct writing w;
-    char name[NAME];
-    snprintf(name, sizeof name, "%.1000s/index.html", request->place);
-    if (!begin(&w, name))
+    if (!begin(&w, request->name[request->files.count]))
         return EXIT_IO;
     bool good = true;
     page_index_begin(w.out);
-    for (size_t i = 0; good && i < request->files.count; i++) {
-        request->file = request->files.text[i];
-        good = name_page(request) &&
-               page_index_card(w.out, request->file, strrchr(request->out, '/') + 1, &message);
-    }
+    for (size_t i = 0; good && i < request->files.count; i++)
+        good = page_index_card(w.out, request->files.text[i], strrchr(request->name[i], '/') + 1,
+                               &message);
     page_index_end(w.out);
     return end(&w, good, &message);
 }
@@ -167,21 +161,21 @@ static bool is_directory(const char *place)
 }
 
 /* FILE.html beside the file, PLACE, or in the directory PLACE. False: it is too long. */
-static bool name_page(struct request *request)
+static bool name_page(struct request *request, size_t i)
 {
-    const char *const file = request->file, *const place = request->place;
+    const char *const file = request->files.text[i], *const place = request->place;
+    char *const out = request->name[i];
     const char *const slash = strrchr(file, '/'), *const name = slash ? slash + 1 : file;
     const size_t length = strlen(name),
                  stem = length > 3 && strcmp(name + length - 3, ".h5") == 0 ? length - 3 : length;
     int n;
     if (place && !is_directory(place) && request->files.count == 1)
-        n = snprintf(request->out, sizeof request->out, "%s", place);
+        n = snprintf(out, NAME, "%s", place);
     else if (place)
-        n = snprintf(request->out, sizeof request->out, "%s/%.*s.html", place, (int)stem, name);
+        n = snprintf(out, NAME, "%s/%.*s.html", place, (int)stem, name);
     else
-        n = snprintf(request->out, sizeof request->out, "%.*s%.*s.html", (int)(name - file), file,
-                     (int)stem, name);
-    return n > 0 && (size_t)n < sizeof request->out;
+        n = snprintf(out, NAME, "%.*s%.*s.html", (int)(name - file), file, (int)stem, name);
+    return n > 0 && n < NAME;
 }
 
 /* The browser that the desktop has. What it says is of no interest, whether there is one is. */
@@ -208,46 +202,45 @@ static bool is_same(const char *a, const char *b)
 /* No page is written over a results file, another file's page, or the index. */
 static bool names_differ(struct request *request)
 {
-    char name[MOST_FILES + 1][NAME];
-    snprintf(name[request->files.count], NAME, "%.1000s/index.html",
+    const size_t files = request->files.count;
+    const char *const *const file = (const char *const *)request->files.text;
+    snprintf(request->name[files], NAME, "%.1000s/index.html",
              request->place ? request->place : "");
-    for (size_t i = request->files.count; i-- > 0;) {
-        request->file = request->files.text[i];
-        if (!name_page(request))
+    for (size_t i = files; i-- > 0;) {
+        if (!name_page(request, i))
             return command_usage(&command_view, "the page's name is too long"), false;
-        memcpy(name[i], request->out, NAME);
-        for (size_t k = 0; k < request->files.count; k++)
-            if (is_same(request->out, request->files.text[k])) {
+        const char *const name = request->name[i];
+        for (size_t k = 0; k < files; k++)
+            if (is_same(name, file[k])) {
                 fprintf(stderr, "stance view: %s is a results file: give its page another name\n",
-                        request->out);
+                        name);
                 return false;
             }
-        for (size_t k = i + 1; request->files.count > 1 && k <= request->files.count; k++)
-            if (strcmp(name[i], name[k]) == 0) {
+        for (size_t k = i + 1; files > 1 && k <= files; k++)
+            if (strcmp(name, request->name[k]) == 0) {
                 fprintf(stderr, "stance view: %s: its page would be written over %s%s, %s\n",
-                        request->file, k < request->files.count ? "that of " : "the index",
-                        k < request->files.count ? request->files.text[k] : "", name[k]);
+                        file[i], k < files ? "that of " : "the index", k < files ? file[k] : "",
+                        name);
                 return false;
             }
     }
     return true;
 }
 
-/* The page of each file, and the one that leads to them. */
+/* The page of each file, and of several the one that leads to them: request->out in the end. */
 static int write_pages(struct request *request)
 {
+    const size_t files = request->files.count;
     int code = EXIT_DONE;
-    for (size_t i = 0; code == EXIT_DONE && i < request->files.count; i++) {
+    for (size_t i = 0; code == EXIT_DONE && i < files; i++) {
         request->file = request->page.file = request->files.text[i];
-        name_page(request);
+        request->out = request->name[i];
         code = sandbox(view, request, request->file);
-        if (code == EXIT_DONE && request->files.count == 1)
-            printf("%s\n", request->out);
     }
-    if (code != EXIT_DONE || request->files.count == 1)
-        return code;
-    code = sandbox(write_index, request, request->place);
-    snprintf(request->out, sizeof request->out, "%.1000s/index.html", request->place);
+    if (code == EXIT_DONE && files > 1) {
+        request->out = request->name[files];
+        code = sandbox(write_index, request, request->place);
+    }
     if (code == EXIT_DONE)
         printf("%s\n", request->out);
     return code;

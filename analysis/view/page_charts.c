@@ -1,5 +1,4 @@
 /* page_charts.c - what of a file is better read off curves than off a map. */
-#include "page_charts.h"
 #include "page_data.h"
 
 #include "analysis/basin/basin.h"
@@ -74,7 +73,8 @@ static bool put_shares(json_t *charts, const struct results *r, int k, stance_me
     }
     free(counts);
     snprintf(title, sizeof title, "Shares of outcomes along %.120s", a->name);
-    add_chart(charts, title, a->text, axis(a->name, a->unit, false, page_words(a->word, a->count)),
+    add_chart(charts, title, a->text,
+              axis(a->name, a->unit, false, table_list((const char *const *)a->word, a->count)),
               axis("share of the cases that are done", "%", false, NULL), series);
     return true;
 }
@@ -112,7 +112,7 @@ static void put_basin(json_t *charts, const struct results *r, int k)
         add_chart(charts, title,
                   "Volume of the starts from which cases end so, of the box of starts; stance "
                   "basin has more",
-                  axis(a->name, a->unit, false, page_words(a->word, a->count)),
+                  axis(a->name, a->unit, false, table_list((const char *const *)a->word, a->count)),
                   axis("share of the box of starts", "%", false, NULL), series);
     }
     basin_free(&basin);

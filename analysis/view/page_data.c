@@ -1,6 +1,5 @@
 /* page_data.c - what a page holds of a results file. */
 #include "page_data.h"
-#include "page_charts.h"
 #include "page_template.h"
 
 #include "analysis/statistics/statistics.h"
@@ -45,14 +44,6 @@ static bool put_block(struct page *p, const char *name, const char *type, const 
 
 /* ---- axes --------------------------------------------------------------------------------- */
 
-json_t *page_words(char *const *word, size_t count)
-{
-    json_t *const list = word ? json_array() : NULL;
-    for (size_t i = 0; word && i < count; i++)
-        table_append(list, as_text(word[i]));
-    return list;
-}
-
 /* Of an axis, or of what is varied. */
 static void add_values(json_t *list, json_t *object, json_t *words, const struct results_axis *axis)
 {
@@ -74,7 +65,7 @@ static void put_axes(struct page *p)
                    TABLE_OBJECT({"path", as_text(a->name)}, {"unit", as_text(a->unit)},
                                 {"text", as_text(a->text)}, {"count", as_whole(a->count)},
                                 {"offset", as_truth(a->offset)}),
-                   page_words(a->word, a->count), a);
+                   table_list((const char *const *)a->word, a->count), a);
     }
     for (int k = 0; k < r->varied; k++) {
         const struct results_varied *const v = &r->vary[k];
@@ -210,7 +201,7 @@ static json_t *answer_words(const struct page *p, int answer)
     if (answer == STANCE_ANSWER_fall_cause && !p->scenario.scene)
         return NULL;
     const int words = stance_answer_words(p->scenario.scene, answer, word);
-    return page_words(words ? (char *const *)word : NULL, (size_t)words);
+    return table_list(words ? word : NULL, (size_t)words);
 }
 
 /* The numbers of one answer: codes as bytes, others in single precision, which is what a picture

@@ -37,8 +37,6 @@ bool page_search_write(FILE *out, const char *file, stance_message *message);
  * written. False: no memory. */
 bool page_block(FILE *out, json_t *blocks, const char *name, const char *type, const void *numbers,
                 size_t size, size_t count, size_t limit, size_t *bytes);
-/* A list of texts; of NULL none, which is NULL. */
-json_t *page_words(char *const *word, size_t count);
 /* A script element of bytes as base64. */
 void page_base64(FILE *out, const char *id, const uint8_t *bytes, size_t size);
 /* One of JSON, without '<' and '&'. */
@@ -46,6 +44,13 @@ void page_json(FILE *out, const char *id, const json_t *json);
 
 /* Colours of kinds: those of analysis/draw/style.gp. */
 extern const char *const page_kind_colour[RESULTS_KIND_COUNT];
+
+/* page_charts.c: a list of what is better read off curves than off a map, new; NULL with one line
+ * in *message. A chart is an object for charts.ts: {title, text, x, y, series}; x and y {label,
+ * unit, log} and, where places have names, words; a series {name, x, y, low, high, lines}. */
+json_t *page_charts(const struct results *r, stance_message *message);
+/* Of the file of a search; *title is its title, cut. */
+json_t *page_search_charts(const char *file, char title[256], stance_message *message);
 
 /* page_index.c: a page that leads to others, card after card. `page`: where the link goes. False:
  * the file cannot be read, *message says why. */

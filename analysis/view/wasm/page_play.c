@@ -39,14 +39,6 @@ static struct {
     double *number[NUMBERS];
 } played;
 
-static bool room(int which, int rows, int numbers)
-{
-    free(played.number[which]);
-    played.number[which] =
-        malloc((size_t)rows * (size_t)(numbers > 0 ? numbers : 1) * sizeof(double));
-    return played.number[which] || no_memory(&page.message);
-}
-
 /* Into place[4]: of what turns its centre and nothing, of what slides a point and its direction. */
 static void put_actuator(const stance_scene *scene, int k, const double *position,
                          const double point[][2], int points, double *place)
@@ -99,9 +91,13 @@ static bool make_rows(const stance_scene *scene, const stance_kernel *kernel, in
     played.points = scene->figure(scene, played.input.robot, played.input.position, point);
     const int numbers[NUMBERS] = {
         1, n, n, m, 2 * contacts, contacts, 2 * played.points, 2 * contacts, 4 * m, 1};
-    for (int k = 0; k < NUMBERS; k++)
-        if (!room(k, rows, numbers[k]))
-            return false;
+    for (int k = 0; k < NUMBERS; k++) {
+        free(played.number[k]);
+        played.number[k] =
+            malloc((size_t)rows * (size_t)(numbers[k] > 0 ? numbers[k] : 1) * sizeof(double));
+        if (!played.number[k])
+            return no_memory(&page.message);
+    }
     for (int i = 0; i < rows; i++)
         played.number[POSITION][i * n] = NAN;
     stance_trajectory trajectory = {

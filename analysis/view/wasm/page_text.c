@@ -81,6 +81,12 @@ static void add_words(struct text *text, const char *const *word, size_t words)
     text_add(text, words ? "]" : "null");
 }
 
+static void add_pair(struct text *text, const char *key, const char *string)
+{
+    text_add(text, ",\"%s\":", key);
+    text_string(text, string);
+}
+
 /* ---- fields that may be changed ----------------------------------------------------------- */
 
 /* The value of item i of a field. */
@@ -115,22 +121,16 @@ static void each_field(struct text *text, const struct scenario_values *values,
     }
 }
 
-static bool is_swept(const struct scenario_field *field, size_t item)
-{
-    const size_t size = field->type == FIELD_NUMBER ? sizeof(double) : sizeof(int);
-    int k;
-    return scenario_axis_of(&page.view, field->offset + item * size, &k) != NULL;
-}
-
 static void tell_field(struct text *text, const struct scenario_field *field,
                        const struct scenario_values *values, const char *path, size_t item)
 {
+    const size_t size = field->type == FIELD_NUMBER ? sizeof(double) : sizeof(int);
+    int k;
+    const bool swept = scenario_axis_of(&page.view, field->offset + item * size, &k) != NULL;
     text_add(text, "%s{\"path\":", text->bytes[text->length - 1] == '[' ? "" : ",");
     text_string(text, path);
-    text_add(text, ",\"text\":");
-    text_string(text, field->text);
-    text_add(text, ",\"unit\":");
-    text_string(text, field->unit);
+    add_pair(text, "text", field->text);
+    add_pair(text, "unit", field->unit);
     text_add(text, ",\"type\":\"%s\",\"value\":",
              field->type == FIELD_NUMBER    ? "number"
              : field->type == FIELD_INTEGER ? "integer"
@@ -142,7 +142,7 @@ static void tell_field(struct text *text, const struct scenario_field *field,
     text_number(text, field->high);
     text_add(text, ",\"lowOpen\":%s,\"highOpen\":%s,\"design\":%s,\"swept\":%s",
              field->low_open ? "true" : "false", field->high_open ? "true" : "false",
-             field->design ? "true" : "false", is_swept(field, item) ? "true" : "false");
+             field->design ? "true" : "false", swept ? "true" : "false");
     add_words(text, field->words, field->words ? field->word_count : 0);
     text_add(text, "}");
 }
@@ -164,8 +164,7 @@ static void add_quantities(struct text *text, const char *name, const stance_qua
     for (int i = 0; i < n; i++) {
         text_add(text, "%s{\"name\":", i ? "," : "");
         text_string(text, of[i].name);
-        text_add(text, ",\"unit\":");
-        text_string(text, of[i].unit);
+        add_pair(text, "unit", of[i].unit);
         text_add(text, "}");
     }
     text_add(text, "]");
@@ -212,12 +211,9 @@ const char *view_text(void)
     text_clear(&text);
     text_add(&text, "{\"scene\":");
     text_string(&text, s->scene->name);
-    text_add(&text, ",\"title\":");
-    text_string(&text, s->title);
-    text_add(&text, ",\"method\":");
-    text_string(&text, stance_methods()[s->base.method]->name);
-    text_add(&text, ",\"law\":");
-    text_string(&text, scenario_law(&s->base)->name);
+    add_pair(&text, "title", s->title);
+    add_pair(&text, "method", stance_methods()[s->base.method]->name);
+    add_pair(&text, "law", scenario_law(&s->base)->name);
     text_add(&text, ",\"designed\":%s,\"seed\":%llu,\"step\":",
              scenario_law(&s->base)->designed && s->base.design != DESIGN_GAINS ? "true" : "false",
              (unsigned long long)s->seed);
@@ -245,10 +241,8 @@ const char *answers_text(void)
         const int words = stance_answer_words(page.file.scene, a, word);
         text_add(&text, "%s{\"name\":", a ? "," : "[");
         text_string(&text, answer->name);
-        text_add(&text, ",\"unit\":");
-        text_string(&text, answer->unit);
-        text_add(&text, ",\"text\":");
-        text_string(&text, answer->text);
+        add_pair(&text, "unit", answer->unit);
+        add_pair(&text, "text", answer->text);
         text_add(&text, ",\"type\":\"%s\"",
                  words                           ? "code"
                  : answer->type == STANCE_DOUBLE ? "number"
