@@ -48,18 +48,6 @@ static double run_once(struct measurement *m, stance_case *cases, stance_result 
     return bench_clock() - begin;
 }
 
-/* Warms up, and finds how many cases a measurement takes. */
-static void prepare(struct measurement *m, const struct selection *what, stance_case *cases,
-                    stance_result *results)
-{
-    m->cases = what->cases ? (int)what->cases : FEWEST_CASES;
-    const double time = run_once(m, cases, results);
-    if (!what->cases) {
-        const double wanted = floor(wanted_time / time) * FEWEST_CASES;
-        m->cases = (int)fmax(FEWEST_CASES, fmin(wanted, MOST_CASES));
-    }
-}
-
 static void take_spread(struct measurement *m, const stance_result *results, int repeats)
 {
     double iterations = 0;
@@ -164,15 +152,6 @@ static int find_kernels(const struct selection *what, const stance_scene *scene,
     return count;
 }
 
-/* Time per step of the one-lane kernel of the first one's method, NAN without one. */
-static double one_lane(const struct measurement *m, int count)
-{
-    for (int i = 0; i < count && m[i].kernel->method == m[0].kernel->method; i++)
-        if (m[i].kernel->lanes == 1)
-            return m[i].ns.median;
-    return NAN;
-}
-
 static bool bench_workload(struct selection *what, const stance_scene *scene, const char *regime)
 {
     stance_case *cases = calloc(MOST_CASES, sizeof *cases);
@@ -180,8 +159,12 @@ static bool bench_workload(struct selection *what, const stance_scene *scene, co
     struct measurement *m = calloc(MOST_KERNELS, sizeof *m);
     const bool good = cases && results && m && bench_cases(scene, regime, cases, MOST_CASES);
     const int count = good ? find_kernels(what, scene, m) : 0;
-    for (int i = 0; i < count; i++)
-        prepare(&m[i], what, cases, results);
+    for (int i = 0; i < count; i++) { /* warms up, and finds how many cases a measurement takes */
+        m[i].cases = what->cases ? (int)what->cases : FEWEST_CASES;
+        const double wanted = floor(wanted_time / run_once(&m[i], cases, results)) * FEWEST_CASES;
+        if (!what->cases)
+            m[i].cases = (int)fmax(FEWEST_CASES, fmin(wanted, MOST_CASES));
+    }
     const int repeats = (int)what->repeats;
     for (int r = 0; r < repeats; r++)
         for (int i = 0; i < count; i++) {
@@ -189,10 +172,11 @@ static bool bench_workload(struct selection *what, const stance_scene *scene, co
             if (r == repeats - 1)
                 take_spread(&m[i], results, repeats);
         }
-    double scalar_ns = NAN;
     for (int i = 0; i < count; i++) {
-        if (i == 0 || m[i].kernel->method != m[i - 1].kernel->method)
-            scalar_ns = one_lane(m + i, count - i);
+        double scalar_ns = NAN; /* of the method's first kernel with one lane */
+        for (int k = count - 1; k >= 0; k--)
+            if (m[k].kernel->method == m[i].kernel->method && m[k].kernel->lanes == 1)
+                scalar_ns = m[k].ns.median;
         report(what, scene->name, regime, cases, &m[i], scalar_ns);
     }
     free(cases);

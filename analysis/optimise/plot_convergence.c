@@ -155,13 +155,6 @@ static void put_distribution(struct page *page, const char *block, bool width)
     gnuplot_end_block(&page->g);
 }
 
-static bool lower(const struct search_file *f, size_t a, size_t b)
-{
-    const size_t last = f->length[SEARCH_GENERATION] - 1;
-    const double x = change(f, last, a), y = change(f, last, b);
-    return x < y || (x == y && a < b);
-}
-
 /* Numbers in the order in which they end, the lowest first: number[k], its name, its end. */
 static void put_ends(struct page *page)
 {
@@ -176,7 +169,8 @@ static void put_ends(struct page *page)
         size_t rank = 1;
         char text[100];
         for (size_t other = 0; other < n; other++)
-            rank += lower(f, other, k);
+            rank += change(f, last, other) < change(f, last, k) ||
+                    (change(f, last, other) == change(f, last, k) && other < k);
         name_number(page->study, k, text, sizeof text);
         gnuplot_set(&page->g, "end_number[%zu] = %zu", rank, k + 1);
         gnuplot_number(&page->g, change(f, last, k), "end_at[%zu]", rank);
@@ -214,26 +208,22 @@ static void put_means(struct page *page)
 
 /* ---- the page ----------------------------------------------------------------------------- */
 
-static void subtitle_of(const struct search_study *study, char *text, size_t size)
-{
-    const struct search_file *const f = &study->f;
-    if (study->done)
-        snprintf(text, size, "%zu candidates in %zu generations; lines: of %zu fresh starts",
-                 f->length[SEARCH_CANDIDATE], f->length[SEARCH_GENERATION],
-                 f->length[SEARCH_START]);
-    else
-        snprintf(text, size, "%zu candidates in %zu of at most %lld generations, not finished",
-                 f->length[SEARCH_CANDIDATE], f->length[SEARCH_GENERATION],
-                 (long long)f->most_generations);
-}
-
 bool plot_search_convergence(const struct search_study *study, struct look *look,
                              const char *directory, stance_message *message)
 {
     const struct search_file *const f = &study->f;
     struct page page = {.study = study, .scale = study->plain ? 100 : 1};
     char subtitle[200], stem[400];
-    subtitle_of(study, subtitle, sizeof subtitle);
+    if (study->done)
+        snprintf(subtitle, sizeof subtitle,
+                 "%zu candidates in %zu generations; lines: of %zu fresh starts",
+                 f->length[SEARCH_CANDIDATE], f->length[SEARCH_GENERATION],
+                 f->length[SEARCH_START]);
+    else
+        snprintf(subtitle, sizeof subtitle,
+                 "%zu candidates in %zu of at most %lld generations, not finished",
+                 f->length[SEARCH_CANDIDATE], f->length[SEARCH_GENERATION],
+                 (long long)f->most_generations);
     if (!gnuplot_begin(&page.g, look, plot_convergence_gp, f->title[0] ? f->title : study->name,
                        subtitle, message))
         return false;
