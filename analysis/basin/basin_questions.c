@@ -267,20 +267,18 @@ bool basin_print_answer(const struct basin *b, const char *answer, enum table_fo
     struct basin_lack lack = {0};
     if (!basin_numbers(b->r, answer, &value, message))
         return false;
-    if (value && !basin_lacks(b->r, b->choice.of, value, &lack, message)) {
-        free(value);
-        return false;
-    }
+    *usage = !value;
+    if (!value)
+        return complain(message, "stance basin: %.90s stores no number '%.60s'", b->r->file,
+                        answer);
     double *number = malloc(b->r->cases * sizeof *number);
     uint64_t *begin = calloc(2 * b->rows + 1, sizeof *begin);
-    *usage = !value;
-    if (!value || !number || !begin) {
+    const bool room = number && begin;
+    if (!room || !basin_lacks(b->r, b->choice.of, value, &lack, message)) {
         free(number);
         free(begin);
         free(value);
-        return value ? statistics_no_memory(b->r, message)
-                     : complain(message, "stance basin: %.90s stores no number '%.60s'", b->r->file,
-                                answer);
+        return !room && statistics_no_memory(b->r, message);
     }
     uint64_t *largest = begin + b->rows + 1;
     if (lack.inferred > 0)

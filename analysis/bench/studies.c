@@ -113,23 +113,6 @@ struct request {
     bool json, reuse;
 };
 
-/* Evaluates a results file, into the list `all` or as text and pictures. */
-static bool evaluate(const struct request *request, const char *file, const char *stem, json_t *all,
-                     stance_message *message)
-{
-    struct results r;
-    json_t *object = NULL;
-    if (!results_open(&r, file, message))
-        return false;
-    const bool good = request->kind->evaluate(&r, request->look, request->directory, stem,
-                                              request->json ? &object : NULL, message);
-    if (good && object)
-        json_array_append_new(all, object);
-    fflush(stdout);
-    results_close(&r);
-    return good;
-}
-
 /* Before a long run for nothing; of a file that is there and is to be taken, whether it is the
  * scenario's. Returns an exit code. */
 static int check_study(const struct request *request, const char *scenario, const char *there)
@@ -199,6 +182,8 @@ static int check_studies(const struct request *request, char *const *path, size_
 static int one_study(const struct request *request, const char *scenario, json_t *all)
 {
     char file[FILE_NAME], stem[STEM];
+    struct results r;
+    json_t *object = NULL;
     stance_message message = {""};
 
     name_study(scenario, stem);
@@ -209,7 +194,17 @@ static int one_study(const struct request *request, const char *scenario, json_t
         if (code != EXIT_DONE && code != EXIT_CASES_FAILED)
             return code;
     }
-    if (!evaluate(request, file, stem, all, &message)) {
+    /* Into the list `all`, or as text and pictures. */
+    bool good = results_open(&r, file, &message);
+    if (good) {
+        good = request->kind->evaluate(&r, request->look, request->directory, stem,
+                                       request->json ? &object : NULL, &message);
+        results_close(&r);
+    }
+    if (good && object)
+        json_array_append_new(all, object);
+    fflush(stdout);
+    if (!good) {
         fprintf(stderr, "stance %s: %.300s: %s\n", request->command->name, scenario, message.text);
         return EXIT_IO;
     }

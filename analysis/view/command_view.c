@@ -1,6 +1,5 @@
 /* command_view.c - `stance view FILE`: a results file as one page that simulates its cases. */
 #include "page_data.h"
-#include "page_template.h"
 
 #include "runner/base/command.h"
 #include "runner/base/message.h"

@@ -1,6 +1,5 @@
 /* page_data.c - what a page holds of a results file. */
 #include "page_data.h"
-#include "page_template.h"
 
 #include "analysis/statistics/statistics.h"
 #include "analysis/table/table.h"

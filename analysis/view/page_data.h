@@ -58,6 +58,16 @@ void page_index_begin(FILE *out);
 bool page_index_card(FILE *out, const char *file, const char *page, stance_message *message);
 void page_index_end(FILE *out);
 
+/* page_template.c: the page that data are put into, HTML as `make web` made it, with PAGE_DATA,
+ * where the data go that the page begins with, and then PAGE_MORE, for all others, once; "": this
+ * program was built without. */
+#define PAGE_DATA "<!--stance:data-->"
+#define PAGE_MORE "<!--stance:more-->"
+const char *page_template(void);
+/* The engine of a structure, "runtime" for any: a WebAssembly module, deflated (zlib).
+ * NULL: there is none. */
+const uint8_t *page_engine(const char *scene, size_t *size);
+
 /* page_wire.c: a scenario's text as wire text (analysis/view/wasm/wire.c), freed by the caller;
  * NULL: it is none, or no memory. */
 char *page_wire(const char *scenario);

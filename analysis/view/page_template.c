@@ -1,6 +1,6 @@
 /* page_template.c - the page without data and the engines, which `make web` makes; nothing in a
  * program that was built without them. */
-#include "page_template.h"
+#include "page_data.h"
 
 #include <string.h>
 
