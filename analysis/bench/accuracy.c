@@ -275,8 +275,9 @@ static bool compare(struct accuracy *a, const struct results *r, stance_message 
     const size_t n = accuracy_cases(a, r);
     bool good = true;
     a->labels = count != r->cases;
-    for (size_t i = 0; a->labels && i < r->cases; i++)
-        accuracy_label(a, r, i % n, r->kind[i], &a->row[i / n]);
+    for (size_t k = 0; a->labels && k < a->rows; k++)
+        for (size_t i = 0; i < n; i++)
+            accuracy_label(a, r, i, r->kind[k * n + i], &a->row[k]);
     for (size_t i = 0; good && !a->labels && i < n; i++)
         good = compare_case(a, r, list, i, message);
     free(list);
