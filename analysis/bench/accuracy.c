@@ -85,7 +85,7 @@ static bool read_answers(struct accuracy *a, const struct results *r, stance_mes
         if (!results_answer(r, wanted[w].name, &values, message))
             return false;
         for (size_t k = 0; k < a->rows; k++) {
-            double *const out = (double *)((char *)&a->row[k] + wanted[w].member);
+            double *const out = (void *)((char *)&a->row[k] + wanted[w].member);
             *out = values ? 0 : NAN;
             for (size_t i = 0; values && i < n; i++) {
                 const double x = values[k * n + i];
