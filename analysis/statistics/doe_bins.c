@@ -1,35 +1,7 @@
 /* doe_bins.c - see doe_bins.h. */
 #include "doe_bins.h"
 
-#include <math.h>
 #include <stdlib.h>
-
-struct place {
-    double value;
-    size_t point;
-};
-
-static int by_value(const void *left, const void *right)
-{
-    const struct place *a = left, *b = right;
-    return a->value != b->value ? (a->value > b->value) - (a->value < b->value)
-                                : (a->point > b->point) - (a->point < b->point);
-}
-
-static size_t count_values(const struct place *place, size_t n)
-{
-    size_t values = 1;
-    for (size_t i = 1; i < n; i++)
-        values += place[i].value != place[i - 1].value;
-    return values;
-}
-
-static void add(struct statistics_counts *to, const struct statistics_counts *counts)
-{
-    for (int kind = 0; kind < RESULTS_KIND_COUNT; kind++)
-        to->kind[kind] += counts->kind[kind];
-    to->done += counts->done;
-}
 
 static bool find_intervals(struct doe_bins *bins, const struct results *r, const uint32_t *part)
 {
@@ -50,25 +22,25 @@ bool doe_bins_make(struct doe_bins *bins, const struct results *r, int k, size_t
 {
     const struct results_varied *v = &r->vary[k];
     const size_t n = v->of.count;
-    struct place *place = malloc(n * sizeof *place);
+    struct statistics_place *place = malloc(n * sizeof *place);
     struct statistics_counts *counts = malloc(n * sizeof *counts);
     uint32_t *part = malloc(n * sizeof *part); /* the bin of each point */
 
+    bool good = place && counts && part;
+    size_t values = 1;
+
     *bins = (struct doe_bins){0};
     most = most < 2 ? 2 : most;
-    if (!place || !counts || !part) {
-        free(place);
-        free(counts);
-        free(part);
-        return statistics_no_memory(r, message);
-    }
-    statistics_count_axis(r, r->sample, counts);
-    for (size_t i = 0; i < n; i++)
-        place[i] = (struct place){v->of.value[i], i};
-    qsort(place, n, sizeof *place, by_value);
-    const size_t values = count_values(place, n);
+    if (good)
+        statistics_count_axis(r, r->sample, counts);
+    for (size_t i = 0; good && i < n; i++)
+        place[i] = (struct statistics_place){v->of.value[i], i};
+    if (good)
+        statistics_order(place, n);
+    for (size_t i = 1; good && i < n; i++)
+        values += place[i].value != place[i - 1].value;
     bins->listed = values <= (v->word ? SAMPLE_BINS : most);
-    for (size_t b = 0, begin = 0; begin < n; b++) {
+    for (size_t b = 0, begin = 0; good && begin < n; b++) {
         size_t end = (b + 1) * n / most;
         if (bins->listed) {
             for (end = begin + 1; end < n && place[end].value == place[begin].value; end++) {
@@ -81,16 +53,17 @@ bool doe_bins_make(struct doe_bins *bins, const struct results *r, int k, size_t
         bin->high = place[end - 1].value;
         bin->centre = place[begin + (end - begin) / 2].value;
         for (size_t i = begin; i < end; i++) {
-            add(&bin->counts, &counts[place[i].point]);
-            part[place[i].point] = (uint32_t)(bins->count - 1);
+            const struct statistics_counts *own = &counts[place[i].index];
+            for (int kind = 0; kind < RESULTS_KIND_COUNT; kind++)
+                bin->counts.kind[kind] += own->kind[kind];
+            bin->counts.done += own->done;
+            part[place[i].index] = (uint32_t)(bins->count - 1);
         }
         begin = end;
     }
-    const bool good = find_intervals(bins, r, part);
+    good = good && find_intervals(bins, r, part);
     free(place);
     free(counts);
     free(part);
-    if (!good)
-        statistics_no_memory(r, message);
-    return good;
+    return good || statistics_no_memory(r, message);
 }

@@ -1,8 +1,9 @@
 /* faces.c - see faces.h. */
 #include "faces.h"
 
+#include "runner/base/message.h"
+
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 static bool is_scale(const char *path)
@@ -81,9 +82,8 @@ static void end_text(const struct faces_start *start, int upper, char *text, siz
 void faces_text(const struct faces *faces, face_set set, char *text, size_t size)
 {
     static const char *const words[] = {"", "lower end", "upper end", "both ends"};
-    size_t used = 0;
     text[0] = '\0';
-    for (int k = 0; k < faces->starts && used < size; k++) {
+    for (int k = 0; k < faces->starts; k++) {
         const struct faces_start *start = &faces->start[k];
         const int ends = (int)(set >> 2 * k & 3);
         char low[96] = "", high[96] = "";
@@ -93,23 +93,20 @@ void faces_text(const struct faces *faces, face_set set, char *text, size_t size
             end_text(start, 0, low, sizeof low);
         if (ends & 2)
             end_text(start, 1, high, sizeof high);
-        used += (size_t)snprintf(text + used, size - used, "%s%s%s%s%s (%s)", used ? ", " : "",
-                                 start->of->name, low, low[0] && high[0] ? " and" : "",
-                                 high + (low[0] && high[0] ? 2 : 0), words[ends]);
+        add_text(text, size, "%s%s%s%s%s (%s)", text[0] ? ", " : "", start->of->name, low,
+                 low[0] && high[0] ? " and" : "", high + (low[0] && high[0] ? 2 : 0), words[ends]);
     }
 }
 
 void faces_marks(const struct faces *faces, face_set set, char *text, size_t size)
 {
-    size_t used = 0;
     text[0] = '\0';
-    for (int k = 0; k < faces->starts && used < size; k++) {
+    for (int k = 0; k < faces->starts; k++) {
         const int ends = (int)(set >> 2 * k & 3);
-        const char *dot = strrchr(faces->start[k].of->name, '.');
+        const char *name = faces->start[k].of->name, *dot = strrchr(name, '.');
         if (ends)
-            used += (size_t)snprintf(text + used, size - used, "%s%s%s%s", used ? ", " : "",
-                                     dot ? dot + 1 : faces->start[k].of->name, ends & 1 ? "-" : "",
-                                     ends & 2 ? "+" : "");
+            add_text(text, size, "%s%s%s%s", text[0] ? ", " : "", dot ? dot + 1 : name,
+                     ends & 1 ? "-" : "", ends & 2 ? "+" : "");
     }
 }
 

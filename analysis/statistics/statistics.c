@@ -53,31 +53,17 @@ static void finish_counts(struct statistics_counts *counts)
 void statistics_count(const struct results *r, int axis, size_t point,
                       struct statistics_counts *counts)
 {
-    uint64_t stride = axis < 0 ? 1 : statistics_stride(r, axis);
-    size_t length = axis < 0 ? 1 : r->axis[axis].count;
-
+    const uint64_t stride = statistics_stride(r, axis);
     memset(counts, 0, sizeof *counts);
     for (uint64_t i = 0; i < r->cases; i++)
-        counts->kind[r->kind[i]] += axis < 0 || i / stride % length == point;
+        counts->kind[r->kind[i]] += axis < 0 || i / stride % r->axis[axis].count == point;
     finish_counts(counts);
-}
-
-void statistics_count_axis(const struct results *r, int axis, struct statistics_counts *counts)
-{
-    uint64_t stride = statistics_stride(r, axis);
-    size_t length = r->axis[axis].count;
-
-    memset(counts, 0, length * sizeof *counts);
-    for (uint64_t i = 0; i < r->cases; i++)
-        counts[i / stride % length].kind[r->kind[i]]++;
-    for (size_t p = 0; p < length; p++)
-        finish_counts(&counts[p]);
 }
 
 void statistics_count_pair(const struct results *r, int a, int b, struct statistics_counts *counts)
 {
-    uint64_t stride_a = statistics_stride(r, a), stride_b = statistics_stride(r, b);
-    size_t rows = r->axis[a].count, columns = r->axis[b].count;
+    const uint64_t stride_a = statistics_stride(r, a), stride_b = statistics_stride(r, b);
+    const size_t rows = r->axis[a].count, columns = b < 0 ? 1 : r->axis[b].count;
 
     memset(counts, 0, rows * columns * sizeof *counts);
     for (uint64_t i = 0; i < r->cases; i++)
@@ -97,6 +83,18 @@ static int compare_doubles(const void *a, const void *b)
 void statistics_sort(double *values, size_t n)
 {
     qsort(values, n, sizeof *values, compare_doubles);
+}
+
+static int compare_places(const void *a, const void *b)
+{
+    const struct statistics_place *x = a, *y = b;
+    const int order = compare_doubles(&x->value, &y->value);
+    return order ? order : (x->index > y->index) - (x->index < y->index);
+}
+
+void statistics_order(struct statistics_place *place, size_t n)
+{
+    qsort(place, n, sizeof *place, compare_places);
 }
 
 double statistics_quantile(const double *sorted, size_t n, double p)
@@ -156,31 +154,34 @@ static bool is_monotone(const struct results_axis *axis)
     return true;
 }
 
-/* Walks from `at` in direction `step` while the cases are stabilised; the end that it comes to. */
-static double walk(const struct results *r, const struct results_axis *axis, uint64_t base,
-                   uint64_t stride, size_t at, bool upwards, bool *open, bool *unknown)
+/* An end of an extent. */
+struct end {
+    double value;
+    bool open, unknown;
+};
+
+/* Walks from `at` upwards or downwards while the cases are stabilised. */
+static struct end walk(const struct results *r, const struct results_axis *axis, uint64_t base,
+                       uint64_t stride, size_t at, bool upwards)
 {
-    size_t last = upwards ? axis->count - 1 : 0;
-    *open = *unknown = false;
+    const size_t last = upwards ? axis->count - 1 : 0;
     while (at != last) {
-        size_t next = upwards ? at + 1 : at - 1;
-        uint8_t kind = r->kind[base + next * stride];
-        if (kind != RESULTS_STABILISED) {
-            *unknown = kind == RESULTS_PENDING || kind == RESULTS_FAILED;
-            return 0.5 * (axis->value[at] + axis->value[next]);
-        }
+        const size_t next = upwards ? at + 1 : at - 1;
+        const uint8_t kind = r->kind[base + next * stride];
+        if (kind != RESULTS_STABILISED)
+            return (struct end){0.5 * (axis->value[at] + axis->value[next]), false,
+                                kind == RESULTS_PENDING || kind == RESULTS_FAILED};
         at = next;
     }
-    *open = true;
-    return axis->value[at];
+    return (struct end){axis->value[at], true, false};
 }
 
 bool statistics_extent(const struct results *r, int axis, const size_t *point,
                        struct statistics_extent *extent)
 {
     const struct results_axis *along = &r->axis[axis];
-    uint64_t base = 0, stride = statistics_stride(r, axis);
-    bool first_open, first_unknown, second_open, second_unknown;
+    const uint64_t stride = statistics_stride(r, axis);
+    uint64_t base = 0;
 
     *extent = (struct statistics_extent){.low = NAN, .high = NAN};
     if (!along->offset || along->word || along->count < 2 || !is_monotone(along))
@@ -189,7 +190,7 @@ bool statistics_extent(const struct results *r, int axis, const size_t *point,
         extent->point[a] = r->axis[a].offset ? statistics_nearest_zero(&r->axis[a]) : point[a];
         base += a == axis ? 0 : extent->point[a] * statistics_stride(r, a);
     }
-    size_t start = extent->point[axis];
+    const size_t start = extent->point[axis];
     extent->kind = (enum results_kind)r->kind[base + start * stride];
     extent->any = extent->kind == RESULTS_STABILISED;
     if (!extent->any) {
@@ -197,28 +198,13 @@ bool statistics_extent(const struct results *r, int axis, const size_t *point,
             extent->kind == RESULTS_PENDING || extent->kind == RESULTS_FAILED;
         return true;
     }
-    double first = walk(r, along, base, stride, start, false, &first_open, &first_unknown);
-    double second = walk(r, along, base, stride, start, true, &second_open, &second_unknown);
-    bool rising = first <= second;
-    extent->low = rising ? first : second;
-    extent->high = rising ? second : first;
-    extent->low_open = rising ? first_open : second_open;
-    extent->high_open = rising ? second_open : first_open;
-    extent->low_unknown = rising ? first_unknown : second_unknown;
-    extent->high_unknown = rising ? second_unknown : first_unknown;
+    const struct end down = walk(r, along, base, stride, start, false),
+                     up = walk(r, along, base, stride, start, true);
+    const bool rising = down.value <= up.value;
+    const struct end low = rising ? down : up, high = rising ? up : down;
+    extent->low = low.value, extent->low_open = low.open, extent->low_unknown = low.unknown;
+    extent->high = high.value, extent->high_open = high.open, extent->high_unknown = high.unknown;
     return true;
-}
-
-static bool is_refined(const struct results *r)
-{
-    struct scenario *s = calloc(1, sizeof *s);
-    bool refined = false;
-    if (s && !r->single && results_scenario(r, s)) {
-        refined = s->refine.given;
-        scenario_free(s);
-    }
-    free(s);
-    return refined;
 }
 
 bool statistics_inferred(const struct results *r, uint64_t *count, bool **which,
@@ -226,10 +212,15 @@ bool statistics_inferred(const struct results *r, uint64_t *count, bool **which,
 {
     double *evidence = NULL;
     bool *flag = NULL;
+    struct scenario s;
     *count = 0;
     if (which)
         *which = NULL;
-    if (!is_refined(r))
+    if (r->single || !results_scenario(r, &s))
+        return true;
+    const bool refined = s.refine.given;
+    scenario_free(&s);
+    if (!refined)
         return true;
     bool good = results_answer(r, "evidence", &evidence, message);
     if (good && which && !(flag = calloc(r->cases, sizeof *flag))) {

@@ -29,11 +29,14 @@ struct statistics_counts {
 /* Cases of one value of an axis, or (axis < 0) all cases. */
 void statistics_count(const struct results *r, int axis, size_t point,
                       struct statistics_counts *counts);
-/* The same for every value of an axis at once: counts[axis->count]. */
-void statistics_count_axis(const struct results *r, int axis, struct statistics_counts *counts);
-
-/* The same for every pair of values of two axes: counts[axis a's count][axis b's count]. */
+/* The same for every pair of values of two axes: counts[axis a's count][axis b's count]; b < 0: for
+ * every value of the first. */
 void statistics_count_pair(const struct results *r, int a, int b, struct statistics_counts *counts);
+static inline void statistics_count_axis(const struct results *r, int axis,
+                                         struct statistics_counts *counts)
+{
+    statistics_count_pair(r, axis, -1, counts);
+}
 
 /* Cases of a refined map that were not simulated: their outcome is that of their neighbours.
  * *which, where asked for, flags them; freed by the caller, NULL when there are none. */
@@ -49,6 +52,12 @@ struct statistics_numbers {
 void statistics_sort(double *values, size_t n);
 /* Sorts values[n] in place. */
 void statistics_summarise(double *values, size_t n, struct statistics_numbers *numbers);
+/* Puts numbers in order, equal ones by their index. */
+struct statistics_place {
+    double value;
+    size_t index;
+};
+void statistics_order(struct statistics_place *place, size_t n);
 /* Quantile p (0 ... 1) of sorted values[n], n > 0, linear between them. */
 double statistics_quantile(const double *sorted, size_t n, double p);
 

@@ -7,6 +7,7 @@
 
 #include <stdbool.h>
 #include <stdio.h>
+#include <string.h>
 
 /* What every report of a failure returns; inline, so that a static analyser sees that it is false.
  */
@@ -18,6 +19,9 @@ static inline bool as_false(void)
 /* Puts one line into a stance_message. Returns false. */
 #define complain(message, ...)                                                                     \
     (snprintf((message)->text, sizeof(message)->text, __VA_ARGS__), as_false())
+
+/* Adds to the end of a text of `size` bytes, as printf has it; what has no room is left out. */
+#define add_text(text, size, ...) snprintf((text) + strlen(text), (size)-strlen(text), __VA_ARGS__)
 
 static inline bool no_memory(stance_message *message)
 {
