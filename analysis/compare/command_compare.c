@@ -4,6 +4,7 @@
 
 #include "analysis/table/table.h"
 #include "runner/base/command.h"
+#include "runner/base/message.h"
 #include "runner/base/sandbox.h"
 #include "runner/store/results_rows.h"
 
@@ -21,11 +22,10 @@ static void place_text(const struct results *r, const struct compare_difference 
     char where[600] = "";
     if (difference->cases && !r->single && place->index < r->cases)
         results_case_text(r, place->index, where, sizeof where);
-    size_t used =
-        (size_t)snprintf(text, size, "%s %" PRIu64 "%s%s%s", difference->cases ? "case" : "element",
-                         place->index, where[0] ? " (" : "", where, where[0] ? ")" : "");
-    if (difference->several && used < size)
-        snprintf(text + used, size - used, ", component %zu", place->component);
+    snprintf(text, size, "%s %" PRIu64 "%s%s%s", difference->cases ? "case" : "element",
+             place->index, where[0] ? " (" : "", where, where[0] ? ")" : "");
+    if (difference->several)
+        add_text(text, size, ", component %zu", place->component);
 }
 
 /* The largest of the differences that a tolerance allows or not. */
@@ -118,16 +118,13 @@ static bool print_for_programs(const struct results r[2], const struct compariso
     for (size_t i = 0; i < comparison->count; i++)
         add_difference(&t, &r[0], &comparison->difference[i]);
     const bool same = comparison->count == 0 && !comparison->tolerances;
-    const bool good =
-        form == TABLE_AS_CSV
-            ? table_write_csv(&t, stdout)
-            : table_write_json(TABLE_OBJECT({"files", as_tree(table_texts(r[0].file, r[1].file))},
-                                            {"identical", as_truth(same)},
-                                            {"equal", as_truth(comparison->beyond == 0)},
-                                            {"differences", as_tree(table_json(&t, false))}),
-                               stdout);
-    table_free(&t);
-    return good;
+    if (form == TABLE_AS_CSV)
+        return table_print(&t, form, NULL, 0);
+    return table_write_json(TABLE_OBJECT({"files", as_tree(table_texts(r[0].file, r[1].file))},
+                                         {"identical", as_truth(same)},
+                                         {"equal", as_truth(comparison->beyond == 0)},
+                                         {"differences", as_tree(table_tree(&t, false))}),
+                            stdout);
 }
 
 static void print_text(const struct results r[2], const struct comparison *comparison)
@@ -187,34 +184,18 @@ static void add_labels(struct table *t, const struct label_comparison *c)
     }
 }
 
-static json_t *domain_json(const struct label_comparison *c)
+static bool print_labels_json(const struct results r[2], const struct label_comparison *c,
+                              struct table *became)
 {
-    return TABLE_OBJECT({"outcome", as_text(results_kind_names[c->of])},
-                        {"kept", as_whole(c->kept)}, {"lost", as_whole(c->lost)},
-                        {"won", as_whole(c->won)},
-                        {"neither", as_whole(c->compared - c->kept - c->lost - c->won)},
-                        {"lost_share", as_number(share_of(c->lost, c->kept + c->lost))},
-                        {"lost_low", as_number(c->lost_interval.low)},
-                        {"lost_high", as_number(c->lost_interval.high)},
-                        {"won_share", as_number(share_of(c->won, c->kept + c->won))});
-}
-
-static bool print_labels_csv(const struct label_comparison *c)
-{
-    struct table t = {0};
-    add_labels(&t, c);
-    const bool good = table_write_csv(&t, stdout);
-    table_free(&t);
-    return good;
-}
-
-static bool print_labels_json(const struct results r[2], const struct label_comparison *c)
-{
+    json_t *const domain =
+        TABLE_OBJECT({"outcome", as_text(results_kind_names[c->of])}, {"kept", as_whole(c->kept)},
+                     {"lost", as_whole(c->lost)}, {"won", as_whole(c->won)},
+                     {"neither", as_whole(c->compared - c->kept - c->lost - c->won)},
+                     {"lost_share", as_number(share_of(c->lost, c->kept + c->lost))},
+                     {"lost_low", as_number(c->lost_interval.low)},
+                     {"lost_high", as_number(c->lost_interval.high)},
+                     {"won_share", as_number(share_of(c->won, c->kept + c->won))});
     json_t *first = json_array();
-    struct table t = {0};
-    add_labels(&t, c);
-    json_t *became = table_json(&t, false);
-    table_free(&t);
     for (int k = 0; k < c->shown; k++) {
         const uint64_t i = c->place[k];
         json_array_append_new(
@@ -227,7 +208,7 @@ static bool print_labels_json(const struct results r[2], const struct label_comp
                      {"compared", as_whole(c->compared)}, {"equal", as_whole(c->equal)},
                      {"equal_share", as_number(equal_share(c))},
                      {"farthest", c->farthest ? as_whole(c->farthest) : as_nothing(NULL)},
-                     {"became", as_tree(became)}, {"domain", as_tree(domain_json(c))},
+                     {"became", as_tree(table_tree(became, false))}, {"domain", as_tree(domain)},
                      {"first", as_tree(first)}),
         stdout);
 }
@@ -250,7 +231,8 @@ static void print_domain(const struct results r[2], const struct label_compariso
     putchar('\n');
 }
 
-static void print_labels(const struct results r[2], const struct label_comparison *c)
+static void print_labels(const struct results r[2], const struct label_comparison *c,
+                         struct table *became)
 {
     const uint64_t unequal = c->compared - c->equal;
     char where[600];
@@ -268,13 +250,11 @@ static void print_labels(const struct results r[2], const struct label_compariso
         printf("  case %" PRIu64 "%s%s%s: %s | %s\n", c->place[k], where[0] ? " (" : "", where,
                where[0] ? ")" : "", label_at(&r[0], c->place[k]), label_at(&r[1], c->place[k]));
     }
-    struct table t = {0};
-    add_labels(&t, c);
-    if (unequal > 0 && table_rows(&t) > 0) {
+    if (unequal > 0) {
         putchar('\n');
-        table_write_text(&t, stdout, "first second cases share share_of_first", 0);
+        table_print(became, TABLE_AS_TEXT, "first second cases share share_of_first", 0);
     }
-    table_free(&t);
+    table_free(became);
     print_domain(r, c);
 }
 
@@ -322,36 +302,27 @@ static bool is_flag(const struct results *r, const char *name)
     return flag;
 }
 
-static bool written(bool good)
-{
-    if (!good)
-        fputs("stance compare: the comparison could not be written\n", stderr);
-    return good;
-}
-
-static int compare_all(const struct results r[2], const struct request *request)
+static int compare_all(const struct results r[2], const struct request *request,
+                       stance_message *message)
 {
     const struct compare_tolerances *const tolerances = &request->tolerances.all;
     struct comparison comparison;
-    stance_message message = {""};
 
     for (size_t i = 0; i < tolerances->count; i++) {
         const char *name = tolerances->tolerance[i].name;
         if (name && !compare_has(&r[0], name) && !compare_has(&r[1], name)) {
-            fprintf(stderr, "stance compare: --tolerance: neither file has a variable '%.60s'\n",
-                    name);
+            complain(message, "stance compare: --tolerance: neither file has a variable '%.60s'",
+                     name);
             return EXIT_USAGE;
         }
         if (name && is_flag(&r[0], name)) {
-            fprintf(stderr, "stance compare: --tolerance: '%.60s' is no number\n", name);
+            complain(message, "stance compare: --tolerance: '%.60s' is no number", name);
             return EXIT_USAGE;
         }
     }
     if (!compare_results(&comparison, &r[0], &r[1], tolerances->count > 0 ? tolerances : NULL,
-                         &message)) {
-        fprintf(stderr, "%s\n", message.text);
+                         message))
         return EXIT_IO;
-    }
     const int code = comparison.beyond == 0 ? EXIT_DONE : EXIT_CASES_FAILED;
     bool good = true;
     if (request->form == TABLE_AS_TEXT)
@@ -359,38 +330,30 @@ static int compare_all(const struct results r[2], const struct request *request)
     else
         good = print_for_programs(r, &comparison, request->form);
     compare_free(&comparison);
-    return written(good) ? code : EXIT_IO;
+    return good ? code : EXIT_IO;
 }
 
-static int compare_only_labels(const struct results r[2], const struct request *request)
+static int compare_only_labels(const struct results r[2], const struct request *request,
+                               stance_message *message)
 {
     const enum table_form form = request->form;
     struct label_comparison comparison;
-    stance_message message = {""};
 
     if (!compare_labels(&comparison, &r[0], &r[1],
                         request->of < RESULTS_KIND_COUNT ? request->of : statistics_judged(&r[0]),
-                        &message)) {
-        fprintf(stderr, "%s\n", message.text);
+                        message))
         return EXIT_USAGE;
-    }
+    struct table t = {0};
+    add_labels(&t, &comparison);
     bool good = true;
     if (form == TABLE_AS_TEXT)
-        print_labels(r, &comparison);
+        print_labels(r, &comparison, &t);
     else
-        good = form == TABLE_AS_CSV ? print_labels_csv(&comparison)
-                                    : print_labels_json(r, &comparison);
-    return !written(good)                            ? EXIT_IO
+        good = form == TABLE_AS_CSV ? table_print(&t, form, NULL, 0)
+                                    : print_labels_json(r, &comparison, &t);
+    return !good                                     ? EXIT_IO
            : comparison.equal == comparison.compared ? EXIT_DONE
                                                      : EXIT_CASES_FAILED;
-}
-
-/* Cases that do not verify would be left out as pending ones are. */
-static bool refuse_damage(const struct results *r)
-{
-    if (r->damage.cases > 0)
-        fprintf(stderr, "stance compare: %.200s is damaged and not compared\n", r->file);
-    return r->damage.cases > 0;
 }
 
 static int compare(void *context)
@@ -398,20 +361,22 @@ static int compare(void *context)
     const struct request *request = context;
     struct results r[2];
     stance_message message = {""};
+    int code = EXIT_IO, opened = 0;
 
-    for (int f = 0; f < 2; f++) {
-        if (!results_open(&r[f], request->files.text[f], &message)) {
-            fprintf(stderr, "%s\n", message.text);
-            if (f == 1)
-                results_close(&r[0]);
-            return EXIT_IO;
-        }
-    }
-    int code = EXIT_IO;
-    if (!refuse_damage(&r[0]) && !refuse_damage(&r[1]))
-        code = request->labels ? compare_only_labels(r, request) : compare_all(r, request);
-    results_close(&r[0]);
-    results_close(&r[1]);
+    while (opened < 2 && results_open(&r[opened], request->files.text[opened], &message))
+        opened++;
+    /* Cases that do not verify would be left out as pending ones are. */
+    for (int f = 0; opened == 2 && f < 2 && !message.text[0]; f++)
+        if (r[f].damage.cases > 0)
+            complain(&message, "stance compare: %.180s is damaged and not compared", r[f].file);
+    if (!message.text[0])
+        code = (request->labels ? compare_only_labels : compare_all)(r, request, &message);
+    if (code == EXIT_IO && !message.text[0])
+        complain(&message, "stance compare: the comparison could not be written");
+    if (message.text[0])
+        fprintf(stderr, "%s\n", message.text);
+    while (opened > 0)
+        results_close(&r[--opened]);
     return code;
 }
 

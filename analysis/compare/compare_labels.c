@@ -20,26 +20,16 @@ struct lattice {
 
 static bool find_refined(const struct results *r, bool *along)
 {
-    struct scenario *s = calloc(1, sizeof *s);
+    struct scenario s;
     bool any = false;
-    if (s && results_scenario(r, s)) {
-        for (int a = 0; a < s->axes && a < r->axes; a++) {
-            along[a] = along[a] || s->axis[a].refined;
-            any = any || along[a];
-        }
-        scenario_free(s);
+    if (!results_scenario(r, &s))
+        return false;
+    for (int a = 0; a < s.axes && a < r->axes; a++) {
+        along[a] = along[a] || s.axis[a].refined;
+        any = any || along[a];
     }
-    free(s);
+    scenario_free(&s);
     return any;
-}
-
-static struct lattice find_lattice(const struct results *first, const struct results *second)
-{
-    struct lattice lattice = {.r = first};
-    const bool one = find_refined(first, lattice.along), two = find_refined(second, lattice.along);
-    for (int a = 0; !one && !two && a < first->axes; a++)
-        lattice.along[a] = first->axis[a].word == NULL && a != first->sample;
-    return lattice;
 }
 
 /* Goes to the next neighbour of the case at `point`: step[] counts through -1, 0, 1 along each
@@ -93,29 +83,7 @@ static uint32_t told(const struct lattice *lattice, const uint32_t *distance, ui
     return least;
 }
 
-/* distance[cases], UINT32_MAX where no other label can be reached. */
-static void find_distances(const struct lattice *lattice, uint32_t *distance)
-{
-    const uint64_t n = lattice->r->cases;
-    memset(distance, 0xff, n * sizeof *distance);
-    for (uint64_t i = 0; i < n; i++)
-        distance[i] = told(lattice, distance, i, -1);
-    for (uint64_t i = n; i-- > 0;)
-        distance[i] = told(lattice, distance, i, 1);
-}
-
 /* ---- comparing ---------------------------------------------------------------------------- */
-
-static bool same_axes(const struct results *first, const struct results *second)
-{
-    bool same = first->axes == second->axes && first->cases == second->cases &&
-                first->single == second->single;
-    for (int a = 0; same && a < first->axes; a++) {
-        same = first->axis[a].count == second->axis[a].count &&
-               strcmp(first->axis[a].name, second->axis[a].name) == 0;
-    }
-    return same;
-}
 
 /* Starts at other places are other cases. */
 static bool same_values(const struct results_axis *first, const struct results_axis *second)
@@ -124,16 +92,6 @@ static bool same_values(const struct results_axis *first, const struct results_a
     for (size_t i = 0; same && i < first->count && scenario_is_start(first->name); i++)
         same = fabs(first->value[i] - second->value[i]) <=
                1e-9 * fmax(fabs(first->value[i]), fabs(second->value[i]));
-    return same;
-}
-
-static bool same_starts(const struct results *first, const struct results *second)
-{
-    bool same = first->varied == second->varied;
-    for (int a = 0; same && !first->single && a < first->axes; a++)
-        same = first->axis[a].word || same_values(&first->axis[a], &second->axis[a]);
-    for (int k = 0; same && k < first->varied; k++)
-        same = first->vary[k].word || same_values(&first->vary[k].of, &second->vary[k].of);
     return same;
 }
 
@@ -165,19 +123,36 @@ bool compare_labels(struct label_comparison *comparison, const struct results *f
                     const struct results *second, enum results_kind of, stance_message *message)
 {
     *comparison = (struct label_comparison){.of = of};
-    if (!same_axes(first, second))
+    bool axes = first->axes == second->axes && first->cases == second->cases &&
+                first->single == second->single;
+    bool starts = first->varied == second->varied;
+    for (int a = 0; axes && a < first->axes; a++)
+        axes = first->axis[a].count == second->axis[a].count &&
+               strcmp(first->axis[a].name, second->axis[a].name) == 0;
+    for (int a = 0; axes && starts && !first->single && a < first->axes; a++)
+        starts = first->axis[a].word || same_values(&first->axis[a], &second->axis[a]);
+    for (int k = 0; starts && k < first->varied; k++)
+        starts = first->vary[k].word || same_values(&first->vary[k].of, &second->vary[k].of);
+    if (!axes)
         return complain(message, "stance compare: %.90s and %.90s are not over the same axes",
                         first->file, second->file);
-    if (!same_starts(first, second))
+    if (!starts)
         return complain(message, "stance compare: the starts of %.80s and %.80s are not the same",
                         first->file, second->file);
-    if (!find_interval(comparison, first, second))
-        return complain(message, "stance compare: not enough memory");
     uint32_t *distance = malloc(first->cases * sizeof *distance);
-    if (!distance)
+    if (!distance || !find_interval(comparison, first, second)) {
+        free(distance);
         return complain(message, "stance compare: not enough memory");
-    const struct lattice lattice = find_lattice(first, second);
-    find_distances(&lattice, distance);
+    }
+    struct lattice lattice = {.r = first};
+    const bool one = find_refined(first, lattice.along), two = find_refined(second, lattice.along);
+    for (int a = 0; !one && !two && a < first->axes; a++)
+        lattice.along[a] = first->axis[a].word == NULL && a != first->sample;
+    memset(distance, 0xff, first->cases * sizeof *distance); /* no other label can be reached */
+    for (uint64_t i = 0; i < first->cases; i++)
+        distance[i] = told(&lattice, distance, i, -1);
+    for (uint64_t i = first->cases; i-- > 0;)
+        distance[i] = told(&lattice, distance, i, 1);
     for (uint64_t i = 0; i < first->cases; i++) {
         if (first->kind[i] == RESULTS_PENDING || second->kind[i] == RESULTS_PENDING)
             continue;

@@ -157,28 +157,14 @@ static bool collect_causes(struct summary *summary, const struct results *r,
     return good;
 }
 
-static bool collect_pair(struct summary *summary, const struct results *r, stance_message *message)
-{
-    size_t pairs = r->axis[summary->pair[0]].count * r->axis[summary->pair[1]].count;
-    summary->pair_counts = malloc(pairs * sizeof *summary->pair_counts);
-    if (!summary->pair_counts)
-        return statistics_no_memory(r, message);
-    statistics_count_pair(r, summary->pair[0], summary->pair[1], summary->pair_counts);
-    return true;
-}
-
 enum { BINS = 4 };
 
 /* By the values of what a sample varies. */
 static bool collect_bins(struct summary *summary, const struct results *r, stance_message *message)
 {
-    bool good = true;
-    if (r->sample < 0)
-        return true;
-    summary->bins = calloc((size_t)r->varied, sizeof *summary->bins);
-    if (!summary->bins)
-        return statistics_no_memory(r, message);
-    for (int k = 0; good && k < r->varied; k++)
+    summary->bins = r->sample < 0 ? NULL : calloc((size_t)r->varied, sizeof *summary->bins);
+    bool good = summary->bins || r->sample < 0 || statistics_no_memory(r, message);
+    for (int k = 0; good && summary->bins && k < r->varied; k++)
         good = doe_bins_make(&summary->bins[k], r, k, BINS, message);
     return good;
 }
@@ -242,8 +228,14 @@ static bool collect_axes(struct summary *summary, const struct results *r, stanc
             summary->parameters++;
         }
     }
-    if (summary->parameters == 2 && !collect_pair(summary, r, message))
-        return false;
+    if (summary->parameters == 2) {
+        const int a = summary->pair[0], b = summary->pair[1];
+        summary->pair_counts =
+            malloc(r->axis[a].count * r->axis[b].count * sizeof *summary->pair_counts);
+        if (!summary->pair_counts)
+            return statistics_no_memory(r, message);
+        statistics_count_pair(r, a, b, summary->pair_counts);
+    }
     for (int a = 0; !r->single && a < r->axes; a++) {
         const struct results_axis *axis = &r->axis[a];
         if (a == r->sample)
@@ -284,9 +276,7 @@ static bool collect_intervals(struct summary *summary, const struct results *r,
         if (kind != RESULTS_PENDING && kind != RESULTS_FAILED && r->sample >= 0)
             good = intervals_find(r, (enum results_kind)kind, -1, NULL, 1, &summary->of_kind[kind]);
     }
-    if (!good)
-        statistics_no_memory(r, message);
-    return good;
+    return good || statistics_no_memory(r, message);
 }
 
 /* ---- all of it ---------------------------------------------------------------------------- */

@@ -111,12 +111,6 @@ static double completed(const struct results *r, const struct scenario *s,
                : number;
 }
 
-/* What gains are designed from or given as says `stance design`. */
-static bool is_design(const struct scenario_field *field)
-{
-    return field->use == USE_PLACE || field->use == USE_LQR || field->use == USE_GAINS;
-}
-
 void summary_collect_fields(struct summary *summary, const struct results *r,
                             const struct scenario *s)
 {
@@ -127,8 +121,10 @@ void summary_collect_fields(struct summary *summary, const struct results *r,
         scenario_case_values(s, r->index, &v);
     for (size_t k = 0; schema && k < schema->count; k++) {
         const struct scenario_field *const field = &schema->field[k];
-        if (field->offset == NO_OFFSET || is_design(field) ||
-            !schema_allows(field->use, field->law, &v) || !is_controlled(r, s, field, &v))
+        /* what gains are designed from or given as says `stance design` */
+        if (field->offset == NO_OFFSET || field->use == USE_PLACE || field->use == USE_LQR ||
+            field->use == USE_GAINS || !schema_allows(field->use, field->law, &v) ||
+            !is_controlled(r, s, field, &v))
             continue;
         for (size_t i = 0; i < (strchr(field->path, '[') ? schema_items(field) : 1); i++) {
             char path[128];

@@ -8,12 +8,6 @@ static struct table_value word(const char *text)
     return as_text(text && text[0] ? text : NULL);
 }
 
-static json_t *released(struct table *t, json_t *json)
-{
-    table_free(t);
-    return json;
-}
-
 static json_t *axes(const struct results *r)
 {
     json_t *list = json_array();
@@ -37,50 +31,6 @@ static json_t *fixed(const struct summary *summary)
                   isnan(field->number) ? as_text(field->text) : as_number(field->number));
     }
     return object;
-}
-
-static json_t *cases(const struct summary *summary, const struct results *r)
-{
-    const struct statistics_counts *counts = &summary->counts;
-    return TABLE_OBJECT({"total", as_whole(r->cases)}, {"done", as_whole(counts->done)},
-                        {"failed", as_whole(counts->kind[RESULTS_FAILED])},
-                        {"pending", as_whole(counts->kind[RESULTS_PENDING])},
-                        {"inferred", as_whole(summary->inferred)},
-                        {"damaged", as_whole(r->damage.cases)});
-}
-
-static json_t *scenarios(const struct ancestry *ancestry)
-{
-    json_t *list = json_array();
-    for (size_t k = 0; k < ancestry->scenarios; k++)
-        json_array_append_new(list, TABLE_OBJECT({"date", as_text(ancestry->date[k])},
-                                                 {"done", as_whole(ancestry->done[k])}));
-    return list;
-}
-
-static json_t *failures(const struct summary *summary)
-{
-    json_t *object = json_object();
-    for (int f = 0; f < SUMMARY_FAILURES; f++)
-        if (summary->failures[f] > 0)
-            table_put(object, summary_failure_name(f), as_whole(summary->failures[f]));
-    return object;
-}
-
-static json_t *fall_causes(const struct summary *summary)
-{
-    json_t *object = json_object();
-    for (int k = 1; k < STANCE_MAX_WORDS; k++)
-        if (summary->fallen_by[k] > 0)
-            table_put(object, summary->cause[k], as_whole(summary->fallen_by[k]));
-    return object;
-}
-
-static json_t *outcomes(const struct summary *summary)
-{
-    struct table t = {0};
-    summary_outcomes(&t, summary);
-    return released(&t, table_json(&t, true));
 }
 
 static json_t *extents(const struct summary *summary, const struct results *r)
@@ -119,7 +69,7 @@ static json_t *parameters(const struct summary *summary, const struct results *r
         summary_values(&t, summary, r, a, TABLE_AS_JSON);
         json_t *object = TABLE_OBJECT({"path", as_text(axis->name)}, {"unit", word(axis->unit)},
                                       {"share_of", as_text(results_kind_names[summary->judged])},
-                                      {"values", as_tree(released(&t, table_json(&t, false)))});
+                                      {"values", as_tree(table_tree(&t, false))});
         if (axis->count > 1) {
             json_object_set_new(object, "steepest",
                                 TABLE_OBJECT({"from", as_place(axis, summary->steepest[a])},
@@ -169,10 +119,10 @@ static json_t *sample(const struct summary *summary, const struct results *r)
         const struct results_varied *v = &r->vary[k];
         struct table t = {0};
         summary_parts(&t, summary, r, k);
-        json_array_append_new(
-            list, TABLE_OBJECT({"path", as_text(v->of.name)}, {"unit", word(v->of.unit)},
-                               {"factor", as_whole((uint64_t)v->factor)},
-                               {"parts", as_tree(released(&t, table_json(&t, false)))}));
+        json_array_append_new(list, TABLE_OBJECT({"path", as_text(v->of.name)},
+                                                 {"unit", word(v->of.unit)},
+                                                 {"factor", as_whole((uint64_t)v->factor)},
+                                                 {"parts", as_tree(table_tree(&t, false))}));
     }
     return TABLE_OBJECT(
         {"method", as_text(r->method)}, {"points", as_whole(r->axis[r->sample].count)},
@@ -193,13 +143,6 @@ static json_t *changes(const struct results *r)
         }
     }
     return list;
-}
-
-static json_t *numbers(const struct summary *summary)
-{
-    struct table t = {0};
-    summary_answers(&t, summary, TABLE_AS_JSON);
-    return released(&t, table_json(&t, true));
 }
 
 static json_t *cost(const struct summary *summary)
@@ -250,19 +193,40 @@ static json_t *single_case(const struct results *r)
 bool summary_print_json(const struct summary *summary, const struct results *r)
 {
     const bool known = summary_has_outcomes(summary);
+    const struct statistics_counts *counts = &summary->counts;
+    struct table outcomes = {0}, numbers = {0};
+    if (known)
+        summary_outcomes(&outcomes, summary);
+    summary_answers(&numbers, summary, TABLE_AS_JSON);
+    json_t *const cases = TABLE_OBJECT(
+        {"total", as_whole(r->cases)}, {"done", as_whole(counts->done)},
+        {"failed", as_whole(counts->kind[RESULTS_FAILED])},
+        {"pending", as_whole(counts->kind[RESULTS_PENDING])},
+        {"inferred", as_whole(summary->inferred)}, {"damaged", as_whole(r->damage.cases)});
     json_t *root =
         TABLE_OBJECT({"file", as_text(r->file)}, {"title", as_text(r->title)},
                      {"version", as_text(r->version)}, {"revision", as_text(r->revision)},
                      {"date", as_text(r->date)}, {"ranks", as_whole((uint64_t)r->ranks)});
-    if (summary->ancestry.scenarios > 1)
-        json_object_set_new(root, "scenarios", scenarios(&summary->ancestry));
+    const struct ancestry *const ancestry = &summary->ancestry;
+    json_t *scenarios = json_array(), *failures = json_object(), *causes = json_object();
+    for (size_t k = 0; k < ancestry->scenarios; k++)
+        json_array_append_new(scenarios, TABLE_OBJECT({"date", as_text(ancestry->date[k])},
+                                                      {"done", as_whole(ancestry->done[k])}));
+    for (int f = 0; f < SUMMARY_FAILURES; f++)
+        if (summary->failures[f] > 0)
+            table_put(failures, summary_failure_name(f), as_whole(summary->failures[f]));
+    for (int k = 1; k < STANCE_MAX_WORDS; k++)
+        if (summary->fallen_by[k] > 0)
+            table_put(causes, summary->cause[k], as_whole(summary->fallen_by[k]));
+    if (ancestry->scenarios > 1)
+        json_object_set(root, "scenarios", scenarios);
+    json_decref(scenarios);
     json_object_update_new(
         root, TABLE_OBJECT({"axes", as_tree(axes(r))}, {"fixed", as_tree(fixed(summary))},
-                           {"cases", as_tree(cases(summary, r))},
-                           {"failures", as_tree(failures(summary))},
-                           {"outcomes", as_tree(known ? outcomes(summary) : NULL)},
+                           {"cases", as_tree(cases)}, {"failures", as_tree(failures)},
+                           {"outcomes", as_tree(known ? table_tree(&outcomes, true) : NULL)},
                            {"cut", as_tree(faces_json(&summary->faces, summary->cut))},
-                           {"fall_causes", as_tree(fall_causes(summary))}));
+                           {"fall_causes", as_tree(causes)}));
     if (r->single) {
         json_object_set_new(root, "case", single_case(r));
     } else {
@@ -278,7 +242,7 @@ bool summary_print_json(const struct summary *summary, const struct results *r)
     }
     json_t *const through = TABLE_OBJECT({"cases", as_whole(summary->through)},
                                          {"judged", as_whole(summary->through_judged)});
-    json_object_update_new(root, TABLE_OBJECT({"numbers", as_tree(numbers(summary))},
+    json_object_update_new(root, TABLE_OBJECT({"numbers", as_tree(table_tree(&numbers, true))},
                                               {"through_ground", as_tree(through)},
                                               {"cost", as_tree(cost(summary))}));
     return table_write_json(root, stdout);

@@ -55,35 +55,27 @@ static const char *end_mark(bool open, bool unknown)
     return open ? "*" : unknown ? "?" : "";
 }
 
-/* "-0.09 ... 0.02*", with the marks that summary_print_text explains; "-" for none, "?" for
- * unknown. */
-static void extent_text(const struct results *r, int offset, int axis, size_t i, char *text,
-                        size_t size)
-{
-    size_t point[SCENARIO_MAX_AXES] = {0};
-    struct statistics_extent extent;
-    point[axis] = i;
-    if (!statistics_extent(r, offset, point, &extent) || !extent.any) {
-        snprintf(text, size, extent.low_unknown ? "?" : "-");
-        return;
-    }
-    snprintf(text, size, "%.4g%s ... %.4g%s", extent.low,
-             end_mark(extent.low_open, extent.low_unknown), extent.high,
-             end_mark(extent.high_open, extent.high_unknown));
-}
-
-/* For people: along two axes of offsets at most. */
+/* For people: along two axes of offsets at most. "-0.09 ... 0.02*", with the marks that
+ * summary_print_text explains; "-" for none, "?" for unknown. */
 static void add_extents(struct table *t, const struct results *r, int axis, size_t i)
 {
     char text[128];
     for (int a = 0, shown = 0; a < r->axes && shown < 2; a++) {
-        if (r->axis[a].offset && r->axis[a].count > 1) {
-            extent_text(r, a, axis, i, text, sizeof text);
-            TABLE_FACTS(t, {{r->axis[a].name, r->axis[a].name, .hidden = TABLE_VIEW_ONLY,
-                             .before = "  ", .width = 24, .left = true, .group = "extent"},
-                            as_text(text)});
-            shown++;
-        }
+        size_t point[SCENARIO_MAX_AXES] = {0};
+        struct statistics_extent extent;
+        if (!r->axis[a].offset || r->axis[a].count < 2)
+            continue;
+        point[axis] = i;
+        if (statistics_extent(r, a, point, &extent) && extent.any)
+            snprintf(text, sizeof text, "%.4g%s ... %.4g%s", extent.low,
+                     end_mark(extent.low_open, extent.low_unknown), extent.high,
+                     end_mark(extent.high_open, extent.high_unknown));
+        else
+            snprintf(text, sizeof text, extent.low_unknown ? "?" : "-");
+        TABLE_FACTS(t, {{r->axis[a].name, r->axis[a].name, .hidden = TABLE_VIEW_ONLY,
+                         .before = "  ", .width = 24, .left = true, .group = "extent"},
+                        as_text(text)});
+        shown++;
     }
 }
 
@@ -134,25 +126,10 @@ bool summary_print_csv(const struct summary *summary, const struct results *r)
     for (int a = 0; a < r->axes; a++)
         if (summary->by_value[a])
             summary_values(&t, summary, r, a, TABLE_AS_CSV);
-    const bool good = table_write_csv(&t, stdout);
-    table_free(&t);
-    return good;
+    return table_print(&t, TABLE_AS_CSV, NULL, 0);
 }
 
 /* ---- samples ------------------------------------------------------------------------------ */
-
-/* "0.1 ... 0.3", a value or a word. */
-static void part_text(const struct results_varied *v, const struct doe_bins *bins,
-                      const struct doe_bin *bin, char *text, size_t size)
-{
-    double value = bin->low;
-    struct results_varied one = *v;
-    one.of.value = &value;
-    if (bins->listed)
-        results_varied_text(&one, 0, false, text, size);
-    else
-        snprintf(text, size, "%.4g ... %.4g", bin->low, bin->high);
-}
 
 void summary_parts(struct table *t, const struct summary *summary, const struct results *r, int k)
 {
@@ -160,8 +137,14 @@ void summary_parts(struct table *t, const struct summary *summary, const struct 
     for (size_t b = 0; b < summary->bins[k].count; b++) {
         const struct doe_bin *bin = &summary->bins[k].bin[b];
         const struct interval *interval = &bin->of_kind[summary->judged];
-        char text[160];
-        part_text(v, &summary->bins[k], bin, text, sizeof text);
+        double value = bin->low;
+        struct results_varied one = *v;
+        char text[160]; /* "0.1 ... 0.3", a value or a word */
+        one.of.value = &value;
+        if (summary->bins[k].listed)
+            results_varied_text(&one, 0, false, text, sizeof text);
+        else
+            snprintf(text, sizeof text, "%.4g ... %.4g", bin->low, bin->high);
         TABLE_FACTS(
             t,
             {{"path", "", .hidden = TABLE_VIEW_ONLY, .width = 32, .left = true},
@@ -182,14 +165,6 @@ void summary_parts(struct table *t, const struct summary *summary, const struct 
 
 /* ---- numbers ------------------------------------------------------------------------------ */
 
-/* Nothing is actuated, there is no target, no contact is left out or none of them went there. */
-static bool is_idle(const struct summary *summary, int k)
-{
-    return k == SUMMARY_through_ground ? summary->through == 0
-                                       : (k == SUMMARY_peak_torque || k == SUMMARY_excursion) &&
-                                             summary->numbers[k].numbers.high == 0;
-}
-
 void summary_answers(struct table *t, const struct summary *summary, enum table_form form)
 {
     const bool text = form == TABLE_AS_TEXT;
@@ -197,7 +172,12 @@ void summary_answers(struct table *t, const struct summary *summary, enum table_
         const struct summary_numbers *row = &summary->numbers[k];
         const struct statistics_numbers *n = &row->numbers;
         char label[64];
-        if (!row->stored || (text && n->n == 0) || (text && is_idle(summary, k)))
+        /* Nothing is actuated, there is no target, no contact is left out or none went there. */
+        const bool idle =
+            k == SUMMARY_through_ground
+                ? summary->through == 0
+                : (k == SUMMARY_peak_torque || k == SUMMARY_excursion) && n->high == 0;
+        if (!row->stored || (text && (n->n == 0 || idle)))
             continue;
         snprintf(label, sizeof label, "  %s%s%s%s", row->name, row->unit[0] ? " (" : "", row->unit,
                  row->unit[0] ? ")" : "");

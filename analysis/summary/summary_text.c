@@ -115,19 +115,6 @@ static void print_cut(const struct summary *summary)
                summary->counts.done < summary->faces.r->cases ? "not known to be cut" : "not cut");
 }
 
-/* Where there is no boundary to be seen. */
-static void print_no_boundary(const struct summary *summary)
-{
-    const struct statistics_counts *counts = &summary->counts;
-    const uint64_t held = counts->kind[RESULTS_STABILISED], fell = counts->kind[RESULTS_FELL];
-    if (summary->faces.starts == 0 || counts->done < 2)
-        return;
-    if (held == counts->done)
-        puts("  the ranges end within the domain: stance ranges SCENARIO finds how far it goes");
-    else if (fell == counts->done)
-        puts("  the ranges do not meet a domain: stance ranges SCENARIO finds where one is");
-}
-
 static bool print_outcomes(const struct summary *summary, const struct results *r)
 {
     const struct statistics_counts *counts = &summary->counts;
@@ -137,8 +124,7 @@ static bool print_outcomes(const struct summary *summary, const struct results *
            counts->done == 1 ? "" : "s", r->sample < 0 ? "" : ", with 95 % intervals");
     if (summary_has_outcomes(summary)) {
         summary_outcomes(&t, summary);
-        good = table_write_text(&t, stdout, "outcome count share low high", 0);
-        table_free(&t);
+        good = table_print(&t, TABLE_AS_TEXT, "outcome count share low high", 0);
     }
     if (!summary_has_outcomes(summary)) {
         puts("  not stored in this file");
@@ -151,7 +137,12 @@ static bool print_outcomes(const struct summary *summary, const struct results *
     }
     if (summary_has_outcomes(summary))
         print_cut(summary);
-    print_no_boundary(summary);
+    /* Where there is no boundary to be seen. */
+    const bool starts = summary->faces.starts > 0 && counts->done > 1;
+    if (starts && counts->kind[RESULTS_STABILISED] == counts->done)
+        puts("  the ranges end within the domain: stance ranges SCENARIO finds how far it goes");
+    else if (starts && counts->kind[RESULTS_FELL] == counts->done)
+        puts("  the ranges do not meet a domain: stance ranges SCENARIO finds where one is");
     for (int k = 1; k < STANCE_MAX_WORDS; k++) {
         if (summary->fallen_by[k] > 0)
             printf("  fell by %16" PRIu64 "  %7.3f %%   %s\n", summary->fallen_by[k],
@@ -185,14 +176,6 @@ static const char *end_note(bool open, bool unknown)
     return open ? " (end of the axis)" : unknown ? " (next case pending or failed)" : "";
 }
 
-/* What became of the case from which an extent would be measured. */
-static const char *start_text(enum results_kind kind)
-{
-    return kind == RESULTS_PENDING  ? "is not computed yet"
-           : kind == RESULTS_FAILED ? "failed"
-                                    : "is not stabilised";
-}
-
 static void print_extents(const struct summary *summary, const struct results *r)
 {
     bool first = true;
@@ -214,7 +197,10 @@ static void print_extents(const struct summary *summary, const struct results *r
         } else {
             results_value_text(axis, extent->point[a], true, at, sizeof at);
             printf("  %s: the case nearest to the equilibrium (%s) %s",
-                   extent->low_unknown ? "unknown" : "none", at, start_text(extent->kind));
+                   extent->low_unknown ? "unknown" : "none", at,
+                   extent->kind == RESULTS_PENDING  ? "is not computed yet"
+                   : extent->kind == RESULTS_FAILED ? "failed"
+                                                    : "is not stabilised");
         }
         bool also = false;
         for (int b = 0; b < r->axes; b++) {
@@ -230,45 +216,29 @@ static void print_extents(const struct summary *summary, const struct results *r
 
 /* ---- parameters --------------------------------------------------------------------- */
 
-/* The share is the same at every value. */
-static bool is_even(const struct summary *summary, const struct results *r, int axis)
-{
-    const struct statistics_counts *counts = summary->by_value[axis];
-    for (size_t i = 0; i < r->axis[axis].count; i++) {
-        /* false for NAN, too */
-        if (!(summary_share(summary, &counts[i]) == summary_share(summary, &counts[0])))
-            return false;
-    }
-    return true;
-}
-
-/* "name (unit): long name" */
-static void print_against(const struct summary *summary, const struct results_axis *along)
-{
-    printf("\n%s against %s%s%s%s%s%s\n", summary_judged_word(summary), along->name,
-           along->unit[0] ? " (" : "", along->unit, along->unit[0] ? ")" : "",
-           along->text[0] ? ": " : "", along->text);
-}
-
 static bool print_parameter(const struct summary *summary, const struct results *r, int axis)
 {
     const struct results_axis *along = &r->axis[axis];
     const struct statistics_counts *counts = summary->by_value[axis];
     char from[128], to[128];
     struct table t = {0};
-    bool extents = false;
+    bool extents = false, even = along->count > 1; /* the share is the same at every value */
 
+    for (size_t i = 0; i < along->count; i++) /* not where there is none */
+        even = even && summary_share(summary, &counts[i]) == summary_share(summary, &counts[0]);
     for (int a = 0; summary->parameters == 1 && r->sample < 0 && a < r->axes; a++)
         extents = extents || (r->axis[a].offset && r->axis[a].count > 1);
-    if (!extents && along->count > 1 && is_even(summary, r, axis)) {
+    if (!extents && even) {
         printf("\n%s against %s: %.3f %% at each of its %zu values\n", summary_judged_word(summary),
                along->name, 100 * summary_share(summary, &counts[0]), along->count);
         return true;
     }
-    print_against(summary, along);
+    printf("\n%s against %s%s%s%s%s%s\n", summary_judged_word(summary), along->name,
+           along->unit[0] ? " (" : "", along->unit, along->unit[0] ? ")" : "",
+           along->text[0] ? ": " : "", along->text);
     summary_values(&t, summary, r, axis, TABLE_AS_TEXT);
-    const bool good = table_write_text(&t, stdout, "value done share low high extent/", TABLE_ROWS);
-    table_free(&t);
+    const bool good =
+        table_print(&t, TABLE_AS_TEXT, "value done share low high extent/", TABLE_ROWS);
     if (extents) {
         puts("  (the last columns: extent of the stabilised set through the equilibrium; * where "
              "it reaches\n  the end of the axis, ? where the next case is pending or failed)");
@@ -308,9 +278,7 @@ static bool print_pairs(const struct summary *summary, const struct results *r)
         }
         table_end_row(&t);
     }
-    const bool good = table_write_text(&t, stdout, "seen/", TABLE_ROWS);
-    table_free(&t);
-    return good;
+    return table_print(&t, TABLE_AS_TEXT, "seen/", TABLE_ROWS);
 }
 
 /* Where the outcome changes along the only axis. */
@@ -335,28 +303,6 @@ static void print_changes(const struct results *r)
 }
 
 /* ---- numbers ------------------------------------------------------------------------ */
-
-static bool print_numbers(const struct summary *summary)
-{
-    struct table t = {0};
-    summary_answers(&t, summary, TABLE_AS_TEXT);
-    if (table_rows(&t) > 0)
-        putchar('\n');
-    const bool good =
-        table_write_text(&t, stdout, "label smallest median q90 q99 largest count of", 0);
-    table_free(&t);
-    return good;
-}
-
-/* What no picture of outcomes shows. */
-static void print_through(const struct summary *summary)
-{
-    if (summary->through > 0)
-        printf("\nThrough the ground, with a contact that ground.contacts leaves out: %" PRIu64
-               " case%s, of which %" PRIu64 " %s\n",
-               summary->through, summary->through == 1 ? "" : "s", summary->through_judged,
-               results_kind_names[summary->judged]);
-}
 
 /* The largest of all cases, in a line. */
 static void print_residuals(const struct summary *summary)
@@ -408,26 +354,10 @@ static void print_cost(const struct summary *summary)
 
 /* ---- a single case ------------------------------------------------------------------ */
 
-static const struct {
-    const char *name, *text;
-} case_times[] = {
-    {"end_time", "ended at"}, {"settle_time", "settled at"}, {"fall_time", "fell at"}};
-enum { CASE_TIMES = sizeof case_times / sizeof case_times[0] };
-
-static void print_touching(const struct summary *summary)
-{
-    const char *between = "  touching     ";
-    for (int c = 0; c < STANCE_MAX_CONTACTS; c++)
-        if (summary->touching >> c & 1) {
-            printf("%s%s", between, summary->contact[c]);
-            between = ", ";
-        }
-    if (summary->touching)
-        putchar('\n');
-}
-
 static void print_case(const struct summary *summary, const struct results *r)
 {
+    static const char *const times[][2] = {
+        {"end_time", "ended at"}, {"settle_time", "settled at"}, {"fall_time", "fell at"}};
     char name[SCENARIO_MAX_STATES][SCENARIO_NAME];
     double state[SCENARIO_MAX_STATES], time;
     int kind = r->kind[0];
@@ -439,13 +369,20 @@ static void print_case(const struct summary *summary, const struct results *r)
         printf("  %s: %s\n", summary_failure_name(failure), summary_failure_text(failure));
         if (results_numbers(r, "end_time", &time, 1) == 1 && !isnan(time))
             printf("  in the step from %.6g s\n", time);
-        print_touching(summary);
+        const char *between = "  touching     ";
+        for (int c = 0; c < STANCE_MAX_CONTACTS; c++)
+            if (summary->touching >> c & 1) {
+                printf("%s%s", between, summary->contact[c]);
+                between = ", ";
+            }
+        if (summary->touching)
+            putchar('\n');
     }
     if (kind == RESULTS_PENDING || kind == RESULTS_FAILED)
         return;
-    for (int k = 0; k < CASE_TIMES; k++)
-        if (results_numbers(r, case_times[k].name, &time, 1) == 1 && !isnan(time))
-            printf("  %-12s %.6g s\n", case_times[k].text, time);
+    for (size_t k = 0; k < sizeof times / sizeof times[0]; k++)
+        if (results_numbers(r, times[k][0], &time, 1) == 1 && !isnan(time))
+            printf("  %-12s %.6g s\n", times[k][1], time);
     for (int k = 1; k < STANCE_MAX_WORDS; k++)
         if (summary->fallen_by[k] > 0)
             printf("  %-12s %s\n", "fell by", summary->cause[k]);
@@ -466,17 +403,6 @@ static void print_case(const struct summary *summary, const struct results *r)
             results_numbers(r, row->name, &time, 1) == 1 && !isnan(time))
             printf("  %-18s %.6g%s%s\n", row->name, time, row->unit[0] ? " " : "", row->unit);
     }
-}
-
-/* Of a run that went on with another scenario. */
-static void print_ancestry(const struct ancestry *ancestry)
-{
-    if (ancestry->scenarios == 1)
-        return;
-    printf("\nMade from %zu scenarios; what is said below of their keys is of the last one\n",
-           ancestry->scenarios);
-    for (size_t k = 0; k < ancestry->scenarios; k++)
-        printf("  since %-22s%12" PRIu64 " cases done\n", ancestry->date[k], ancestry->done[k]);
 }
 
 /* ---- samples ------------------------------------------------------------------------ */
@@ -526,8 +452,7 @@ static bool print_sample(const struct summary *summary, const struct results *r)
            summary_judged_word(summary));
     for (int k = 0; k < r->varied; k++)
         summary_parts(&t, summary, r, k);
-    const bool good = table_write_text(&t, stdout, "path values done share low high", 0);
-    table_free(&t);
+    const bool good = table_print(&t, TABLE_AS_TEXT, "path values done share low high", 0);
     if (r->axes > 1)
         puts("  (intervals: cases of a point are not independent; what scatters are points)");
     return good;
@@ -551,14 +476,24 @@ static bool print_sweep(const struct summary *summary, const struct results *r)
         good = print_sample(summary, r) && good;
     if (r->axes == 1 && r->sample < 0)
         print_changes(r);
-    return print_numbers(summary) && good;
+    struct table t = {0};
+    summary_answers(&t, summary, TABLE_AS_TEXT);
+    if (table_rows(&t) > 0)
+        putchar('\n');
+    return table_print(&t, TABLE_AS_TEXT, "label smallest median q90 q99 largest count of", 0) &&
+           good;
 }
 
 bool summary_print_text(const struct summary *summary, const struct results *r)
 {
     bool good = true;
+    const struct ancestry *const ancestry = &summary->ancestry;
     print_head(r);
-    print_ancestry(&summary->ancestry);
+    if (ancestry->scenarios > 1)
+        printf("\nMade from %zu scenarios; what is said below of their keys is of the last one\n",
+               ancestry->scenarios);
+    for (size_t k = 0; ancestry->scenarios > 1 && k < ancestry->scenarios; k++)
+        printf("  since %-22s%12" PRIu64 " cases done\n", ancestry->date[k], ancestry->done[k]);
     if (!r->single)
         print_axes(r);
     print_fields(summary);
@@ -566,7 +501,11 @@ bool summary_print_text(const struct summary *summary, const struct results *r)
         print_case(summary, r);
     else
         good = print_sweep(summary, r);
-    print_through(summary);
+    if (summary->through > 0) /* which no picture of outcomes shows */
+        printf("\nThrough the ground, with a contact that ground.contacts leaves out: %" PRIu64
+               " case%s, of which %" PRIu64 " %s\n",
+               summary->through, summary->through == 1 ? "" : "s", summary->through_judged,
+               results_kind_names[summary->judged]);
     print_residuals(summary);
     print_cost(summary);
     return good && !ferror(stdout);

@@ -82,17 +82,14 @@ static bool add_parameter(struct listing *t, const char *path, int axis)
 static bool find_parameters(struct listing *t, stance_message *message)
 {
     const struct results *r = t->r;
-    struct scenario *s = calloc(1, sizeof *s);
-    bool good = s != NULL;
-    if (good && !r->single && results_scenario(r, s)) {
-        for (int a = 0; a < s->axes && a < r->axes; a++) {
-            const struct scenario_axis *axis = &s->axis[a];
-            for (int k = 1; good && !axis->sample && k < axis->paths; k++)
-                good = t->parameters == MOST_PATHS || add_parameter(t, axis->path[k], a);
-        }
-        scenario_free(s);
-    }
-    free(s);
+    struct scenario s;
+    bool good = true;
+    if (r->single || !results_scenario(r, &s))
+        return true;
+    for (int a = 0; a < s.axes && a < r->axes; a++)
+        for (int k = 1; good && !s.axis[a].sample && k < s.axis[a].paths; k++)
+            good = t->parameters == MOST_PATHS || add_parameter(t, s.axis[a].path[k], a);
+    scenario_free(&s);
     return good || no_memory(message);
 }
 
@@ -110,22 +107,17 @@ static void close_listing(struct listing *t)
 
 /* ---- rows --------------------------------------------------------------------------------- */
 
-static void add_column(struct table *rows, const char *name)
-{
-    TABLE_COLUMNS(rows, {.name = name});
-}
-
 static void add_columns(struct listing *t)
 {
     char states[SCENARIO_MAX_STATES][SCENARIO_NAME], name[SCENARIO_NAME + 8];
     const size_t words = results_words(t->r, "state", states, SCENARIO_MAX_STATES);
-    add_column(&t->rows, "case");
+    TABLE_COLUMNS(&t->rows, {.name = "case"});
     for (int a = 0; !t->r->single && a < t->r->axes; a++)
-        add_column(&t->rows, t->r->axis[a].name);
+        TABLE_COLUMNS(&t->rows, {.name = t->r->axis[a].name});
     for (size_t k = 0; k < t->parameters; k++)
-        add_column(&t->rows, t->parameter[k].name);
+        TABLE_COLUMNS(&t->rows, {.name = t->parameter[k].name});
     for (int k = 0; k < t->r->varied; k++)
-        add_column(&t->rows, t->r->vary[k].of.name);
+        TABLE_COLUMNS(&t->rows, {.name = t->r->vary[k].of.name});
     for (size_t k = 0; k < t->columns; k++) {
         const struct results_column *column = &t->column[k];
         for (size_t i = 0; i < column->width; i++) {
@@ -133,7 +125,7 @@ static void add_columns(struct listing *t)
                 snprintf(name, sizeof name, "final_%.*s", SCENARIO_NAME - 1, states[i]);
             else
                 snprintf(name, sizeof name, "final_%zu", i);
-            add_column(&t->rows, column->width == 1 ? column->name : name);
+            TABLE_COLUMNS(&t->rows, {.name = column->width == 1 ? column->name : name});
         }
     }
 }
@@ -166,27 +158,23 @@ static void put_point(struct listing *t, uint64_t index)
     }
 }
 
-/* What stands in the row of a pending case means nothing, and in files of earlier versions counts
- * of an inferred one say 0 where there is no answer. */
-static bool says_something(const struct listing *t, const struct results_column *column,
-                           uint64_t index)
-{
-    if (t->r->kind[index] == RESULTS_PENDING)
-        return strcmp(column->name, "status") == 0;
-    return column->words || !t->inferred || !t->inferred[index];
-}
-
 static void put_case(struct listing *t, uint64_t first, size_t row)
 {
-    const uint8_t kind = t->r->kind[first + row];
+    const uint64_t index = first + row;
+    const uint8_t kind = t->r->kind[index];
     if (t->of && strcmp(t->of, results_kind_names[kind]) != 0)
         return;
-    put_point(t, first + row);
+    put_point(t, index);
     for (size_t k = 0; k < t->columns; k++) {
         const struct results_column *column = &t->column[k];
+        /* What stands in the row of a pending case means nothing, and in files of earlier versions
+         * counts of an inferred one say 0 where there is no answer. */
+        const bool says = kind == RESULTS_PENDING
+                              ? strcmp(column->name, "status") == 0
+                              : column->words || !t->inferred || !t->inferred[index];
         for (size_t i = 0; i < column->width; i++) {
             const double value = t->block[k][row * column->width + i];
-            if (!says_something(t, column, first + row))
+            if (!says)
                 TABLE_VALUES(&t->rows, as_nothing(NULL));
             else if (column->words)
                 put_flag(&t->rows, column->words, value);

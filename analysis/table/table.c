@@ -325,16 +325,6 @@ static void csv_number(FILE *out, double value)
     fputs(text, out);
 }
 
-static void csv_value(const struct table_value *value, FILE *out)
-{
-    if (value->kind == TABLE_TEXT)
-        csv_text(out, value->text);
-    else if (value->kind == TABLE_NUMBER)
-        csv_number(out, value->number);
-    else if (value->kind == TABLE_WHOLE)
-        fprintf(out, "%" PRIu64, value->whole);
-}
-
 static void csv_row(const struct table *t, size_t row, FILE *out)
 {
     bool inside = false;
@@ -346,7 +336,12 @@ static void csv_row(const struct table *t, size_t row, FILE *out)
         inside = true;
         const struct table_value value =
             row == HEAD ? as_text(t->column[k].name) : plain(t, cell_at(t, row, k));
-        csv_value(&value, out);
+        if (value.kind == TABLE_TEXT)
+            csv_text(out, value.text);
+        else if (value.kind == TABLE_NUMBER)
+            csv_number(out, value.number);
+        else if (value.kind == TABLE_WHOLE)
+            fprintf(out, "%" PRIu64, value.whole);
     }
     fputs("\r\n", out);
 }
@@ -391,15 +386,6 @@ static json_t *json_of(const struct table_value *value)
     }
 }
 
-/* The object `group` of an object, made where it is not there. */
-static json_t *group_of(json_t *object, const char *group)
-{
-    json_t *inner = group ? json_object_get(object, group) : object;
-    if (!inner && json_object_set_new(object, group, json_object()) == 0)
-        inner = json_object_get(object, group);
-    return inner;
-}
-
 /* NULL: no memory. */
 static json_t *json_row(const struct table *t, size_t row)
 {
@@ -410,7 +396,9 @@ static json_t *json_row(const struct table *t, size_t row)
         const struct table_value value = plain(t, cell_at(t, row, k));
         if (column->hidden & TABLE_NO_JSON)
             continue;
-        json_t *inner = group_of(object, column->group);
+        json_t *inner = column->group ? json_object_get(object, column->group) : object;
+        if (!inner && json_object_set_new(object, column->group, json_object()) == 0)
+            inner = json_object_get(object, column->group);
         good = inner && (!column->name ||
                          json_object_set_new(inner, column->key ? column->key : column->name,
                                              json_of(&value)) == 0);
@@ -432,6 +420,21 @@ json_t *table_json(const struct table *t, bool by_name)
     if (!good)
         json_decref(root);
     return good ? root : NULL;
+}
+
+json_t *table_tree(struct table *t, bool by_name)
+{
+    json_t *const tree = table_json(t, by_name);
+    table_free(t);
+    return tree;
+}
+
+bool table_print(struct table *t, enum table_form form, const char *view, size_t most)
+{
+    const bool good =
+        form == TABLE_AS_CSV ? table_write_csv(t, stdout) : table_write_text(t, stdout, view, most);
+    table_free(t);
+    return good;
 }
 
 json_t *table_value_json(struct table_value value)
