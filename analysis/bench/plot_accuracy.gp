@@ -22,8 +22,6 @@ do for [m=1:methods] {
     }
     line = line + 25 + 14*about_lines[m]
 }
-legend_x = 0
-legend_y = 0
 load 'panels.gp'
 
 eval grid

@@ -38,7 +38,7 @@ do for [p=1:panels] {
     }
 }
 set label axis_label('x', maps_width) at screen X(left + 0.5*maps_width), Y(maps_bottom + 40) center @small front
-set label axis_label('y', maps_bottom - top) at screen X(18), Y(0.5*(top + maps_bottom)) center rotate by 90 @small front
+eval y_label(axis_label('y', maps_bottom - top), 18, 0.5*(top + maps_bottom))
 theory_left = left
 theory_top = table_top + row_height*(legends + 2) + 14
 legend_x = left

@@ -46,8 +46,6 @@ if (map_ranks > 0) {
     }
     set label efficiency at screen X(map_left + map_width - 8), Y(top + upper - 16) right font ',9' front
 }
-legend_x = 0
-legend_y = 0
 load 'panels.gp'
 
 # Two or three digits.

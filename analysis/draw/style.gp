@@ -79,10 +79,13 @@ title_text(s, size) = wrap(s, letters(page_width - 2*margin, size))
 title_height(_) = margin + lines_height(title_text(title, title_size), title_size) \
     + lines_height(title_text(subtitle, text_size), text_size) + (title eq '' && subtitle eq '' ? 0 : 10)
 # Long name, where there is room for it, if need be without the "initial offset: " that paths say, too, and path of an
-# axis, in `px` pixels each; as the label of x, set under `middle` or as near to it as the page has room.
+# axis, in `px` pixels each; as the label of x, set under `middle` or as near to it as the page has room; a text that is
+# read upwards beside it.
 long_name(s, n) = strlen(s) <= n ? s : strstrt(s, ': ') > 0 ? long_name(s[strstrt(s, ': ')+2:*], n) : ''
 axis_label(a, px) = (f_name = long_name(value(a.'_text'), int(px/6.9)), f_name eq '' ? '' : f_name."\n") \
     .end_of(value(a.'_path'), int(px/6.9))
+y_label(text, left, middle) = (f_label = text, sprintf("set label f_label at screen %.17g,%.17g center rotate by 90 %s front", \
+    X(left), Y(middle), small))
 x_label(middle, y) = (f_label = axis_label('x', page_width - 2*margin), f_half = 3.6*longest_line(f_label) + 4, \
     sprintf("set label f_label at screen %.6f,%.6f center %s front", \
         X(at_least(f_half, at_most(middle, page_width - f_half))), Y(y), small))
@@ -99,6 +102,11 @@ legends = 0
 notes = 0
 legend_step = 24
 legend_head = ''
+# A page of one column of panels, `width` px wide from `left` on: its width and top, and its legend beside them.
+column_page = "page_width = left + width + legend_room; top = title_height(0)"
+column_legend = "legend_x = left + width + 20; legend_y = top + 10"
+legend_x = 0
+legend_y = 0
 box(left, y, colour) = sprintf("set object rectangle from screen %.6f,%.6f to screen %.6f,%.6f fillcolor rgb %d " \
     ."fillstyle solid border lc '#606060' lw 0.5 front", X(left), Y(y + 7), X(left + legend_indent - 8), Y(y - 7), colour)
 line_mark(left, y, colour, dash) = sprintf("set arrow from screen %.6f,%.6f to screen %.6f,%.6f nohead lc rgb %d dt %d " \

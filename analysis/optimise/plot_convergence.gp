@@ -51,8 +51,7 @@ if (named) {
             lc rgb hue_of(end_number[k]) lw 1 front
     }
 }
-legend_x = left + width + 20
-legend_y = top + 10
+eval column_legend
 load 'panels.gp'
 
 eval grid

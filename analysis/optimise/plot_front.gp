@@ -6,10 +6,9 @@ top = title_height(0) + 4
 height = high(0.7*width, 1, top + 84)
 page_height = top + height + 84
 load 'page.gp'
-set label 'recovered starts (%)' at screen X(22), Y(top + 0.5*height) center rotate by 90 @small front
+eval y_label('recovered starts (%)', 22, top + 0.5*height)
 eval x_label(left + 0.5*width, top + height + 46)
-legend_x = left + width + 20
-legend_y = top + 10
+eval column_legend
 load 'panels.gp'
 
 eval grid

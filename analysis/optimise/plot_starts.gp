@@ -11,7 +11,7 @@ panel_left(p) = left + (p - 1) % columns*(width + gap)
 panel_top(p) = top + (p - 1)/columns*(height + 66)
 page_height = panel_top(panels) + height + 66
 load 'page.gp'
-set label 'share of the starts (%)' at screen X(24), Y(top + 0.5*((rows - 1)*(height + 66) + height)) center rotate by 90 @small front
+eval y_label('share of the starts (%)', 24, top + 0.5*((rows - 1)*(height + 66) + height))
 do for [p=1:panels] {
     set label cut(panel_text[p], (width + gap)/6.6) at screen X(panel_left(p) + 0.5*width), Y(panel_top(p) + height + 40) center @small front
 }

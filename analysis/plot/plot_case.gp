@@ -5,14 +5,13 @@ width = wide(700, 1, left + legend_room)
 heading_height = 24
 panel_top(p) = top + (p - 1)*(height + heading_height) + heading_height
 
-page_width = left + width + legend_room
-top = title_height(0)
+eval column_page
 height = high(height, panels, top + panels*heading_height + 56)
 page_height = panel_top(panels + 1) - heading_height + 56
 load 'page.gp'
 do for [p=1:panels] {
     set label cut(heading[p], (width + legend_room)/7.1) at screen X(left), Y(panel_top(p) - 9) left @small front
-    set label end_of(label[p], (height + heading_height)/6.9) at screen X(22), Y(panel_top(p) + 0.5*height) center rotate by 90 @small front
+    eval y_label(end_of(label[p], (height + heading_height)/6.9), 22, panel_top(p) + 0.5*height)
 }
 set label 'time (s)' at screen X(left + 0.5*width), Y(panel_top(panels) + height + 42) center font ',12' front
 legend_x = left + width + 14

@@ -6,20 +6,17 @@ strip = 30
 gap = 14
 panel_top(p) = top + strip + gap + (p - 1)*(height + gap)
 
-page_width = left + width + legend_room
-top = title_height(0)
+eval column_page
 height = high(150, at_least(panels, 1), top + strip + panels*gap + 84)
 bottom = panel_top(panels + 1) - gap
 page_height = bottom + 84
 load 'page.gp'
 set label 'outcome' at screen X(left - 10), Y(top + 0.5*strip) right font ',12' front
 do for [p=1:panels] {
-    set label end_of(with_unit(answer[p], answer_unit[p]), (height + gap)/6.9) at screen X(24), Y(panel_top(p) + 0.5*height) \
-        center rotate by 90 @small front
+    eval y_label(end_of(with_unit(answer[p], answer_unit[p]), (height + gap)/6.9), 24, panel_top(p) + 0.5*height)
 }
 eval x_label(left + 0.5*width, bottom + 46)
-legend_x = left + width + 20
-legend_y = top + 10
+eval column_legend
 load 'panels.gp'
 
 eval panel(left, top, width, strip)

@@ -34,7 +34,7 @@ load 'page.gp'
 
 eval x_label(0.5*(left + right), bottom + 46)
 # Long names may go on beside the labels under the map, but not into the title.
-set label axis_label('y', bottom - top + 28) at screen X(22), Y(0.5*(top + bottom) + 14) center rotate by 90 @small front
+eval y_label(axis_label('y', bottom - top + 28), 22, 0.5*(top + bottom) + 14)
 
 # The longest names for which the titles of all panels have room: letters take 7 px on average.
 fits_long = 1

@@ -34,8 +34,6 @@ set label 'x, forward' at screen X(words_left + 66), Y(line) left font ',11' fro
 set label 'z, up' at screen X(words_left + 16), Y(line - 52) left font ',11' front
 set label "angles and torques: counter-clockwise\ndashed: where an angle is 0" \
     at screen X(words_left + (words_below ? 150 : 0)), Y(line + (words_below ? -32 : 24)) left font ',11' front
-legend_x = 0
-legend_y = 0
 load 'panels.gp'
 
 unset border

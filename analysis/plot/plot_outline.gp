@@ -2,15 +2,13 @@
 left = 118
 width = wide(560, 1, left + legend_room)
 
-page_width = left + width + legend_room
-top = title_height(0)
+eval column_page
 height = high(500.0*width/560, 1, top + 84)
 page_height = top + height + 84
 load 'page.gp'
 eval x_label(left + 0.5*width, top + height + 46)
-set label axis_label('y', height + 28) at screen X(22), Y(top + 0.5*height) center rotate by 90 @small front
-legend_x = left + width + 20
-legend_y = top + 10
+eval y_label(axis_label('y', height + 28), 22, top + 0.5*height)
+eval column_legend
 load 'panels.gp'
 
 eval panel(left, top, width, height)

@@ -15,14 +15,13 @@ height = high(380.0*width/520, 1, top + 100 + rows*(panel_height + 82))
 page_height = panel_top(1) + rows*(panel_height + 82)
 load 'page.gp'
 eval x_label(left + 0.5*width, top + height + 46)
-if (plane) { set label axis_label('y', height) at screen X(22), Y(top + 0.5*height) center rotate by 90 @small front }
+if (plane) { eval y_label(axis_label('y', height), 22, top + 0.5*height) }
 set label judged.' (%), bars: 95 % interval' at screen X(left - 80), Y(panel_top(1) - 18) left @small front
 do for [p=1:panels] {
     set label end_of(value('x'.p.'_path'), (panel_width + 40)/6.9) at screen X(panel_left(p) + 0.5*panel_width), Y(panel_top(p) + panel_height + 42) \
         center @tiny front
 }
-legend_x = left + width + 20
-legend_y = top + 10
+eval column_legend
 load 'panels.gp'
 
 eval panel(left, top, width, height)

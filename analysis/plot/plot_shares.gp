@@ -5,22 +5,18 @@ width = wide(620, 1, left + legend_room)
 gap = 14
 panel_top(p) = top + height + gap + (p - 1)*(low_height + gap)
 
-page_width = left + width + legend_room
-top = title_height(0)
+eval column_page
 # Of the height two parts are the first panel's, one each that of the others.
 low_height = high(150, 2 + extents, top + gap*extents + 84)
 height = 2*low_height
 bottom = panel_top(extents + 1) - gap
 page_height = bottom + 84
 load 'page.gp'
-set label cut(volumes ? 'share of the box of starts (%)' : 'share of the cases done (%)', height/6.9) \
-    at screen X(24), Y(top + 0.5*height) center rotate by 90 @small front
+eval y_label(cut(volumes ? 'share of the box of starts (%)' : 'share of the cases done (%)', height/6.9), 24, top + 0.5*height)
 eval x_label(left + 0.5*width, bottom + 46)
-legend_x = left + width + 20
-legend_y = top + 10
+eval column_legend
 do for [p=1:extents] {
-    set label end_of(with_unit(extent_name[p], extent_unit[p]), (low_height + gap)/6.9) \
-        at screen X(24), Y(panel_top(p) + 0.5*low_height) center rotate by 90 @small front
+    eval y_label(end_of(with_unit(extent_name[p], extent_unit[p]), (low_height + gap)/6.9), 24, panel_top(p) + 0.5*low_height)
 }
 load 'panels.gp'
 

@@ -44,8 +44,6 @@ do for [i=1:count] {
     set label sprintf('%.3g s', time[i]) at screen X(side + scale*spacing*((i - 1) % per_row + 0.5)), \
         Y(panel_top((i - 1)/per_row + 2) - times_height + 10) center font ',12' front
 }
-legend_x = 0
-legend_y = 0
 load 'panels.gp'
 
 unset border
