@@ -3,8 +3,8 @@
 
 #include "fonts.h"
 
+#include "runner/base/message.h"
 #include "runner/base/words.h"
-
 #include "runner/store/results.h"
 
 #include <ctype.h>
@@ -119,8 +119,7 @@ static const char *kept_in(void)
     return directory && directory[0] ? directory : NULL;
 }
 
-/* Letters that are as wide as high, between any two of which a line may end (Unicode TR 11 and 14).
- */
+/* Letters that are as wide as high: a line may end between any two (Unicode TR 11 and 14). */
 static bool is_wide(uint32_t letter)
 {
     return (letter >= 0x2e80 && letter <= 0xa4cf) || (letter >= 0xac00 && letter <= 0xd7a3) ||
@@ -175,8 +174,8 @@ bool gnuplot_begin(struct gnuplot *g, struct look *look, const char *picture, co
              base && base[0] && strlen(base) < 200 ? base : "/tmp");
     g->sink = fopen("/dev/null", "wb");
     if (!g->sink || !mkdtemp(g->scratch)) {
-        snprintf(message->text, sizeof message->text, "%.150s: cannot make a directory%s: %s",
-                 g->scratch, kept_in() ? " (STANCE_SCRIPTS)" : "", strerror(errno));
+        complain(message, "%.150s: cannot make a directory%s: %s", g->scratch,
+                 kept_in() ? " (STANCE_SCRIPTS)" : "", strerror(errno));
         if (g->sink)
             fclose(g->sink);
         return false;
@@ -206,6 +205,14 @@ void gnuplot_set(struct gnuplot *g, const char *format, ...)
     vfprintf(g->data, format, arguments);
     va_end(arguments);
     putc('\n', g->data);
+}
+
+void gnuplot_arrays(struct gnuplot *g, int size, const char *names)
+{
+    for (size_t length; *names; names += length + (names[length] == ' ')) {
+        length = strcspn(names, " ");
+        gnuplot_set(g, "array %.*s[%d]", (int)length, names, size);
+    }
 }
 
 /* In single quotes gnuplot expands nothing; a quote itself is doubled. */
@@ -304,11 +311,6 @@ void gnuplot_legend_mark(struct gnuplot *g, const char *colour, int dash, int po
     gnuplot_text(g, text, "legend_text[legends]");
 }
 
-void gnuplot_legend(struct gnuplot *g, const char *colour, const char *name, const char *more)
-{
-    gnuplot_legend_mark(g, colour, 0, 0, name, more);
-}
-
 void gnuplot_note(struct gnuplot *g, const char *text)
 {
     gnuplot_text(g, text, "notes = notes + 1; note[notes]");
@@ -353,10 +355,8 @@ static void read_complaint(const struct gnuplot *g, char text[120])
     FILE *errors = fopen(path, "r");
     snprintf(text, 120, "no reason given");
     while (errors && fgets(line, sizeof line, errors)) {
+        const char *const start = line + strspn(line, " \t\r\v\f");
         line[strcspn(line, "\n")] = '\0';
-        char *start = line;
-        while (isspace((unsigned char)*start))
-            start++;
         if (*start)
             snprintf(text, 120, "%.119s", start);
     }
@@ -384,14 +384,6 @@ static char *read_file(const char *path, size_t *size)
     if (text)
         text[*size] = '\0';
     return text;
-}
-
-static bool is_ascii(const char *text, size_t size)
-{
-    for (size_t i = 0; i < size; i++)
-        if ((unsigned char)text[i] >= 0x80)
-            return false;
-    return true;
 }
 
 /* Once in a process. */
@@ -423,7 +415,10 @@ static bool replace_letters(struct gnuplot *g)
     struct fonts fonts;
     scratch_path(g, "data.gp", path);
     char *text = read_file(path, &size);
-    if (text && (!is_ascii(text, size) || strcmp(g->look->font, LOOK_FONT) != 0)) {
+    bool ascii = true;
+    for (size_t i = 0; text && i < size; i++)
+        ascii = ascii && (unsigned char)text[i] < 0x80;
+    if (text && (!ascii || strcmp(g->look->font, LOOK_FONT) != 0)) {
         fonts_find(&fonts, g->look->font);
         if (fonts.has) {
             drawn = fonts_replace(&fonts, text, size, missing, sizeof missing);
@@ -529,9 +524,7 @@ static void join_path(const char *directory, const char *name, char *path, size_
 
 static bool not_written(const char *path, stance_message *message)
 {
-    snprintf(message->text, sizeof message->text, "%.150s: cannot be written: %s", path,
-             strerror(errno));
-    return false;
+    return complain(message, "%.150s: cannot be written: %s", path, strerror(errno));
 }
 
 /* One file of a picture: drawn at `from`, belongs to `to`; complete at `part`, beside it, it takes
@@ -544,22 +537,20 @@ struct product {
     char from[320], part[2048], to[2048];
 };
 
-static void name_product(struct product *product, const struct gnuplot *g, int format,
-                         const char *directory, const char *stem)
+static struct product name_product(const struct gnuplot *g, int format, const char *directory,
+                                   const char *stem)
 {
+    struct product product = {g->look, g->scratch, format, false, "", "", ""};
     char drawn[32], name[600];
-    product->look = g->look;
-    product->format = format;
     snprintf(drawn, sizeof drawn, "picture.%s", look_endings[format]);
-    scratch_path(g, drawn, product->from);
+    scratch_path(g, drawn, product.from);
     snprintf(name, sizeof name, "%s.%s", stem, look_endings[format]);
-    join_path(directory, name, product->to, sizeof product->to);
+    join_path(directory, name, product.to, sizeof product.to);
     if (g->look->file)
-        snprintf(product->to, sizeof product->to, "%s", g->look->file);
+        snprintf(product.to, sizeof product.to, "%s", g->look->file);
     snprintf(name, sizeof name, ".stance-%ld.%s", (long)getpid(), look_endings[format]);
-    join_path(directory, name, product->part, sizeof product->part);
-    product->scratch = g->scratch;
-    product->parted = false;
+    join_path(directory, name, product.part, sizeof product.part);
+    return product;
 }
 
 /* gnuplot does not tell when the disk that it draws on is full: the last words of a file do. */
@@ -583,8 +574,7 @@ static bool copy_product(struct product *product, stance_message *message)
     size_t size = 0;
     char *text = read_file(product->from, &size);
     if (!text || !is_complete(text, size, product->format)) {
-        snprintf(message->text, sizeof message->text,
-                 "gnuplot drew %s for %.100s; is there room in %.60s?",
+        complain(message, "gnuplot drew %s for %.100s; is there room in %.60s?",
                  text ? "half a picture" : "nothing", product->to, product->scratch);
         free(text);
         return false;
@@ -604,15 +594,6 @@ static bool copy_product(struct product *product, stance_message *message)
     return good || not_written(product->to, message);
 }
 
-static bool place_product(struct product *product, stance_message *message)
-{
-    if (rename(product->part, product->to) != 0)
-        return not_written(product->to, message);
-    product->parted = false;
-    puts(strncmp(product->to, "./", 2) == 0 ? product->to + 2 : product->to);
-    return true;
-}
-
 /* Brings the pictures to where they belong: all, or where one cannot be written none. */
 static bool fetch(const struct gnuplot *g, const char *directory, const char *stem,
                   stance_message *message)
@@ -622,33 +603,47 @@ static bool fetch(const struct gnuplot *g, const char *directory, const char *st
     bool good = true;
     for (int f = 0; f < LOOK_FORMAT_COUNT; f++)
         if (g->look->format[f])
-            name_product(&product[count++], g, f, directory, stem);
+            product[count++] = name_product(g, f, directory, stem);
     for (int k = 0; k < count; k++)
         good = good && copy_product(&product[k], message);
-    for (int k = 0; k < count; k++)
-        good = good && place_product(&product[k], message);
-    for (int k = 0; k < count; k++)
-        if (product[k].parted)
+    for (int k = 0; k < count; k++) {
+        const char *const to = product[k].to;
+        good = good && (rename(product[k].part, to) == 0 || not_written(to, message));
+        if (good)
+            puts(strncmp(to, "./", 2) == 0 ? to + 2 : to);
+        else if (product[k].parted)
             unlink(product[k].part);
+    }
     return good;
 }
 
-/* Leaves the scratch directory where it is, under the picture's name; a former one goes. */
-static bool keep_scratch(const struct gnuplot *g, const char *stem, stance_message *message)
+/* Runs gnuplot and fetches what it drew. */
+static bool draw(const struct gnuplot *g, const char *directory, const char *stem,
+                 stance_message *message)
 {
-    char path[1024];
-    join_path(kept_in(), stem, path, sizeof path);
-    fclose(g->sink);
-    remove_picture(path);
-    return rename(g->scratch, path) == 0 || not_written(path, message);
+    char complaint[120];
+    if (g->failed)
+        return complain(message, "%.100s: cannot be written: %s", g->scratch, strerror(g->error));
+    const int status = run_gnuplot(g);
+    if (status < 0 && errno == ENOENT)
+        return complain(message, "gnuplot, which draws the pictures, is not installed; on Debian: "
+                                 "apt-get install gnuplot-nox");
+    if (status < 0)
+        return complain(message, "gnuplot cannot be run: %s", strerror(errno));
+    if (status == 0)
+        return fetch(g, directory, stem, message);
+    read_complaint(g, complaint);
+    return complain(message,
+                    status == TOO_SMALL ? "%.190s: a larger --size, or shorter --labels"
+                                        : "gnuplot failed: %.190s",
+                    complaint);
 }
 
 bool gnuplot_end(struct gnuplot *g, const char *directory, const char *stem,
                  stance_message *message)
 {
     const char *dash = strrchr(stem, '-');
-    char complaint[120];
-    bool good = false;
+    char path[1024];
 
     if (!look_wants(g->look, dash ? dash + 1 : stem)) {
         gnuplot_abandon(g);
@@ -656,30 +651,14 @@ bool gnuplot_end(struct gnuplot *g, const char *directory, const char *stem,
     }
     gnuplot_close_cells(g, g->data);
     put_formats(g);
-    if (g->failed) {
-        snprintf(message->text, sizeof message->text, "%.100s: cannot be written: %s", g->scratch,
-                 strerror(g->error));
-    } else {
-        int status = run_gnuplot(g);
-        if (status < 0 && errno == ENOENT) {
-            snprintf(message->text, sizeof message->text,
-                     "gnuplot, which draws the pictures, is not installed; on Debian: "
-                     "apt-get install gnuplot-nox");
-        } else if (status < 0) {
-            snprintf(message->text, sizeof message->text, "gnuplot cannot be run: %s",
-                     strerror(errno));
-        } else if (status != 0) {
-            read_complaint(g, complaint);
-            snprintf(message->text, sizeof message->text, "%s%.190s%s",
-                     status == TOO_SMALL ? "" : "gnuplot failed: ", complaint,
-                     status == TOO_SMALL ? ": a larger --size, or shorter --labels" : "");
-        } else {
-            good = fetch(g, directory, stem, message);
-        }
-    }
-    if (good && kept_in())
-        good = keep_scratch(g, stem, message);
-    else
+    const bool good = draw(g, directory, stem, message);
+    if (!good || !kept_in()) {
         remove_scratch(g);
-    return good;
+        return good;
+    }
+    /* The scratch directory stays where it is, under the picture's name; a former one goes. */
+    join_path(kept_in(), stem, path, sizeof path);
+    fclose(g->sink);
+    remove_picture(path);
+    return rename(g->scratch, path) == 0 || not_written(path, message);
 }

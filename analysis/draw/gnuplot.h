@@ -50,6 +50,8 @@ void gnuplot_abandon(struct gnuplot *g);
 
 /* A line, as printf makes it; free texts only through gnuplot_text. */
 void gnuplot_set(struct gnuplot *g, const char *format, ...) __attribute__((format(printf, 2, 3)));
+/* Arrays of that size, of all the names. */
+void gnuplot_arrays(struct gnuplot *g, int size, const char *names);
 /* NAME = 'text' and NAME = value (NAN: NaN); the name as printf makes it. */
 void gnuplot_text(struct gnuplot *g, const char *text, const char *name, ...)
     __attribute__((format(printf, 3, 4)));
@@ -66,12 +68,16 @@ void gnuplot_end_block(struct gnuplot *g);
 FILE *gnuplot_cells(struct gnuplot *g);
 void gnuplot_close_cells(struct gnuplot *g, FILE *file);
 
-/* An entry of the legend: a box of a colour (a variable of style.gp) beside a name and what is said
- * of it, "" for nothing; and a line under all of them. */
-void gnuplot_legend(struct gnuplot *g, const char *colour, const char *name, const char *more);
-/* The same with a line of a type of dashes and a point of a type, 0: none, in the box's place. */
+/* An entry of the legend: a line of a type of dashes and a point of a type, 0: none, or where both
+ * are none a box, of a colour (a variable of style.gp), beside a name and what is said of it, ""
+ * for nothing; and a line under all of them. */
 void gnuplot_legend_mark(struct gnuplot *g, const char *colour, int dash, int point,
                          const char *name, const char *more);
+static inline void gnuplot_legend(struct gnuplot *g, const char *colour, const char *name,
+                                  const char *more)
+{
+    gnuplot_legend_mark(g, colour, 0, 0, name, more);
+}
 /* Gives a colour of style.gp the value that the look has for a name, if it has. */
 void gnuplot_colour(struct gnuplot *g, const char *colour, const char *name);
 void gnuplot_note(struct gnuplot *g, const char *text);

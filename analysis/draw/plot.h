@@ -4,6 +4,7 @@
 
 #include "gnuplot.h"
 
+#include "analysis/statistics/statistics.h"
 #include "runner/base/command.h"
 #include "runner/store/results.h"
 
@@ -44,6 +45,8 @@ void plot_axis_make(struct plot_axis *along, const struct results_axis *axis);
 void plot_axis_make_curve(struct plot_axis *along, const struct results_axis *axis);
 /* Where value i stands. */
 double plot_axis_place(const struct plot_axis *along, size_t i);
+/* All values from left to right; freed by the caller, NULL with a message: no memory. */
+struct statistics_place *plot_axis_points(const struct plot_axis *along, stance_message *message);
 /* Value that cell k shows. */
 size_t plot_axis_index(const struct plot_axis *along, size_t k);
 /* Tells the script of the axis `which`, x say: x_text, x_path (with its unit), x_scale, x_low,
@@ -94,6 +97,8 @@ bool plot_answer_find(const char *name, struct plot_answer *answer);
  * with a message, also when there are none. */
 bool plot_answer_numbers(const struct plot *plot, const struct plot_answer *answer, double **values,
                          double *low, double *high, stance_message *message);
+/* The range of values[n], those that are finite; false: there are none. */
+bool plot_range(const double *values, size_t n, double *low, double *high);
 /* "friction_used: largest ratio |rT|/rN of a contact, of the stabilised cases" */
 void plot_answer_title(const struct plot_answer *answer, char *text, size_t size);
 

@@ -2,9 +2,11 @@
 #include "plot.h"
 
 #include "analysis/statistics/faces.h"
+#include "runner/base/message.h"
 
 #include <math.h>
 #include <stdarg.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* ---- scales ------------------------------------------------------------------------------- */
@@ -43,12 +45,6 @@ static void make_even(struct plot_axis *along, bool logarithm)
     along->step = fabs(last - first) / (double)(axis->count - 1);
 }
 
-static void set_edges(struct plot_axis *along)
-{
-    along->low = along->first - 0.5 * along->step;
-    along->high = along->first + ((double)along->axis->count - 0.5) * along->step;
-}
-
 void plot_axis_make(struct plot_axis *along, const struct results_axis *axis)
 {
     *along = (struct plot_axis){.axis = axis, .scale = PLOT_LIST, .step = 1};
@@ -58,7 +54,8 @@ void plot_axis_make(struct plot_axis *along, const struct results_axis *axis)
         else if (axis->count > 2 && is_positive(axis) && is_even(axis, true))
             make_even(along, true);
     }
-    set_edges(along);
+    along->low = along->first - 0.5 * along->step;
+    along->high = along->first + ((double)axis->count - 0.5) * along->step;
 }
 
 /* Unevenness of the spacing: standard deviation of the steps over their mean. */
@@ -73,42 +70,46 @@ static double unevenness(const struct results_axis *axis, bool logarithm)
     return sum > 0 ? sqrt(fmax(0, squares / n - sum * sum / (n * n))) / (sum / n) : 0;
 }
 
-static double lowest_of(const struct results_axis *axis)
+void plot_axis_make_curve(struct plot_axis *along, const struct results_axis *axis)
 {
+    plot_axis_make(along, axis);
+    if (along->scale == PLOT_LIST && !axis->word && axis->count > 1) {
+        const bool logarithm =
+            is_positive(axis) && unevenness(axis, true) < 0.5 * unevenness(axis, false);
+        double low = INFINITY, high = -INFINITY;
+        for (size_t i = 0; i < axis->count; i++) {
+            low = fmin(low, raw(axis, logarithm, i));
+            high = fmax(high, raw(axis, logarithm, i));
+        }
+        const double margin = high > low ? 0.03 * (high - low) : 0.5;
+        along->scale = logarithm ? PLOT_LOG : PLOT_LINEAR;
+        along->low = low - margin;
+        along->high = high + margin;
+    }
+    /* A time is not negative, nor has an axis of times room for that. */
     double lowest = INFINITY;
     for (size_t i = 0; i < axis->count; i++)
         lowest = fmin(lowest, axis->value[i]);
-    return lowest;
-}
-
-static void make_curve(struct plot_axis *along, const struct results_axis *axis)
-{
-    plot_axis_make(along, axis);
-    if (along->scale != PLOT_LIST || axis->word || axis->count < 2)
-        return;
-    bool logarithm = is_positive(axis) && unevenness(axis, true) < 0.5 * unevenness(axis, false);
-    along->scale = logarithm ? PLOT_LOG : PLOT_LINEAR;
-    double low = INFINITY, high = -INFINITY;
-    for (size_t i = 0; i < axis->count; i++) {
-        low = fmin(low, raw(axis, logarithm, i));
-        high = fmax(high, raw(axis, logarithm, i));
-    }
-    double margin = high > low ? 0.03 * (high - low) : 0.5;
-    along->low = low - margin;
-    along->high = high + margin;
-}
-
-void plot_axis_make_curve(struct plot_axis *along, const struct results_axis *axis)
-{
-    make_curve(along, axis);
-    /* A time is not negative, nor has an axis of times room for that. */
-    if (along->scale == PLOT_LINEAR && along->low < 0 && lowest_of(axis) >= 0)
+    if (along->scale == PLOT_LINEAR && along->low < 0 && lowest >= 0)
         along->low = 0;
 }
 
 double plot_axis_place(const struct plot_axis *along, size_t i)
 {
     return along->scale == PLOT_LIST ? (double)i : raw(along->axis, along->scale == PLOT_LOG, i);
+}
+
+struct statistics_place *plot_axis_points(const struct plot_axis *along, stance_message *message)
+{
+    const size_t n = along->axis->count;
+    struct statistics_place *points = malloc(n * sizeof *points);
+    for (size_t i = 0; points && i < n; i++)
+        points[i] = (struct statistics_place){plot_axis_place(along, i), i};
+    if (points)
+        statistics_order(points, n);
+    else
+        no_memory(message);
+    return points;
 }
 
 size_t plot_axis_index(const struct plot_axis *along, size_t k)
@@ -151,31 +152,25 @@ void plot_tic_text(struct gnuplot *g, const char *text, const char *name, ...)
     gnuplot_text(g, escaped, "%s", whole);
 }
 
-/* "vpole" of initial.offset.vpole beside initial.offset.pole. */
-static const char *without_prefix(const char *path, const char *beside)
-{
-    const char *dot = strrchr(beside, '.');
-    const size_t prefix = dot ? (size_t)(dot + 1 - beside) : 0;
-    return strncmp(path, beside, prefix) == 0 ? path + prefix : path;
-}
-
 void plot_label_write(const struct results_axis *axis, struct gnuplot *g, const char *which)
 {
     static const char with[] = "; with ";
     char text[sizeof axis->text], path[sizeof axis->name + sizeof axis->unit + sizeof text + 16];
-    const char *label = look_label(g->look, axis->name);
+    const char *label = look_label(g->look, axis->name), *dot = strrchr(axis->name, '.');
     const bool own = label != axis->name;
     snprintf(text, sizeof text, "%s", axis->text);
-    char *others = strstr(text, with);
     snprintf(path, sizeof path, axis->unit[0] ? "%s (%s)" : "%s", axis->name, axis->unit);
+    char *const others = strstr(text, with);
     if (others) { /* are said where there is room for the path alone, too */
-        const size_t used = strlen(path);
-        char *const second = strstr(others + strlen(with), ", ");
+        const char *first = others + strlen(with);
+        char *const second = strstr(first, ", ");
+        const size_t prefix = dot ? (size_t)(dot + 1 - axis->name) : 0;
         *others = '\0';
         if (second)
             *second = '\0';
-        snprintf(path + used, sizeof path - used, ", with %s%s",
-                 without_prefix(others + strlen(with), axis->name), second ? " and others" : "");
+        /* "vpole" of initial.offset.vpole beside initial.offset.pole */
+        first += strncmp(first, axis->name, prefix) == 0 ? prefix : 0;
+        add_text(path, sizeof path, ", with %s%s", first, second ? " and others" : "");
     }
     gnuplot_text(g, own ? "" : text, "%s_text", which);
     gnuplot_text(g, own ? label : path, "%s_path", which);
@@ -204,12 +199,10 @@ void plot_became_text(const struct results *r, char *text, size_t size)
 void plot_failed_text(const struct results *r, char *text, size_t size)
 {
     struct statistics_counts counts;
-    const size_t used = strlen(text);
     statistics_count(r, -1, 0, &counts);
-    if (counts.kind[RESULTS_FAILED] > 0 && used < size) {
-        snprintf(text + used, size - used, ", %llu failed in all",
+    if (counts.kind[RESULTS_FAILED] > 0)
+        add_text(text, size, ", %llu failed in all",
                  (unsigned long long)counts.kind[RESULTS_FAILED]);
-    }
 }
 
 void plot_cut_text(const struct results *r, enum results_kind of, bool shown, char *text,
@@ -217,15 +210,14 @@ void plot_cut_text(const struct results *r, enum results_kind of, bool shown, ch
 {
     struct faces faces;
     char at[400];
-    const size_t used = strlen(text);
     if (of == RESULTS_KIND_COUNT)
         return;
     faces_make(&faces, r, NULL, 0);
     const face_set cut = faces_cut(&faces, of);
     faces_text(&faces, cut, at, sizeof at);
-    if (cut && used < size)
-        snprintf(text + used, size - used, "; what is %s is cut by the box at %s%s",
-                 results_kind_names[of], at, shown ? ": its share is the box's" : "");
+    if (cut)
+        add_text(text, size, "; what is %s is cut by the box at %s%s", results_kind_names[of], at,
+                 shown ? ": its share is the box's" : "");
 }
 
 void plot_kinds_write(const struct results *r, struct gnuplot *g, bool legend)

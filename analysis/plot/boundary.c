@@ -78,20 +78,12 @@ static enum side way_out(const struct map *m, const struct place *p)
 /* The same side, of the square beyond it; false: there is none. */
 static bool go_beyond(const struct map *m, struct place *p)
 {
-    switch (p->side) {
-    case BOTTOM:
-        p->side = TOP;
-        return p->j-- > 0;
-    case TOP:
-        p->side = BOTTOM;
-        return ++p->j + 1 < m->ny;
-    case LEFT:
-        p->side = RIGHT;
-        return p->i-- > 0;
-    default:
-        p->side = LEFT;
-        return ++p->i + 1 < m->nx;
-    }
+    static const enum side opposite[] = {TOP, LEFT, BOTTOM, RIGHT};
+    p->i +=
+        (size_t)(p->side == RIGHT) - (p->side == LEFT); /* before the first is beyond the last */
+    p->j += (size_t)(p->side == TOP) - (p->side == BOTTOM);
+    p->side = opposite[p->side];
+    return p->i < m->nx - 1 && p->j < m->ny - 1;
 }
 
 /* Points are kept as the lower or left end of their side, and which way it goes. */

@@ -12,57 +12,72 @@
 
 extern const struct command command_plot; /* below */
 
+/* Each draws, and returns an exit code; why it failed is put into the message, or has been said. */
+
 /* ---- one case ----------------------------------------------------------------------------- */
 
-/* Says how a trajectory comes about. */
-static void explain_recording(const struct results *r, uint64_t index)
-{
-    fprintf(stderr,
-            "%s: has no trajectory of case %llu; `stance replay %s --case %llu` computes it\n",
-            r->file, (unsigned long long)index, r->file, (unsigned long long)index);
-}
-
-static int draw_case(const struct plot *plot, uint64_t index, bool given)
+static int draw_case(const struct plot *plot, uint64_t index, bool given, stance_message *message)
 {
     const struct results *r = plot->r;
+    const unsigned long long number = index;
     uint64_t *list;
     size_t count, place = 0;
-    stance_message message = {""};
     char stem[400];
 
     if (!r->single && index >= r->cases) {
-        fprintf(stderr, "%s: has no case %llu: the last is %llu\n", r->file,
-                (unsigned long long)index, (unsigned long long)r->cases - 1);
+        complain(message, "%.150s: has no case %llu: the last is %llu", r->file, number,
+                 (unsigned long long)r->cases - 1);
         return EXIT_USAGE;
     }
-    if (!results_recorded(r, &list, &count, &message)) {
-        fprintf(stderr, "%s\n", message.text);
+    if (!results_recorded(r, &list, &count, message))
         return EXIT_IO;
-    }
     while (place < count && list[place] != index)
         place++;
     free(list);
     if (place == count) {
-        explain_recording(r, index);
+        fprintf(stderr,
+                "%s: has no trajectory of case %llu; `stance replay %s --case %llu` computes it\n",
+                r->file, number, r->file, number);
         return EXIT_USAGE;
     }
     if (r->kind[r->single ? 0 : index] == RESULTS_PENDING) {
-        fprintf(stderr, "%s: case %llu has not been computed yet\n", r->file,
-                (unsigned long long)index);
+        complain(message, "%.150s: case %llu has not been computed yet", r->file, number);
         return EXIT_USAGE;
     }
     struct plot own = *plot;
-    snprintf(stem, sizeof stem, "%.300s-case%llu", plot->stem, (unsigned long long)index);
+    snprintf(stem, sizeof stem, "%.300s-case%llu", plot->stem, number);
     own.stem = given && !r->single ? stem : plot->stem;
     struct plot_case c;
-    bool good = plot_case_load(&c, &own, place, index, &message);
-    if (good) {
-        good = plot_case(&c, &message);
-        plot_case_free(&c);
-    }
-    if (!good)
-        fprintf(stderr, "%s\n", message.text);
+    if (!plot_case_load(&c, &own, place, index, message))
+        return EXIT_IO;
+    const bool good = plot_case(&c, message);
+    plot_case_free(&c);
     return good ? EXIT_DONE : EXIT_IO;
+}
+
+/* ---- a sampled study ---------------------------------------------------------------------- */
+
+/* The picture for which `stance sensitivity` has options; what a file is too short for is said.
+ * answer NULL: of the share of cases that end well. */
+static int draw_sensitivity(const struct plot *plot, const struct plot_answer *answer,
+                            stance_message *message)
+{
+    const struct sensitivity_request request = {
+        .answer = answer ? answer->name : NULL,
+        .unit = answer ? answer->unit : "",
+        .of = answer ? answer->of : RESULTS_KIND_COUNT,
+        .bootstrap = SENSITIVITY_BOOTSTRAP,
+    };
+    struct sensitivity_study study;
+    int code = sensitivity_study_make(&study, plot->r, &request, message);
+    if (code == EXIT_DONE) {
+        code =
+            sensitivity_picture(&study, plot->look, plot->directory, message) ? EXIT_DONE : EXIT_IO;
+        sensitivity_study_free(&study);
+    }
+    if (code == EXIT_USAGE)
+        fprintf(stderr, "%s\n", message->text);
+    return code == EXIT_USAGE ? EXIT_DONE : code;
 }
 
 /* ---- a sweep ------------------------------------------------------------------------------ */
@@ -73,78 +88,41 @@ static bool (*const pictures[])(const struct plot *, stance_message *) = {
 #undef PICTURE
 };
 
-static int draw_sweep(const struct plot *plot)
+static int draw_sweep(const struct plot *plot, stance_message *message)
 {
     const struct results *r = plot->r;
     uint64_t *list;
     size_t count;
-    stance_message message = {""};
 
-    bool good = true;
-    for (size_t k = 0; good && k < sizeof pictures / sizeof pictures[0]; k++)
-        good = pictures[k](plot, &message);
-    good = good && results_recorded(r, &list, &count, &message);
-    if (!good) {
-        fprintf(stderr, "%s\n", message.text);
+    for (size_t k = 0; k < sizeof pictures / sizeof pictures[0]; k++)
+        if (!pictures[k](plot, message))
+            return EXIT_IO;
+    if (!results_recorded(r, &list, &count, message))
         return EXIT_IO;
-    }
-    if (count > 0) {
+    if (count > 0)
         fprintf(stderr, "trajectories of %zu case%s are recorded: --case %llu draws %s\n", count,
                 count == 1 ? "" : "s", (unsigned long long)list[0],
                 count == 1 ? "it" : "the first");
-    }
     free(list);
-    return EXIT_DONE;
+    return sensitivity_study_fits(r) ? draw_sensitivity(plot, NULL, message) : EXIT_DONE;
 }
 
-/* ---- a sampled study ---------------------------------------------------------------------- */
-
-/* The picture for which `stance sensitivity` has options; what a file is too short for is said.
- * answer NULL: of the share of cases that end well. */
-static int draw_sensitivity(const struct plot *plot, const struct plot_answer *answer)
-{
-    const struct sensitivity_request request = {
-        .answer = answer ? answer->name : NULL,
-        .unit = answer ? answer->unit : "",
-        .of = answer ? answer->of : RESULTS_KIND_COUNT,
-        .bootstrap = SENSITIVITY_BOOTSTRAP,
-    };
-    struct sensitivity_study study;
-    stance_message message = {""};
-    char stem[400];
-    int code = sensitivity_study_make(&study, plot->r, &request, &message);
-    if (code == EXIT_DONE) {
-        snprintf(stem, sizeof stem, "%.300s%s%s-sensitivity", plot->stem, answer ? "-" : "",
-                 answer ? answer->name : "");
-        code = sensitivity_picture(&study, plot->look, plot->directory, stem, &message) ? EXIT_DONE
-                                                                                        : EXIT_IO;
-        sensitivity_study_free(&study);
-    }
-    if (code != EXIT_DONE)
-        fprintf(stderr, "%s\n", message.text);
-    return code == EXIT_USAGE ? EXIT_DONE : code;
-}
-
-/* ---- an answer ---------------------------------------------------------------------------- */
-
-static int draw_answer(const struct plot *plot, const char *name, enum results_kind of)
+static int draw_answer(const struct plot *plot, const char *name, enum results_kind of,
+                       stance_message *message)
 {
     struct plot_answer answer;
-    stance_message message = {""};
     plot_answer_find(name, &answer);
     answer.of = of;
     if (plot->r->single) {
-        fprintf(stderr, "%s: holds one case; stance summary prints its numbers\n", plot->r->file);
+        complain(message, "%.150s: holds one case; stance summary prints its numbers",
+                 plot->r->file);
         return EXIT_USAGE;
     }
     if (sensitivity_study_fits(plot->r))
-        return draw_sensitivity(plot, &answer);
-    if (!(plot->r->axes < 2 ? plot_answer_curve(plot, &answer, &message)
-                            : plot_answer_map(plot, &answer, &message))) {
-        fprintf(stderr, "%s\n", message.text);
-        return EXIT_IO;
-    }
-    return EXIT_DONE;
+        return draw_sensitivity(plot, &answer, message);
+    return (plot->r->axes < 2 ? plot_answer_curve : plot_answer_map)(plot, &answer, message)
+               ? EXIT_DONE
+               : EXIT_IO;
 }
 
 /* ---- the command -------------------------------------------------------------------------- */
@@ -161,81 +139,70 @@ struct request {
 };
 
 /* The outlines of all files. */
-static int draw_outlines(struct request *request, const struct plot *first)
+static int draw_outlines(const struct request *request, const struct plot *first,
+                         stance_message *message)
 {
     static struct results r[MOST_FILES]; /* large; the process has but one command */
     struct plot plots[MOST_FILES] = {*first};
-    stance_message message = {""};
     size_t opened = 1;
     bool good = true;
     while (good && opened < request->files.count) {
-        good = results_open(&r[opened], request->files.text[opened], &message);
-        if (good) {
-            plots[opened] = *first;
-            plots[opened].r = &r[opened];
-            opened++;
-        }
+        plots[opened] = *first;
+        plots[opened].r = &r[opened];
+        good = results_open(&r[opened], request->files.text[opened], message);
+        opened += good;
     }
-    good = good && plot_outline(plots, (int)request->files.count, request->of, &message);
+    good = good && plot_outline(plots, (int)request->files.count, request->of, message);
     while (opened > 1)
         results_close(&r[--opened]);
-    if (!good)
-        fprintf(stderr, "%s\n", message.text);
     return good ? EXIT_DONE : EXIT_IO;
 }
 
-/* Of the file of a search. */
-static int draw_search(struct request *request)
+/* Of a results file. */
+static int draw_results(struct request *request, stance_message *message)
 {
-    if (request->index != OPTION_NONE || request->answer || request->outline)
-        return command_usage(&command_plot, "a search has no cases: none of --case, --answer and "
-                                            "--outline; its best scenario, once it is run, has");
-    const int code = search_draw(&request->look, request->files.text, request->files.count);
-    return code == EXIT_DONE && !look_end(&request->look, &command_plot, request->files.text[0])
-               ? EXIT_USAGE
-               : code;
+    const bool indexed = request->index != OPTION_NONE;
+    struct results r;
+    char own_directory[1024];
+    int code = EXIT_IO;
+
+    if (!results_open(&r, request->files.text[0], message))
+        return EXIT_IO;
+    const char *const directory =
+        look_directory(&request->look, request->files.text[0], own_directory, sizeof own_directory);
+    const struct plot plot = {&r, directory, r.name, &request->look, request->allowed};
+    if (request->allowed && !request->outline && (r.single || r.sample >= 0 || r.axes < 2)) {
+        complain(message, "%.150s: has no map: --allowed belongs to maps over two starts", r.file);
+        code = EXIT_USAGE;
+    } else if (gnuplot_directory(directory)) {
+        code = request->outline  ? draw_outlines(request, &plot, message)
+               : request->answer ? draw_answer(&plot, request->answer, request->of, message)
+               : indexed || r.single
+                   ? draw_case(&plot, indexed ? request->index : r.index, indexed, message)
+                   : draw_sweep(&plot, message);
+    }
+    results_close(&r);
+    return code;
 }
 
 static int draw(void *context)
 {
     struct request *request = context;
-    const bool indexed = request->index != OPTION_NONE;
-    struct results r;
+    const struct option_texts *const files = &request->files;
+    const bool search = search_file_is(files->text[0]);
     stance_message message = {""};
-    char own_directory[1024];
-    int code;
-
-    if (search_file_is(request->files.text[0]))
-        return draw_search(request);
-    if (request->files.count > 1 && !request->outline)
+    if (search && (request->index != OPTION_NONE || request->answer || request->outline))
+        return command_usage(&command_plot, "a search has no cases: none of --case, --answer and "
+                                            "--outline; its best scenario, once it is run, has");
+    if (!search && files->count > 1 && !request->outline)
         return command_usage(&command_plot, "several files are drawn in one frame by --outline");
-    if (!results_open(&r, request->files.text[0], &message)) {
+    const int code = search ? search_draw(&request->look, files->text, files->count)
+                            : draw_results(request, &message);
+    if (code != EXIT_DONE && message.text[0])
         fprintf(stderr, "%s\n", message.text);
-        return EXIT_IO;
-    }
-    const char *const directory =
-        look_directory(&request->look, request->files.text[0], own_directory, sizeof own_directory);
-    const struct plot plot = {&r, directory, r.name, &request->look, request->allowed};
-    if (request->allowed && !request->outline && (r.single || r.sample >= 0 || r.axes < 2)) {
-        fprintf(stderr, "%s: has no map: --allowed belongs to maps over two starts\n", r.file);
-        code = EXIT_USAGE;
-    } else if (!gnuplot_directory(directory)) {
-        code = EXIT_IO;
-    } else if (request->outline) {
-        code = draw_outlines(request, &plot);
-    } else if (request->answer) {
-        code = draw_answer(&plot, request->answer, request->of);
-    } else if (indexed || r.single) {
-        code = draw_case(&plot, indexed ? request->index : r.index, indexed);
-    } else {
-        code = draw_sweep(&plot);
-        if (code == EXIT_DONE && sensitivity_study_fits(&r))
-            code = draw_sensitivity(&plot, NULL);
-    }
-    results_close(&r);
-    if (code == EXIT_DONE && !look_end(&request->look, &command_plot, request->files.text[0]))
-        code = EXIT_USAGE;
-    return code;
+    return code == EXIT_DONE && !look_end(&request->look, &command_plot, files->text[0])
+               ? EXIT_USAGE
+               : code;
 }
 
 static int run(int argc, char **argv)

@@ -2,7 +2,6 @@
  * drawn. `stance run --only CASE --trace` computes them, from the scenario inside the file. */
 #include "plot_case.h"
 
-#include "analysis/statistics/statistics.h"
 #include "runner/base/message.h"
 #include "runner/base/sandbox.h"
 #include "runner/ranks/parallel.h"
@@ -58,19 +57,27 @@ struct near {
     double *distance; /* [points of the sample] squares, in units of the ranges; NULL: no sample */
 };
 
+/* The number of NAME=NUMBER; false, and it is said, where it is none. */
+static bool read_number(const char *text, const char *what, double *number)
+{
+    char *end;
+    *number = strtod(text, &end);
+    return (end != text && !*end && isfinite(*number)) ||
+           bad("--near takes NAME=NUMBER, not", what);
+}
+
 /* The value of an axis that a word is, or is nearest to. */
 static bool find_value(const struct results_axis *axis, const char *name, const char *text,
                        size_t *value)
 {
-    char *end;
-    const double wanted = strtod(text, &end);
+    double wanted;
     if (axis->word) {
         *value =
             command_word(&command_replay, name, text, (const char *const *)axis->word, axis->count);
         return *value < axis->count;
     }
-    if (end == text || *end || !isfinite(wanted))
-        return bad("--near takes NAME=NUMBER, not", text);
+    if (!read_number(text, text, &wanted))
+        return false;
     *value = 0;
     for (size_t i = 1; i < axis->count; i++)
         if (fabs(axis->value[i] - wanted) < fabs(axis->value[*value] - wanted))
@@ -81,17 +88,15 @@ static bool find_value(const struct results_axis *axis, const char *name, const 
 static bool add_distances(const struct results_varied *v, const char *name, const char *text,
                           double *distance)
 {
-    char *end;
-    const double wanted = strtod(text, &end);
-    double low = INFINITY, high = -INFINITY;
-    if (v->word || end == text || *end || !isfinite(wanted))
+    double wanted, low, high;
+    if (v->word)
         return bad("--near takes NAME=NUMBER, not", name);
+    if (!read_number(text, name, &wanted))
+        return false;
+    const double range =
+        plot_range(v->of.value, v->of.count, &low, &high) && high > low ? high - low : 1;
     for (size_t i = 0; i < v->of.count; i++) {
-        low = fmin(low, v->of.value[i]);
-        high = fmax(high, v->of.value[i]);
-    }
-    for (size_t i = 0; i < v->of.count; i++) {
-        const double off = (v->of.value[i] - wanted) / (high > low ? high - low : 1);
+        const double off = (v->of.value[i] - wanted) / range;
         distance[i] += off * off;
     }
     return true;
@@ -102,24 +107,21 @@ static bool add_distances(const struct results_varied *v, const char *name, cons
 static int find_along(const struct results *r, const char *name, const char *text,
                       struct near *near, bool *good)
 {
-    struct scenario *s = malloc(sizeof *s);
-    if (!s || !results_scenario(r, s)) {
-        free(s);
-        return 0;
-    }
+    struct scenario s;
     int at = 0, path = 0, found = 0;
-    for (int a = 0; a < s->axes && a < r->axes; a++)
-        for (int k = 1; k < s->axis[a].paths; k++)
-            if (a != r->sample && !s->axis[a].enumeration[k] && is_meant(s->axis[a].path[k], name))
+    if (!results_scenario(r, &s))
+        return 0;
+    for (int a = 0; a < s.axes && a < r->axes; a++)
+        for (int k = 1; k < s.axis[a].paths; k++)
+            if (a != r->sample && !s.axis[a].enumeration[k] && is_meant(s.axis[a].path[k], name))
                 at = a, path = k, found++;
     struct results_axis along = {.count = found == 1 ? r->axis[at].count : 0};
     along.value = along.count > 0 ? malloc(along.count * sizeof *along.value) : NULL;
     for (size_t i = 0; along.value && i < along.count; i++)
-        along.value[i] = scenario_axis_value(&s->axis[at], i % s->axis[at].count, path);
+        along.value[i] = scenario_axis_value(&s.axis[at], i % s.axis[at].count, path);
     *good = along.value && find_value(&along, name, text, &near->point[at]);
     free(along.value);
-    scenario_free(s);
-    free(s);
+    scenario_free(&s);
     return found;
 }
 
@@ -207,15 +209,11 @@ static bool check_sets(const struct results *r, const struct request *request)
     for (size_t k = 0; k < request->sets.count; k++) {
         const char *const set = request->sets.text[k];
         const size_t length = strcspn(set, "=");
-        bool varied = false;
-        for (int a = 0; a < r->axes; a++)
-            varied =
-                varied || (strncmp(r->axis[a].name, set, length) == 0 && !r->axis[a].name[length]);
-        for (int v = 0; v < r->varied; v++)
-            varied = varied ||
-                     (strncmp(r->vary[v].of.name, set, length) == 0 && !r->vary[v].of.name[length]);
-        if (varied)
-            return bad("--near chooses among the values that the file has; --set cannot", set);
+        for (int a = 0; a < r->axes + r->varied; a++) {
+            const char *const name = a < r->axes ? r->axis[a].name : r->vary[a - r->axes].of.name;
+            if (strncmp(name, set, length) == 0 && !name[length])
+                return bad("--near chooses among the values that the file has; --set cannot", set);
+        }
     }
     return true;
 }
@@ -230,14 +228,6 @@ struct replay {
     struct plot_case c;
     bool opened, loaded;
 };
-
-static bool write_scenario(const char *path, const char *text, stance_message *message)
-{
-    FILE *out = fopen(path, "wx");
-    const bool good = out && fputs(text, out) >= 0;
-    return (out && fclose(out) == 0 && good) ||
-           complain(message, "%.150s: cannot be written: %s", path, strerror(errno));
-}
 
 /* This program again: its exit code, or -1. */
 static int run_again(const struct request *request, const struct replay *replay)
@@ -277,8 +267,12 @@ static int compute(const struct results *r, const struct request *request, struc
     snprintf(replay->scenario, sizeof replay->scenario, "%.250s/%.255s.yaml", replay->directory,
              r->name);
     snprintf(replay->file, sizeof replay->file, "%.250s/%.255s.h5", replay->directory, r->name);
-    if (!write_scenario(replay->scenario, r->scenario, message))
+    FILE *out = fopen(replay->scenario, "wx");
+    const bool wrote = out && fputs(r->scenario, out) >= 0;
+    if (!out || fclose(out) != 0 || !wrote) {
+        complain(message, "%.150s: cannot be written: %s", replay->scenario, strerror(errno));
         return EXIT_IO;
+    }
     const int code = run_again(request, replay);
     if (code != EXIT_DONE && code != EXIT_CASES_FAILED) {
         complain(message, "%.150s: case %llu cannot be computed again", r->file,
@@ -338,15 +332,14 @@ static int replay(const struct request *request, struct look *look, const struct
     struct plot plots[MOST_CASES];
     char directory[1024], stem[400];
     const size_t count = asked_cases(request) > 0 ? asked_cases(request) : 1;
-    size_t used = (size_t)snprintf(stem, sizeof stem, "%.200s", r->name);
     int code = EXIT_DONE;
+    snprintf(stem, sizeof stem, "%.200s", r->name);
     if (!check_sets(r, request))
         return EXIT_USAGE;
     for (size_t k = 0; k < count; k++) {
         if (!find_case(r, request, k, &replays[k].index))
             return EXIT_USAGE;
-        used += (size_t)snprintf(stem + used, sizeof stem - used, "-case%llu",
-                                 (unsigned long long)replays[k].index);
+        add_text(stem, sizeof stem, "-case%llu", (unsigned long long)replays[k].index);
     }
     const char *const where = look_directory(look, request->file, directory, sizeof directory);
     for (size_t k = 0; k < MOST_CASES; k++)

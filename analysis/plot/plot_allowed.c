@@ -86,7 +86,7 @@ static void start_of(const struct section *s, struct picture *p, int panel, size
                      double *x)
 {
     double position[STANCE_MAX_COORDINATES], velocity[STANCE_MAX_COORDINATES];
-    scenario_case_values(&p->s, plot_layout_index(p->layout, p->r, panel, i, j), &p->values);
+    scenario_case_values(&p->s, plot_layout_index(p->layout, panel, i, j), &p->values);
     resolve_start(p->s.scene, &p->values, &s->of.design, position, velocity);
     allowed_state(&s->of, position, velocity, x);
 }
@@ -200,19 +200,6 @@ static void refine(struct outline *o, struct end a, struct end b, int depth)
     refine(o, middle, b, depth - 1);
 }
 
-static bool trace(struct outline *o)
-{
-    const double full = 2 * acos(-1);
-    struct end last = shoot(o, 0);
-    for (int k = 1; k <= RAYS; k++) {
-        const struct end next = shoot(o, full * k / RAYS);
-        keep(o, last);
-        refine(o, last, next, DEEPEST);
-        last = next;
-    }
-    return !o->failed;
-}
-
 /* ---- panels ------------------------------------------------------------------------------- */
 
 /* The share of the panel's starts that are in the set, and their mean, which then is. */
@@ -242,8 +229,7 @@ static bool make_panel(struct plot_allowed_panel *panel, struct picture *p, int 
     struct section s;
     struct outline o = {.s = &s, .panel = panel};
     panel->share = NAN;
-    bool good =
-        allowed_make(&s.of, &p->s, plot_layout_index(p->layout, p->r, number, 0, 0), message);
+    bool good = allowed_make(&s.of, &p->s, plot_layout_index(p->layout, number, 0, 0), message);
     if (!good)
         return false;
     const bool unreached = s.of.set && stance_null_set_unreached(s.of.set, NULL, NULL) > 0;
@@ -257,8 +243,16 @@ static bool make_panel(struct plot_allowed_panel *panel, struct picture *p, int 
         if (panel->share == 0)
             complain(why, "none of these starts is allowed%s",
                      unreached ? ": no torque moves some of each" : "");
-        else
-            good = trace(&o) || no_memory(message);
+        struct end last = {0};
+        for (int k = 0; panel->share > 0 && k <= RAYS; k++) {
+            const struct end next = shoot(&o, 2 * acos(-1) * k / RAYS);
+            if (k > 0) {
+                keep(&o, last);
+                refine(&o, last, next, DEEPEST);
+            }
+            last = next;
+        }
+        good = !o.failed || no_memory(message);
         size_t edges = 0;
         for (size_t i = 0; i < panel->points; i++) {
             struct plot_allowed_point *const point = &panel->point[i];
@@ -273,34 +267,11 @@ static bool make_panel(struct plot_allowed_panel *panel, struct picture *p, int 
     return good;
 }
 
-static bool make_panels(struct plot_allowed *allowed, struct picture *p, stance_message *message)
-{
-    stance_message first = {""};
-    int without = 0;
-    bool good = true;
-    for (int k = 0; good && k < allowed->panels; k++) {
-        stance_message why = {""};
-        good = make_panel(&allowed->panel[k], p, k, &why, message);
-        if (why.text[0] && without++ == 0)
-            first = why;
-    }
-    if (good && without > 0 && allowed->panels > 1)
-        fprintf(
-            stderr,
-            "stance: warning: %s: no outline of what linear theory allows in %d of %d panels: %s\n",
-            p->r->file, without, allowed->panels, first.text);
-    else if (good && without > 0)
-        fprintf(stderr, "stance: warning: %s: no outline of what linear theory allows: %s\n",
-                p->r->file, first.text);
-    return good;
-}
-
 bool plot_allowed_make(struct plot_allowed *allowed, const struct plot *plot,
                        const struct plot_layout *layout, const struct plot_frame *frame,
                        stance_message *message)
 {
     const struct results *const r = plot->r;
-    stance_message why;
     *allowed = (struct plot_allowed){0};
     if (!plot->allowed)
         return true;
@@ -313,16 +284,24 @@ bool plot_allowed_make(struct plot_allowed *allowed, const struct plot *plot,
     p->r = r, p->layout = layout, p->frame = *frame;
     p->axis[0] = &r->axis[layout->x], p->axis[1] = &r->axis[layout->y];
     bool good = results_swept(r, &p->s, message);
-    if (good) {
-        if (check_axes(p, &why)) {
-            allowed->panels = layout->panels;
-            good = make_panels(allowed, p, message);
-        } else {
-            fprintf(stderr, "stance: warning: %s: no outline of what linear theory allows: %s\n",
-                    r->file, why.text);
-        }
-        scenario_free(&p->s);
+    stance_message first = {""};
+    int without = 0;
+    if (good && check_axes(p, &first))
+        allowed->panels = layout->panels;
+    for (int k = 0; good && k < allowed->panels; k++) {
+        stance_message why = {""};
+        good = make_panel(&allowed->panel[k], p, k, &why, message);
+        if (why.text[0] && without++ == 0)
+            first = why;
     }
+    if (good && first.text[0]) {
+        fprintf(stderr, "stance: warning: %s: no outline of what linear theory allows", r->file);
+        if (allowed->panels > 1)
+            fprintf(stderr, " in %d of %d panels", without, allowed->panels);
+        fprintf(stderr, ": %s\n", first.text);
+    }
+    if (good || allowed->panels > 0)
+        scenario_free(&p->s);
     free(p);
     return good;
 }

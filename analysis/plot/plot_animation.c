@@ -34,41 +34,29 @@ static double end_of(const struct plot_case *c)
 }
 
 /* Around the points of all frames, about a place that moves with the first case if it `follows`. */
-static void measure(const struct plot_case *c, int frames, double step, bool follows,
-                    struct view *view)
+static struct view measure(const struct plot_case *c, int frames, double step, bool follows)
 {
-    *view = (struct view){{INFINITY, 0}, {-INFINITY, 0}, follows};
+    struct view view = {{INFINITY, 0}, {-INFINITY, 0}, follows};
     for (const struct plot_case *k = c; k; k = k->other) {
         for (int f = 0; f < frames; f++) {
             struct figure first, figure;
             figure_make(&first, c, row_at(c->t, f * step));
             figure_make(&figure, k, row_at(k->t, f * step));
-            for (int p = 0; p < figure.points; p++) {
-                const double x = figure.point[p][0] - (follows ? first.centre : 0);
-                const double z = figure.point[p][1] - (follows ? first.base : 0);
-                view->low[0] = fmin(view->low[0], x);
-                view->high[0] = fmax(view->high[0], x);
-                view->low[1] = fmin(view->low[1], z);
-                view->high[1] = fmax(view->high[1], z);
-            }
+            const double about[2] = {follows ? first.centre : 0, follows ? first.base : 0};
+            for (int p = 0; p < figure.points; p++)
+                for (int i = 0; i < 2; i++) {
+                    view.low[i] = fmin(view.low[i], figure.point[p][i] - about[i]);
+                    view.high[i] = fmax(view.high[i], figure.point[p][i] - about[i]);
+                }
         }
     }
-}
-
-static void choose_view(const struct plot_case *c, int frames, double step, struct view *view)
-{
-    measure(c, frames, step, false, view);
-    const double tall = view->high[1] - view->low[1];
-    if (view->high[0] - view->low[0] > 3 * tall)
-        measure(c, frames, step, true, view);
-    const double margin = 0.08 * (view->high[1] - view->low[1]) + 1e-9;
-    const double least = 0.6 * (view->high[1] - view->low[1]); /* half a width */
-    const double middle = 0.5 * (view->low[0] + view->high[0]);
-    const double half = fmax(least, 0.5 * (view->high[0] - view->low[0])) + margin;
-    view->low[0] = middle - half;
-    view->high[0] = middle + half;
-    view->low[1] -= margin;
-    view->high[1] += margin;
+    const double wide = view.high[0] - view.low[0], tall = view.high[1] - view.low[1];
+    if (!follows && wide > 3 * tall)
+        return measure(c, frames, step, true);
+    const double margin = 0.08 * tall + 1e-9, middle = 0.5 * (view.low[0] + view.high[0]);
+    const double half = fmax(0.6 * tall, 0.5 * wide) + margin;
+    return (struct view){
+        {middle - half, view.low[1] - margin}, {middle + half, view.high[1] + margin}, follows};
 }
 
 /* The frames of one case, each an index of $segments<number> and $points<number>. */
@@ -91,15 +79,13 @@ static void put_frames(struct gnuplot *g, const struct plot_case *c, int number,
 bool plot_animation(const struct plot_case *c, stance_message *message)
 {
     struct gnuplot g;
-    struct view view;
     int number = 0;
     if (!c->readable || (c->other && !c->other->readable))
         return complain(message, "%.150s: no stick figures: this version cannot read its scenario",
                         c->plot->r->file);
-    const stance_scene *scene = c->scenario.scene;
     const double step = fmax(frame_time, ceil(100 * end_of(c) / LOOK_MOST_FRAMES) / 100);
     const int frames = (int)(end_of(c) / step + 1e-9) + 1;
-    choose_view(c, frames, step, &view);
+    const struct view view = measure(c, frames, step, false);
     c->plot->look->animated = step;
     if (!plot_case_begin(c, &g, plot_animation_gp, "Stick figures", message))
         return false;
@@ -107,10 +93,8 @@ bool plot_animation(const struct plot_case *c, stance_message *message)
                 step, figure_fall(c), view.follows, c->other ? 2 : 1);
     gnuplot_set(&g, "low_x = %#.17g; high_x = %#.17g; low_z = %#.17g; high_z = %#.17g", view.low[0],
                 view.high[0], view.low[1], view.high[1]);
-    gnuplot_set(&g, "contacts = %d\narray contact_name[%d]\narray centre[%d]\narray base[%d]",
-                plot_case_grounded(scene), STANCE_MAX_CONTACTS, frames, frames);
-    for (int k = 0; k < plot_case_grounded(scene); k++)
-        gnuplot_text(&g, scene->contact_name[k], "contact_name[%d]", k + 1);
+    figure_names(&g, c->scenario.scene);
+    gnuplot_arrays(&g, frames, "centre base");
     for (int f = 0; f < frames; f++) {
         struct figure figure;
         figure_make(&figure, c, row_at(c->t, f * step));

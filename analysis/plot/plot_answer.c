@@ -1,6 +1,6 @@
 /* plot_answer.c - the answers that `stance plot --answer` draws: their names, units and numbers. */
 #include "analysis/draw/plot.h"
-#include "analysis/statistics/statistics.h"
+#include "runner/base/message.h"
 #include "runner/store/store.h"
 
 #include <math.h>
@@ -28,6 +28,19 @@ bool plot_answer_find(const char *name, struct plot_answer *answer)
     return k < STANCE_ANSWER_COUNT;
 }
 
+bool plot_range(const double *values, size_t n, double *low, double *high)
+{
+    *low = INFINITY;
+    *high = -INFINITY;
+    for (size_t i = 0; i < n; i++) {
+        if (isfinite(values[i])) {
+            *low = fmin(*low, values[i]);
+            *high = fmax(*high, values[i]);
+        }
+    }
+    return *low <= *high;
+}
+
 bool plot_answer_numbers(const struct plot *plot, const struct plot_answer *answer, double **values,
                          double *low, double *high, stance_message *message)
 {
@@ -37,29 +50,17 @@ bool plot_answer_numbers(const struct plot *plot, const struct plot_answer *answ
     bool *which; /* cases without numbers, whatever stands in the file */
     if (!statistics_inferred(r, &inferred, &which, message))
         return false;
-    if (!results_answer(r, answer->name, values, message)) {
-        free(which);
-        return false;
-    }
-    *low = INFINITY;
-    *high = -INFINITY;
-    for (uint64_t i = 0; *values && i < r->cases; i++) {
-        const bool wanted = all || r->kind[i] == (uint8_t)answer->of;
-        if (wanted && !(which && which[i]) && isfinite((*values)[i])) {
-            *low = fmin(*low, (*values)[i]);
-            *high = fmax(*high, (*values)[i]);
-        } else {
+    const bool good = results_answer(r, answer->name, values, message);
+    for (uint64_t i = 0; good && *values && i < r->cases; i++)
+        if (!(all || r->kind[i] == answer->of) || (which && which[i]))
             (*values)[i] = NAN;
-        }
-    }
     free(which);
-    if (*values && *low <= *high)
-        return true;
-    snprintf(message->text, sizeof message->text, "%.200s: no%s%s case has a number %s", r->file,
-             all ? "" : " ", all ? "" : results_kind_names[answer->of], answer->name);
+    if (!good || (*values && plot_range(*values, r->cases, low, high)))
+        return good;
     free(*values);
     *values = NULL;
-    return false;
+    return complain(message, "%.200s: no%s%s case has a number %s", r->file, all ? "" : " ",
+                    all ? "" : results_kind_names[answer->of], answer->name);
 }
 
 void plot_answer_title(const struct plot_answer *answer, char *text, size_t size)

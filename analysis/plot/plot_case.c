@@ -2,7 +2,6 @@
  * figures 11, 12, 16, 19 to 21 of the paper show them. Its stick figures are in plot_strip.c. */
 #include "plot_case.h"
 
-#include "analysis/statistics/statistics.h"
 #include "runner/base/message.h"
 
 #include <math.h>
@@ -61,15 +60,6 @@ static void include(struct range *range, double value)
     range->high = fmax(range->high, value);
 }
 
-/* Room around the values; never so little that noise of rounding fills the frame. */
-static void widen(struct range *range)
-{
-    double least = 1e-6 * (1 + fabs(range->low) + fabs(range->high));
-    double span = fmax(range->high - range->low, least), middle = 0.5 * (range->low + range->high);
-    range->low = middle - 0.56 * span;
-    range->high = middle + 0.56 * span;
-}
-
 /* Of columns first, first + every ... before `end`, of `width`. With `robust`, single peaks (the
  * impulses of impacts) may stick out: the frame ends at half as much again as 98 % of the loaded
  * rows need. */
@@ -80,13 +70,10 @@ static struct range range_of(const struct results_trajectory *t, const double *v
     double *loaded = robust ? malloc(t->rows * width * sizeof *loaded) : NULL, limit = INFINITY;
     size_t n = 0;
 
-    for (size_t k = 0; k < t->rows && loaded; k++) {
-        for (size_t c = first; c < end; c += every) {
-            double value = fabs(values[k * width + c]);
-            if (isfinite(value) && value > 0)
-                loaded[n++] = value;
-        }
-    }
+    for (size_t k = 0; k < t->rows && loaded; k++)
+        for (size_t c = first; c < end; c += every)
+            if (isfinite(values[k * width + c]) && values[k * width + c] != 0)
+                loaded[n++] = fabs(values[k * width + c]);
     if (n > 0) {
         struct statistics_numbers numbers;
         statistics_summarise(loaded, n, &numbers);
@@ -97,14 +84,12 @@ static struct range range_of(const struct results_trajectory *t, const double *v
     for (size_t k = 0; k < t->rows; k++) {
         bool beyond = false;
         for (size_t c = first; c < end; c += every) {
-            double value = values[k * width + c];
+            const double value = values[k * width + c];
             if (!isfinite(value))
                 continue;
-            if (fabs(value) <= limit) {
-                include(&range, value);
-            } else {
+            include(&range, fmax(-limit, fmin(limit, value)));
+            if (fabs(value) > limit) {
                 beyond = true;
-                include(&range, value > 0 ? limit : -limit);
                 range.largest = fabs(value) > fabs(range.largest) ? value : range.largest;
             }
         }
@@ -117,36 +102,24 @@ static struct range range_of(const struct results_trajectory *t, const double *v
 
 /* ---- pages -------------------------------------------------------------------------------- */
 
-/* What a page shows of a trajectory, [rows][width]; NULL: it has none. */
-typedef const double *(*shown)(const struct results_trajectory *t, size_t *width);
-
-static const double *positions(const struct results_trajectory *t, size_t *width)
-{
-    *width = t->coordinates;
-    return t->position;
-}
-static const double *forces(const struct results_trajectory *t, size_t *width)
-{
-    *width = 2 * t->contacts;
-    return t->force;
-}
-static const double *torques(const struct results_trajectory *t, size_t *width)
-{
-    *width = t->actuators;
-    return t->torque;
-}
-static const double *gaps(const struct results_trajectory *t, size_t *width)
-{
-    *width = t->contacts;
-    return t->gap;
-}
+/* What a page shows of trajectories. */
+enum shown { POSITIONS, FORCES, TORQUES, GAPS };
 
 struct page {
     struct gnuplot g;
     const struct plot_case *c;
-    shown of;
+    enum shown of;
     int panels, lines, ramps; /* so far */
 };
+
+/* [rows][width]; NULL: it has none. */
+static const double *shown_of(const struct page *page, const struct results_trajectory *t,
+                              size_t *width)
+{
+    const double *const values[] = {t->position, t->force, t->torque, t->gap};
+    *width = (const size_t[]){t->coordinates, 2 * t->contacts, t->actuators, t->contacts}[page->of];
+    return values[page->of];
+}
 
 /* Of all cases: see range_of. */
 static struct range range_of_all(const struct page *page, size_t first, size_t every, size_t end,
@@ -155,7 +128,7 @@ static struct range range_of_all(const struct page *page, size_t first, size_t e
     struct range all = {INFINITY, -INFINITY, 0, 0};
     for (const struct plot_case *c = page->c; c; c = c->other) {
         size_t width;
-        const double *values = page->of(c->t, &width);
+        const double *values = shown_of(page, c->t, &width);
         const struct range own = range_of(c->t, values, width, first, every, end, robust);
         include(&all, own.low);
         include(&all, own.high);
@@ -168,8 +141,8 @@ static struct range range_of_all(const struct page *page, size_t first, size_t e
 /* Value i of the first path of an axis, for people. */
 static void swept_value(const struct scenario_axis *axis, size_t i, char *text, size_t size)
 {
-    char number[32];
-    double value = scenario_axis_value(axis, i, 0), gap = INFINITY;
+    const double value = scenario_axis_value(axis, i, 0);
+    double gap = INFINITY;
     if (axis->words || isinf(value)) {
         scenario_axis_text(axis, i, 0, text, size);
         return;
@@ -178,68 +151,60 @@ static void swept_value(const struct scenario_axis *axis, size_t i, char *text, 
         gap = fmin(gap, fabs(value - scenario_axis_value(axis, i - 1, 0)));
     if (i + 1 < axis->count)
         gap = fmin(gap, fabs(scenario_axis_value(axis, i + 1, 0) - value));
-    results_number_text(value, isinf(gap) ? 0 : gap, number, sizeof number);
-    bool unit = strcmp(axis->unit, "1") != 0;
-    snprintf(text, size, "%s%s%s", number, unit && axis->unit[0] ? " " : "",
-             unit ? axis->unit : "");
+    results_number_text(value, isinf(gap) ? 0 : gap, text, size);
+    if (axis->unit[0] && strcmp(axis->unit, "1") != 0)
+        add_text(text, size, " %s", axis->unit);
 }
 
 /* "ground.friction = 0.3, ..." of a case of a sweep, from its scenario. */
 static void swept_text(const struct scenario *s, uint64_t index, char *text, size_t size)
 {
-    size_t point[SCENARIO_MAX_AXES], used = 0;
+    size_t point[SCENARIO_MAX_AXES];
     char value[64];
     for (int a = s->axes - 1; a >= 0; a--) {
         point[a] = (size_t)(index % s->axis[a].count);
         index /= s->axis[a].count;
     }
-    text[0] = '\0';
-    for (int a = 0; a < s->axes && used < size; a++) {
+    for (int a = 0; a < s->axes; a++) {
         const struct scenario_axis *axis = &s->axis[a];
-        for (int k = 0; axis->sample && k < axis->paths && used < size; k++) {
-            scenario_axis_text(axis, point[a], k, value, sizeof value);
-            used += (size_t)snprintf(text + used, size - used, "%s%s = %s", a || k ? ", " : "",
-                                     axis->path[k], value);
+        for (int k = 0; k < (axis->sample ? axis->paths : 1); k++) {
+            if (axis->sample)
+                scenario_axis_text(axis, point[a], k, value, sizeof value);
+            else
+                swept_value(axis, point[a], value, sizeof value);
+            add_text(text, size, "%s%s = %s", a || k ? ", " : "",
+                     axis->sample ? axis->path[k] : axis->name, value);
         }
-        if (axis->sample)
-            continue;
-        swept_value(axis, point[a], value, sizeof value);
-        used += (size_t)snprintf(text + used, size - used, "%s%s = %s", a ? ", " : "",
-                                 s->axis[a].name, value);
     }
 }
 
+/* What the case is and what became of it, added to a subtitle. */
 static void describe(const struct plot_case *c, char *text, size_t size)
 {
     const struct results *r = c->plot->r;
-    uint64_t row = r->single ? 0 : c->t->index;
     char where[600] = "";
     if (!r->single)
         results_case_text(r, c->t->index, where, sizeof where);
     else if (c->readable)
         swept_text(&c->scenario, c->t->index, where, sizeof where);
-    if (where[0]) {
-        snprintf(text, size, "case %llu, %s: %s", (unsigned long long)c->t->index, where,
-                 results_kind_names[r->kind[row]]);
-    } else {
-        snprintf(text, size, "%s", results_kind_names[r->kind[row]]);
-    }
-    size_t used = strlen(text);
-    if (used < size && isfinite(c->settle_time))
-        used += (size_t)snprintf(text + used, size - used, ", settled from %.4g s", c->settle_time);
-    if (used < size && isfinite(c->fall_time))
-        snprintf(text + used, size - used, ", fallen at %.4g s", c->fall_time);
+    if (where[0])
+        add_text(text, size, "case %llu, %s: ", (unsigned long long)c->t->index, where);
+    add_text(text, size, "%s", results_kind_names[r->kind[r->single ? 0 : c->t->index]]);
+    if (isfinite(c->settle_time))
+        add_text(text, size, ", settled from %.4g s", c->settle_time);
+    if (isfinite(c->fall_time))
+        add_text(text, size, ", fallen at %.4g s", c->fall_time);
 }
 
 bool plot_case_begin(const struct plot_case *c, struct gnuplot *g, const char *script,
                      const char *what, stance_message *message)
 {
-    char subtitle[2048], about[800];
-    describe(c, about, sizeof about);
-    const size_t used = (size_t)snprintf(subtitle, sizeof subtitle, "%s; %s", what, about);
+    char subtitle[2048];
+    snprintf(subtitle, sizeof subtitle, "%s; ", what);
+    describe(c, subtitle, sizeof subtitle);
     if (c->other) {
-        describe(c->other, about, sizeof about);
-        snprintf(subtitle + used, sizeof subtitle - used, "; second %s", about);
+        add_text(subtitle, sizeof subtitle, "; second ");
+        describe(c->other, subtitle, sizeof subtitle);
     }
     return plot_begin(c->plot, g, script, subtitle, message);
 }
@@ -248,21 +213,19 @@ bool plot_case_begin(const struct plot_case *c, struct gnuplot *g, const char *s
 static bool begin_page(struct page *page, const char *what, int panels, int height,
                        stance_message *message)
 {
-    static const char *const arrays[] = {
-        "heading",      "label",       "low",         "high",         "track_panel", "track_column",
-        "track_factor", "track_width", "track_dash",  "track_colour", "ramp_panel",  "ramp_start",
-        "ramp_rate",    "ramp_end",    "ramp_colour", "ramp_dash",    "track_case"};
     double from = INFINITY, to = -INFINITY;
     struct gnuplot *g = &page->g;
     if (!plot_case_begin(page->c, g, plot_case_gp, what, message))
         return false;
     gnuplot_set(g, "panels = %d; height = %d", panels, height);
-    for (size_t k = 0; k < sizeof arrays / sizeof arrays[0]; k++)
-        gnuplot_set(g, "array %s[%d]", arrays[k], MOST_LINES);
+    gnuplot_arrays(g, MOST_LINES,
+                   "heading label low high track_panel track_column track_factor track_width "
+                   "track_dash track_colour track_case ramp_panel ramp_start ramp_rate ramp_end "
+                   "ramp_colour ramp_dash");
     int number = 0;
     for (const struct plot_case *c = page->c; c; c = c->other) {
         size_t width;
-        const double *values = page->of(c->t, &width);
+        const double *values = shown_of(page, c->t, &width);
         put_track(g, ++number, c->t, values, width);
         from = fmin(from, c->t->time[0]);
         to = fmax(to, c->t->time[c->t->rows - 1]);
@@ -273,13 +236,17 @@ static bool begin_page(struct page *page, const char *what, int panels, int heig
 
 /* The next panel: its range is that of all its lines and ramps. */
 static void put_panel(struct page *page, const char *heading, const char *label,
-                      struct range *range)
+                      const struct range *range)
 {
     const int p = ++page->panels;
-    widen(range);
+    /* Room around the values; never so little that noise of rounding fills the frame. */
+    const double least = 1e-6 * (1 + fabs(range->low) + fabs(range->high));
+    const double span = fmax(range->high - range->low, least);
+    const double middle = 0.5 * (range->low + range->high);
     gnuplot_text(&page->g, heading, "heading[%d]", p);
     gnuplot_text(&page->g, label, "label[%d]", p);
-    gnuplot_set(&page->g, "low[%d] = %#.17g; high[%d] = %#.17g", p, range->low, p, range->high);
+    gnuplot_set(&page->g, "low[%d] = %#.17g; high[%d] = %#.17g", p, middle - 0.56 * span, p,
+                middle + 0.56 * span);
 }
 
 /* A column of the track in the last panel, `factor` times; of another case dashed. */
@@ -287,14 +254,13 @@ static void put_line(struct page *page, size_t column, double factor, size_t hue
 {
     int number = 0;
     for (const struct plot_case *c = page->c; c; c = c->other) {
-        const int k = ++page->lines;
         number++;
         gnuplot_set(&page->g,
-                    "track_panel[%d] = %d; track_column[%d] = %zu; track_factor[%d] = %#.17g; "
-                    "track_colour[%d] = hue[%zu]; track_dash[%d] = %d; track_width[%d] = %g; "
-                    "track_case[%d] = %d",
-                    k, page->panels, k, column + 2, k, factor, k, hue % HUES + 1, k,
-                    dotted ? 3 : number, k, dotted ? 1 : 1.7, k, number);
+                    "k = %d; track_panel[k] = %d; track_column[k] = %zu; track_factor[k] = %#.17g; "
+                    "track_colour[k] = hue[%zu]; track_dash[k] = %d; track_width[k] = %g; "
+                    "track_case[k] = %d",
+                    ++page->lines, page->panels, column + 2, factor, hue % HUES + 1,
+                    dotted ? 3 : number, dotted ? 1 : 1.7, number);
     }
 }
 
@@ -305,11 +271,10 @@ struct ramp {
 
 static void put_ramp(struct page *page, const struct ramp *ramp, const char *colour, bool dashed)
 {
-    const int k = ++page->ramps;
     gnuplot_set(&page->g,
-                "ramp_panel[%d] = %d; ramp_start[%d] = %#.17g; ramp_rate[%d] = %#.17g; "
-                "ramp_end[%d] = %#.17g; ramp_colour[%d] = %s; ramp_dash[%d] = %d",
-                k, page->panels, k, ramp->start, k, ramp->rate, k, ramp->end, k, colour, k,
+                "k = %d; ramp_panel[k] = %d; ramp_start[k] = %#.17g; ramp_rate[k] = %#.17g; "
+                "ramp_end[k] = %#.17g; ramp_colour[k] = %s; ramp_dash[k] = %d",
+                ++page->ramps, page->panels, ramp->start, ramp->rate, ramp->end, colour,
                 !dashed          ? 1
                 : page->c->other ? 4
                                  : 2);
@@ -339,13 +304,6 @@ static void put_names(struct page *page, const char (*names)[SCENARIO_NAME], siz
 }
 
 /* ---- coordinates -------------------------------------------------------------------------- */
-
-/* Unit and meaning of a coordinate, from the scene; "" where the scene is not known. */
-static const stance_quantity *quantity(const struct plot_case *c, size_t i)
-{
-    static const stance_quantity unknown = {.unit = "", .text = ""};
-    return c->readable ? &c->scenario.scene->coordinate[i] : &unknown;
-}
 
 /* What the controller aims at, where it does. */
 static double target_of(const struct plot_case *c, size_t i)
@@ -382,14 +340,15 @@ static bool setpoint_of(const struct plot_case *c, size_t i, struct ramp *setpoi
 
 static bool draw_coordinates(const struct plot_case *c, stance_message *message)
 {
+    static const stance_quantity unknown = {.unit = "", .text = ""};
     const struct results_trajectory *t = c->t;
-    struct page page = {.c = c, .of = positions};
+    struct page page = {.c = c, .of = POSITIONS};
     bool targets = false, led = false;
 
     if (!begin_page(&page, "Coordinates", (int)t->coordinates, 100, message))
         return false;
     for (size_t i = 0; i < t->coordinates; i++) {
-        const stance_quantity *q = quantity(c, i);
+        const stance_quantity *q = c->readable ? &c->scenario.scene->coordinate[i] : &unknown;
         struct range range = range_of_all(&page, i, t->coordinates, t->coordinates, false);
         const double target = target_of(c, i);
         struct ramp setpoint;
@@ -424,11 +383,10 @@ static bool draw_coordinates(const struct plot_case *c, stance_message *message)
 static void heading_of(const struct results_trajectory *t, const char *what,
                        const struct range *range, const char *unit, char *text, size_t size)
 {
-    size_t used = (size_t)snprintf(text, size, "%s", what);
-    if (range->beyond > 0 && used < size) {
-        snprintf(text + used, size - used, "; %zu of %zu instants beyond the frame, up to %.4g %s",
-                 range->beyond, t->rows, range->largest, unit);
-    }
+    snprintf(text, size, "%s", what);
+    if (range->beyond > 0)
+        add_text(text, size, "; %zu of %zu instants beyond the frame, up to %.4g %s", range->beyond,
+                 t->rows, range->largest, unit);
 }
 
 /* Normal and tangential forces, the latter with the edges of the friction cones. */
@@ -438,7 +396,7 @@ static bool draw_forces(const struct plot_case *c, stance_message *message)
                                              "Tangential force, along +x"};
     const struct results_trajectory *t = c->t;
     const size_t count = grounded(c);
-    struct page page = {.c = c, .of = forces};
+    struct page page = {.c = c, .of = FORCES};
     char text[300], what[80];
 
     if (!begin_page(&page, "Forces of the ground on the contacts", 2, 220, message))
@@ -446,10 +404,8 @@ static bool draw_forces(const struct plot_case *c, stance_message *message)
     for (int k = 0; k < 2; k++) {
         struct range range = range_of_all(&page, (size_t)k, 2, 2 * count, true);
         snprintf(what, sizeof what, "%s", components[k]);
-        if (t->rows > 1) {
-            snprintf(what, sizeof what, "%s (means over %.4g s)", components[k],
-                     t->time[1] - t->time[0]);
-        }
+        if (t->rows > 1)
+            add_text(what, sizeof what, " (means over %.4g s)", t->time[1] - t->time[0]);
         heading_of(t, what, &range, "N", text, sizeof text);
         put_panel(&page, text, k ? "tangential force (N)" : "normal force (N)", &range);
         for (size_t i = 0; i < count; i++) {
@@ -512,8 +468,7 @@ static size_t torque_levels(const struct plot_case *c, size_t actuators, struct 
             continue;
         if (k == count)
             level[count++] = (struct torque_level){limit[i], unit_of(c->scenario.scene, i), ""};
-        const size_t used = strlen(level[k].of);
-        snprintf(level[k].of + used, sizeof level[k].of - used, "%s %.40s", used ? "," : " of",
+        add_text(level[k].of, sizeof level[k].of, "%s %.40s", level[k].of[0] ? "," : " of",
                  c->t->actuator[i]);
     }
     if (alike == actuators && count == 1)
@@ -524,7 +479,7 @@ static size_t torque_levels(const struct plot_case *c, size_t actuators, struct 
 static bool draw_torques(const struct plot_case *c, stance_message *message)
 {
     const struct results_trajectory *t = c->t;
-    struct page page = {.c = c, .of = torques};
+    struct page page = {.c = c, .of = TORQUES};
     struct range range = range_of_all(&page, 0, 1, t->actuators, true);
     const double extent = 4 * fmax(fabs(range.low), fabs(range.high));
     const char *unit, *const label = torque_label(c, &unit);
@@ -557,7 +512,7 @@ static bool draw_gaps(const struct plot_case *c, stance_message *message)
 {
     const struct results_trajectory *t = c->t;
     const size_t count = grounded(c);
-    struct page page = {.c = c, .of = gaps};
+    struct page page = {.c = c, .of = GAPS};
     struct range range = range_of_all(&page, 0, 1, count, false);
 
     if (!begin_page(&page, "Heights of the contact points above the ground", 1, 260, message))
@@ -573,44 +528,34 @@ static bool draw_gaps(const struct plot_case *c, stance_message *message)
 
 /* ---- all of them -------------------------------------------------------------------------- */
 
-static double answer_of(const struct results *r, const char *name, uint64_t row)
-{
-    double *values, value = NAN;
-    stance_message ignored = {""};
-    if (results_answer(r, name, &values, &ignored) && values)
-        value = values[row];
-    free(values);
-    return value;
-}
-
 /* What the file knows of the case beyond its trajectory. */
 static void learn(struct plot_case *c)
 {
     const struct results *r = c->plot->r;
     const struct results_trajectory *t = c->t;
-    uint64_t row = r->single ? 0 : t->index;
+    double *const time[] = {&c->settle_time, &c->fall_time}, *values;
+    stance_message ignored = {""};
 
-    c->settle_time = answer_of(r, "settle_time", row);
-    c->fall_time = answer_of(r, "fall_time", row);
-    for (int i = 0; i < STANCE_MAX_COORDINATES; i++)
-        c->equilibrium[i] = NAN;
+    for (int k = 0; k < 2; k++) {
+        const bool has =
+            results_answer(r, k ? "fall_time" : "settle_time", &values, &ignored) && values;
+        *time[k] = has ? values[r->single ? 0 : t->index] : NAN;
+        free(values);
+    }
     c->readable = results_scenario(r, &c->scenario);
-    if (!c->readable)
-        return;
     const stance_scene *scene = c->scenario.scene;
-    if ((size_t)scene->coordinates != t->coordinates || t->index >= c->scenario.cases ||
-        (size_t)scene->contacts != t->contacts) {
+    if (c->readable && ((size_t)scene->coordinates != t->coordinates ||
+                        t->index >= c->scenario.cases || (size_t)scene->contacts != t->contacts)) {
         scenario_free(&c->scenario);
         c->readable = false;
-        return;
     }
-    scenario_case_values(&c->scenario, t->index, &c->values);
-    if (results_numbers(r, "design/equilibrium_position", c->equilibrium, t->coordinates) !=
-        t->coordinates) {
-        /* one per design, and which is not asked */
-        for (size_t i = 0; i < t->coordinates; i++)
+    if (c->readable)
+        scenario_case_values(&c->scenario, t->index, &c->values);
+    /* there may be one per design, and which is not asked */
+    if (!c->readable || results_numbers(r, "design/equilibrium_position", c->equilibrium,
+                                        t->coordinates) != t->coordinates)
+        for (int i = 0; i < STANCE_MAX_COORDINATES; i++)
             c->equilibrium[i] = NAN;
-    }
 }
 
 bool plot_case_load(struct plot_case *c, const struct plot *plot, size_t place, uint64_t index,
@@ -635,30 +580,21 @@ void plot_case_free(struct plot_case *c)
     results_trajectory_free(&c->trajectory);
 }
 
-/* Whether cases have the same columns. */
-static bool are_alike(const struct plot_case *c)
-{
-    const struct results_trajectory *a = c->t, *b = c->other ? c->other->t : a;
-    return a->coordinates == b->coordinates && a->contacts == b->contacts &&
-           a->actuators == b->actuators && !a->force == !b->force && !a->torque == !b->torque &&
-           !a->gap == !b->gap && grounded(c) == grounded(c->other ? c->other : c) &&
-           memcmp(a->coordinate, b->coordinate, a->coordinates * sizeof *a->coordinate) == 0;
-}
-
 bool plot_case(const struct plot_case *c, stance_message *message)
 {
-    const struct results_trajectory *t = c->t;
-    if (!are_alike(c))
+    const struct plot_case *const other = c->other ? c->other : c;
+    const struct results_trajectory *t = c->t, *o = other->t;
+    if (t->coordinates != o->coordinates || t->contacts != o->contacts ||
+        t->actuators != o->actuators || !t->force != !o->force || !t->torque != !o->torque ||
+        !t->gap != !o->gap || grounded(c) != grounded(other) ||
+        memcmp(t->coordinate, o->coordinate, t->coordinates * sizeof *t->coordinate) != 0)
         return complain(message, "%.100s: the two cases are of different robots", c->plot->r->file);
     const bool lands = grounded(c) > 0;
     const bool good =
         draw_coordinates(c, message) && (!t->force || !lands || draw_forces(c, message)) &&
         (!t->torque || draw_torques(c, message)) && (!t->gap || !lands || draw_gaps(c, message));
-    if (good && c->readable)
-        return plot_strip(c, message);
-    if (good) {
+    if (good && !c->readable)
         fprintf(stderr, "%s: no stick figures: this version cannot read the file's scenario\n",
                 c->plot->r->file);
-    }
-    return good;
+    return good && (!c->readable || plot_strip(c, message));
 }

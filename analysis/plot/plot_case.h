@@ -46,6 +46,8 @@ struct figure {
 void figure_make(struct figure *figure, const struct plot_case *c, size_t row);
 /* The ground's fall along x: a slope's tangent. */
 double figure_fall(const struct plot_case *c);
+/* Tells the script of the contacts: contacts, contact_name[]. Returns how many. */
+int figure_names(struct gnuplot *g, const stance_scene *scene);
 /* Rows x, z, colour of its segments, each a line of its own, or of its joints and contacts; the
  * colour is a contact's number, the number of contacts: the body's. */
 enum figure_part { FIGURE_SEGMENTS, FIGURE_POINTS };

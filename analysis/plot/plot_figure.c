@@ -48,6 +48,15 @@ void figure_make(struct figure *figure, const struct plot_case *c, size_t row)
     figure->base = -figure_fall(c) * figure->centre;
 }
 
+int figure_names(struct gnuplot *g, const stance_scene *scene)
+{
+    const int contacts = plot_case_grounded(scene);
+    gnuplot_set(g, "contacts = %d\narray contact_name[%d]", contacts, STANCE_MAX_CONTACTS);
+    for (int k = 0; k < contacts; k++)
+        gnuplot_text(g, scene->contact_name[k], "contact_name[%d]", k + 1);
+    return contacts;
+}
+
 /* Contact that a point of the figure is, or -1. */
 static int contact_at(const struct figure *figure, int contacts, int point)
 {
@@ -58,20 +67,15 @@ static int contact_at(const struct figure *figure, int contacts, int point)
     return -1;
 }
 
-/* Contact whose colour a segment has; the number of contacts: the body's, as between two contacts.
- */
-static int contact_of_segment(const struct figure *figure, int contacts, int p)
-{
-    const int first = contact_at(figure, contacts, p), second = contact_at(figure, contacts, p + 1);
-    const bool body = figure->outline || (first >= 0 && second >= 0) || (first < 0 && second < 0);
-    return body ? contacts : first >= 0 ? first : second;
-}
-
 void figure_put(struct gnuplot *g, const struct figure *figure, int contacts, enum figure_part part,
                 double dx, double dz)
 {
     for (int p = 0; part == FIGURE_SEGMENTS && p + 1 < figure->points; p++) {
-        const int contact = contact_of_segment(figure, contacts, p);
+        /* In the colour of its contact; the body's also between two contacts. */
+        const int first = contact_at(figure, contacts, p),
+                  second = contact_at(figure, contacts, p + 1);
+        const bool body = figure->outline || (first >= 0) == (second >= 0);
+        const int contact = body ? contacts : first >= 0 ? first : second;
         for (int end = 0; end < 2; end++)
             GNUPLOT_ROW(g, figure->point[p + end][0] + dx, figure->point[p + end][1] + dz, contact);
         gnuplot_set(g, "%s", "");

@@ -1,7 +1,7 @@
 /* plot_layout.c - axes of maps, and panels. */
 #include "plot_layout.h"
 
-#include "analysis/statistics/statistics.h"
+#include "runner/base/message.h"
 
 #include <string.h>
 
@@ -11,8 +11,9 @@ enum { MAX_COLUMNS = 6 }; /* of a table */
 
 /* The last two axes of numbers make the map; where there are fewer, axes of words join them, then
  * those of one value. Words beside numbers stand at the left, where each has a line. */
-static void choose_axes(const struct results *r, struct plot_layout *layout)
+static void choose_axes(struct plot_layout *layout)
 {
+    const struct results *const r = layout->r;
     int chosen[2] = {0, 0}, count = 0;
     for (int rank = 0; rank < 4 && count < 2; rank++) {
         for (int a = r->axes - 1; a >= 0 && count < 2; a--)
@@ -30,10 +31,10 @@ static void choose_axes(const struct results *r, struct plot_layout *layout)
     plot_axis_make(&layout->up, &r->axis[layout->y]);
 }
 
-static void choose_panels(const struct results *r, struct plot_layout *layout, int most)
+static void choose_panels(struct plot_layout *layout, int most)
 {
+    const struct results *const r = layout->r;
     layout->panels = 1;
-    layout->others = 0;
     double product = 1;
     for (int a = 0; a < r->axes; a++) {
         if (a != layout->x && a != layout->y && r->axis[a].count > 1) {
@@ -58,52 +59,48 @@ static void choose_panels(const struct results *r, struct plot_layout *layout, i
 
 void plot_layout_make(struct plot_layout *layout, const struct results *r, int most)
 {
-    choose_axes(r, layout);
-    choose_panels(r, layout, most);
+    *layout = (struct plot_layout){.r = r};
+    choose_axes(layout);
+    choose_panels(layout, most);
 }
 
-/* Index of the m-th shown point of an axis of the panels, both ends included. */
-size_t plot_layout_shown(const struct plot_layout *layout, const struct results *r, int k, size_t m)
+/* Both ends included. */
+size_t plot_layout_shown(const struct plot_layout *layout, int k, size_t m)
 {
-    size_t count = r->axis[layout->other[k]].count, shown = layout->shown[k];
+    size_t count = layout->r->axis[layout->other[k]].count, shown = layout->shown[k];
     return shown < 2 ? (count - 1) / 2 : m * (count - 1) / (shown - 1);
 }
 
-/* Coordinates of a panel, 0 along the axes of the map. */
-void plot_layout_point(const struct plot_layout *layout, const struct results *r, int panel,
-                       size_t *point)
+void plot_layout_point(const struct plot_layout *layout, int panel, size_t *point)
 {
     memset(point, 0, SCENARIO_MAX_AXES * sizeof *point);
     size_t rest = (size_t)panel;
     for (int k = layout->others - 1; k >= 0; k--) {
-        point[layout->other[k]] = plot_layout_shown(layout, r, k, rest % layout->shown[k]);
+        point[layout->other[k]] = plot_layout_shown(layout, k, rest % layout->shown[k]);
         rest /= layout->shown[k];
     }
 }
 
-uint64_t plot_layout_index(const struct plot_layout *layout, const struct results *r, int panel,
-                           size_t i, size_t j)
+uint64_t plot_layout_index(const struct plot_layout *layout, int panel, size_t i, size_t j)
 {
     size_t point[SCENARIO_MAX_AXES];
     uint64_t index = 0;
-    plot_layout_point(layout, r, panel, point);
+    plot_layout_point(layout, panel, point);
     point[layout->x] = i;
     point[layout->y] = j;
-    for (int a = 0; a < r->axes; a++)
-        index = index * r->axis[a].count + point[a];
+    for (int a = 0; a < layout->r->axes; a++)
+        index = index * layout->r->axis[a].count + point[a];
     return index;
 }
 
-/* The panel that shows a case, or -1. */
-int plot_layout_panel(const struct plot_layout *layout, const struct results *r, uint64_t index)
+int plot_layout_panel(const struct plot_layout *layout, uint64_t index)
 {
     size_t point[SCENARIO_MAX_AXES];
     int panel = 0;
-    results_point(r, index, point);
+    results_point(layout->r, index, point);
     for (int k = 0; k < layout->others; k++) {
         size_t m = 0;
-        while (m < layout->shown[k] &&
-               plot_layout_shown(layout, r, k, m) != point[layout->other[k]])
+        while (m < layout->shown[k] && plot_layout_shown(layout, k, m) != point[layout->other[k]])
             m++;
         if (m == layout->shown[k])
             return -1;
@@ -112,12 +109,11 @@ int plot_layout_panel(const struct plot_layout *layout, const struct results *r,
     return panel;
 }
 
-/* In the picture, too: nobody is to take what is drawn for all there is. */
-void plot_layout_note(const struct plot_layout *layout, struct gnuplot *g, const struct results *r)
+void plot_layout_note(const struct plot_layout *layout, struct gnuplot *g)
 {
     char text[160];
     for (int k = 0; k < layout->others; k++) {
-        const struct results_axis *axis = &r->axis[layout->other[k]];
+        const struct results_axis *axis = &layout->r->axis[layout->other[k]];
         if (layout->shown[k] == axis->count)
             continue;
         snprintf(text, sizeof text, "%zu of the %zu values of %s are drawn", layout->shown[k],
@@ -126,14 +122,12 @@ void plot_layout_note(const struct plot_layout *layout, struct gnuplot *g, const
     }
 }
 
-/* Two axes of panels are a table, rows of the first and columns of the second. */
 bool plot_layout_is_table(const struct plot_layout *layout)
 {
     return layout->others == 2 && layout->shown[0] > 1 && layout->shown[1] > 1 &&
            layout->shown[1] <= MAX_COLUMNS;
 }
 
-/* Place of zero on an axis of offsets; false when it is not on the map. */
 bool plot_zero_place(const struct plot_axis *along, double *place)
 {
     if (!along->axis->offset || along->scale == PLOT_LOG)
@@ -147,14 +141,12 @@ bool plot_zero_place(const struct plot_axis *along, double *place)
     return !along->axis->word && along->axis->value[nearest] == 0;
 }
 
-/* A path as the titles of panels have it. */
 const char *plot_short_name(const char *path, enum plot_naming naming)
 {
     const char *dot = naming == PLOT_NAMES ? strchr(path, '.') : strrchr(path, '.');
     return dot ? dot + 1 : path;
 }
 
-/* "friction = 0.25", or what the look has for the path and the value. */
 void plot_value_title(struct gnuplot *g, const struct results_axis *axis, size_t i,
                       enum plot_naming naming, char *text, size_t size)
 {
@@ -173,16 +165,16 @@ void plot_value_title(struct gnuplot *g, const struct results_axis *axis, size_t
 }
 
 /* "friction = 0.25, noise = 0.1": the page's subtitle has the whole paths in the same order. */
-void plot_panel_title(struct gnuplot *g, const struct results *r, const struct plot_layout *layout,
-                      int panel, enum plot_naming naming, char *text, size_t size)
+void plot_panel_title(struct gnuplot *g, const struct plot_layout *layout, int panel,
+                      enum plot_naming naming, char *text, size_t size)
 {
-    size_t point[SCENARIO_MAX_AXES], used = 0;
+    size_t point[SCENARIO_MAX_AXES];
     char one[300];
-    plot_layout_point(layout, r, panel, point);
+    plot_layout_point(layout, panel, point);
     text[0] = '\0';
-    for (int k = 0; k < layout->others && used < size; k++) {
+    for (int k = 0; k < layout->others; k++) {
         const int a = layout->other[k];
-        plot_value_title(g, &r->axis[a], point[a], naming, one, sizeof one);
-        used += (size_t)snprintf(text + used, size - used, "%s%s", used ? ", " : "", one);
+        plot_value_title(g, &layout->r->axis[a], point[a], naming, one, sizeof one);
+        add_text(text, size, "%s%s", k ? ", " : "", one);
     }
 }

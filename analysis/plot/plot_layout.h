@@ -15,6 +15,7 @@ enum plot_naming {
 
 /* Which axes are drawn, and which of the points of the others. */
 struct plot_layout {
+    const struct results *r;
     int x, y; /* axes of the map */
     struct plot_axis across, up;
     int others, other[SCENARIO_MAX_AXES]; /* axes of the panels, of two values or more */
@@ -25,21 +26,18 @@ struct plot_layout {
 /* The last two axes of numbers, and at most `most` panels; a file of two axes or more. */
 void plot_layout_make(struct plot_layout *layout, const struct results *r, int most);
 /* Coordinates of a panel, 0 along the axes of the map. */
-void plot_layout_point(const struct plot_layout *layout, const struct results *r, int panel,
-                       size_t *point);
+void plot_layout_point(const struct plot_layout *layout, int panel, size_t *point);
 /* The case of a panel at points i and j of the axes of the map. */
-uint64_t plot_layout_index(const struct plot_layout *layout, const struct results *r, int panel,
-                           size_t i, size_t j);
+uint64_t plot_layout_index(const struct plot_layout *layout, int panel, size_t i, size_t j);
 /* Index of the m-th shown point of the k-th axis of the panels. */
-size_t plot_layout_shown(const struct plot_layout *layout, const struct results *r, int k,
-                         size_t m);
+size_t plot_layout_shown(const struct plot_layout *layout, int k, size_t m);
 /* The panel that shows a case, or -1. */
-int plot_layout_panel(const struct plot_layout *layout, const struct results *r, uint64_t index);
+int plot_layout_panel(const struct plot_layout *layout, uint64_t index);
 /* Two axes of panels are a table, rows of the first and columns of the second. */
 bool plot_layout_is_table(const struct plot_layout *layout);
 /* A note for each axis of which not all values are drawn: nobody is to take what is there for all.
  */
-void plot_layout_note(const struct plot_layout *layout, struct gnuplot *g, const struct results *r);
+void plot_layout_note(const struct plot_layout *layout, struct gnuplot *g);
 
 /* Place of zero on an axis of offsets; false when it is not on the map. */
 bool plot_zero_place(const struct plot_axis *along, double *place);
@@ -49,7 +47,7 @@ const char *plot_short_name(const char *path, enum plot_naming naming);
 void plot_value_title(struct gnuplot *g, const struct results_axis *axis, size_t i,
                       enum plot_naming naming, char *text, size_t size);
 /* "friction = 0.25, noise = 0.1" */
-void plot_panel_title(struct gnuplot *g, const struct results *r, const struct plot_layout *layout,
-                      int panel, enum plot_naming naming, char *text, size_t size);
+void plot_panel_title(struct gnuplot *g, const struct plot_layout *layout, int panel,
+                      enum plot_naming naming, char *text, size_t size);
 
 #endif

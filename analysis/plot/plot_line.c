@@ -1,7 +1,5 @@
 /* plot_line.c - every case of a sweep over one axis: its outcome, and answers against the axis. */
-#include "plot_points.h"
-
-#include "analysis/statistics/statistics.h"
+#include "analysis/draw/plot.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -18,7 +16,7 @@ enum { LINE_PANELS = 3 };
 
 /* Runs of neighbours of the same kind, from where to where: seams between boxes would show. */
 static void put_runs(struct gnuplot *g, const struct results *r, const struct plot_axis *along,
-                     const struct plot_point *points)
+                     const struct statistics_place *points)
 {
     const size_t n = along->axis->count;
     double low = along->low;
@@ -27,50 +25,15 @@ static void put_runs(struct gnuplot *g, const struct results *r, const struct pl
         const uint8_t kind = r->kind[points[i].index];
         if (i + 1 < n && r->kind[points[i + 1].index] == kind)
             continue;
-        const double high = i + 1 < n ? 0.5 * (points[i].place + points[i + 1].place) : along->high;
+        const double high = i + 1 < n ? 0.5 * (points[i].value + points[i + 1].value) : along->high;
         GNUPLOT_ROW(g, low, high, kind);
         low = high;
     }
     gnuplot_end_block(g);
 }
 
-static void put_panel(struct gnuplot *g, const struct results *r, const struct plot_axis *along,
-                      const struct plot_point *points, const struct line_panel *panel, int number)
-{
-    gnuplot_text(g, panel->name, "answer[%d]", number);
-    gnuplot_text(g, panel->unit, "answer_unit[%d]", number);
-    gnuplot_set(g, "lowest[%d] = %#.17g; highest[%d] = %#.17g", number, panel->low, number,
-                panel->high);
-    gnuplot_block(g, "line%d", number);
-    for (size_t i = 0; i < along->axis->count; i++) {
-        const size_t index = points[i].index;
-        GNUPLOT_ROW(g, points[i].place, panel->values[index], r->kind[index]);
-    }
-    gnuplot_end_block(g);
-}
-
-/* Reads an answer and its range. */
-static bool read_panel(const struct results *r, struct line_panel *panel, stance_message *message)
-{
-    if (!results_answer(r, panel->name, &panel->values, message))
-        return false;
-    panel->low = INFINITY;
-    panel->high = -INFINITY;
-    for (uint64_t i = 0; panel->values && i < r->cases; i++) {
-        if (isfinite(panel->values[i])) {
-            panel->low = fmin(panel->low, panel->values[i]);
-            panel->high = fmax(panel->high, panel->values[i]);
-        }
-    }
-    if (!(panel->low <= panel->high)) {
-        free(panel->values);
-        panel->values = NULL;
-    }
-    return true;
-}
-
-/* The page STEM-`picture` of LINE_PANELS panels, those without values left out; frees the values.
- */
+/* The page STEM-`picture` of LINE_PANELS panels, those without values left out; frees the values,
+ * which is all that it does where `what` is NULL. */
 static bool draw_page(const struct plot *plot, struct line_panel *panels, const char *what,
                       const char *picture, stance_message *message)
 {
@@ -78,18 +41,26 @@ static bool draw_page(const struct plot *plot, struct line_panel *panels, const 
     struct gnuplot g;
     int panel = 0;
     plot_axis_make_curve(&along, &plot->r->axis[0]);
-    struct plot_point *points = plot_points_make(&along, message);
-    const bool good = points && plot_begin(plot, &g, plot_line_gp, what, message);
+    struct statistics_place *points = plot_axis_points(&along, message);
+    const bool good = points && what && plot_begin(plot, &g, plot_line_gp, what, message);
     if (good) {
         plot_axis_write(&along, &g, "x");
         plot_kinds_write(plot->r, &g, true);
         put_runs(&g, plot->r, &along, points);
-        gnuplot_set(&g,
-                    "array answer[%d]\narray answer_unit[%d]\narray lowest[%d]\narray highest[%d]",
-                    LINE_PANELS, LINE_PANELS, LINE_PANELS, LINE_PANELS);
-        for (int k = 0; k < LINE_PANELS; k++)
-            if (panels[k].values)
-                put_panel(&g, plot->r, &along, points, &panels[k], ++panel);
+        gnuplot_arrays(&g, LINE_PANELS, "answer answer_unit lowest highest");
+        for (const struct line_panel *p = panels; p < panels + LINE_PANELS; p++) {
+            if (!p->values)
+                continue;
+            gnuplot_text(&g, p->name, "answer[%d]", ++panel);
+            gnuplot_text(&g, p->unit, "answer_unit[%d]", panel);
+            gnuplot_set(&g, "lowest[%d] = %#.17g; highest[%d] = %#.17g", panel, p->low, panel,
+                        p->high);
+            gnuplot_block(&g, "line%d", panel);
+            for (size_t i = 0; i < along.axis->count; i++)
+                GNUPLOT_ROW(&g, points[i].value, p->values[points[i].index],
+                            plot->r->kind[points[i].index]);
+            gnuplot_end_block(&g);
+        }
         gnuplot_set(&g, "panels = %d", panel);
     }
     free(points);
@@ -103,18 +74,22 @@ bool plot_line(const struct plot *plot, stance_message *message)
     struct line_panel panels[LINE_PANELS] = {{.name = "settle_time", .unit = "s"},
                                              {.name = "end_time", .unit = "s"},
                                              {.name = "friction_used", .unit = ""}};
+    const struct results *r = plot->r;
     char what[96];
-    if (plot->r->sample >= 0 || plot->r->axes != 1)
+    bool good = true;
+    if (r->sample >= 0 || r->axes != 1)
         return true;
-    plot_became_text(plot->r, what, sizeof what);
-    for (int k = 0; k < LINE_PANELS; k++) {
-        if (!read_panel(plot->r, &panels[k], message)) {
-            while (k-- > 0)
-                free(panels[k].values);
-            return false;
+    plot_became_text(r, what, sizeof what);
+    for (int k = 0; good && k < LINE_PANELS; k++) {
+        struct line_panel *const panel = &panels[k];
+        good = results_answer(r, panel->name, &panel->values, message);
+        if (good && panel->values &&
+            !plot_range(panel->values, r->cases, &panel->low, &panel->high)) {
+            free(panel->values);
+            panel->values = NULL;
         }
     }
-    return draw_page(plot, panels, what, "curve", message);
+    return draw_page(plot, panels, good ? what : NULL, "curve", message);
 }
 
 bool plot_answer_curve(const struct plot *plot, const struct plot_answer *answer,

@@ -2,7 +2,7 @@
  * when it settled. Further axes become panels. */
 #include "plot_allowed.h"
 
-#include "analysis/statistics/statistics.h"
+#include "runner/base/message.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -14,7 +14,7 @@ GNUPLOT_SCRIPT(plot_map_gp, "analysis/plot/plot_map.gp");
 
 /* ---- a page ------------------------------------------------------------------------------- */
 
-static void put_titles(struct gnuplot *g, const struct results *r, const struct plot_layout *layout)
+static void put_titles(struct gnuplot *g, const struct plot_layout *layout)
 {
     static const char *const naming[] = {"long", "short", "bare"};
     const bool table = plot_layout_is_table(layout);
@@ -22,13 +22,13 @@ static void put_titles(struct gnuplot *g, const struct results *r, const struct 
     for (int n = PLOT_NAMES; n <= PLOT_VALUES_ALONE; n++) {
         gnuplot_set(g, "array title_%s[%d]", naming[n], layout->panels);
         for (int p = 0; p < layout->panels; p++) {
-            plot_panel_title(g, r, layout, p, (enum plot_naming)n, text, sizeof text);
+            plot_panel_title(g, layout, p, (enum plot_naming)n, text, sizeof text);
             gnuplot_text(g, text, "title_%s[%d]", naming[n], p + 1);
         }
     }
     gnuplot_set(g, "table = %zu", table ? layout->shown[1] : 0);
     for (int k = 0; table && k < 2; k++) {
-        const struct results_axis *axis = &r->axis[layout->other[k]];
+        const struct results_axis *axis = &layout->r->axis[layout->other[k]];
         const char *const line = k ? "column" : "row", *name = look_label(g->look, axis->name);
         if (name == axis->name)
             snprintf(text, sizeof text, axis->unit[0] ? "%s (%s)" : "%s",
@@ -39,7 +39,7 @@ static void put_titles(struct gnuplot *g, const struct results *r, const struct 
         gnuplot_set(g, "array %s_long[%zu]\narray %s_bare[%zu]", line, layout->shown[k], line,
                     layout->shown[k]);
         for (size_t m = 0; m < layout->shown[k]; m++) {
-            const size_t i = plot_layout_shown(layout, r, k, m);
+            const size_t i = plot_layout_shown(layout, k, m);
             plot_value_title(g, axis, i, PLOT_NAMES, text, sizeof text);
             gnuplot_text(g, text, "%s_long[%zu]", line, m + 1);
             plot_value_title(g, axis, i, PLOT_NUMBERS, text, sizeof text);
@@ -56,7 +56,7 @@ static void put_shares(struct gnuplot *g, const struct results *r, const struct 
     uint64_t *counts = calloc(2 * (size_t)layout->panels, sizeof *counts); /* judged, done */
     char text[32];
     for (uint64_t i = 0; counts && !measured && i < r->cases; i++) {
-        const int panel = plot_layout_panel(layout, r, i);
+        const int panel = plot_layout_panel(layout, i);
         if (panel >= 0 && r->kind[i] < RESULTS_FAILED) {
             counts[2 * panel] += r->kind[i] == judged;
             counts[2 * panel + 1]++;
@@ -79,24 +79,23 @@ static void put_shares(struct gnuplot *g, const struct results *r, const struct 
 static void subtitle_of(const struct results *r, const struct plot_layout *layout, const char *what,
                         char *text, size_t size)
 {
-    size_t used = (size_t)snprintf(text, size, "%s", what);
-    for (int k = 0; k < layout->others && used < size; k++) {
+    const bool table = plot_layout_is_table(layout);
+    snprintf(text, size, "%s", what);
+    for (int k = 0; k < layout->others; k++) {
         const struct results_axis *axis = &r->axis[layout->other[k]];
-        used += (size_t)snprintf(text + used, size - used, "%s%s%s%s%s",
-                                 plot_layout_is_table(layout) ? (k ? ", columns " : "; rows ")
-                                 : k                          ? ", "
-                                                              : "; one panel per ",
-                                 axis->name, axis->text[0] ? " (" : "", axis->text,
-                                 axis->text[0] ? ")" : "");
+        add_text(text, size, "%s%s%s%s%s",
+                 table ? (k ? ", columns " : "; rows ")
+                 : k   ? ", "
+                       : "; one panel per ",
+                 axis->name, axis->text[0] ? " (" : "", axis->text, axis->text[0] ? ")" : "");
     }
     const char *before = "; at ";
-    for (int a = 0; a < r->axes && used < size; a++) {
+    for (int a = 0; a < r->axes; a++) {
         char value[96];
         if (r->axis[a].count > 1 || a == layout->x || a == layout->y)
             continue;
         results_value_text(&r->axis[a], 0, true, value, sizeof value);
-        used +=
-            (size_t)snprintf(text + used, size - used, "%s%s = %s", before, r->axis[a].name, value);
+        add_text(text, size, "%s%s = %s", before, r->axis[a].name, value);
         before = ", ";
     }
 }
@@ -110,7 +109,6 @@ static bool begin_page(struct gnuplot *g, const struct plot *plot, const struct 
     const struct results *r = plot->r;
     struct plot_cells cells = {&layout->across, &layout->up, 0, {0, 0}};
     const bool measured = values != r->kind;
-    size_t stride[SCENARIO_MAX_AXES] = {0}, point[SCENARIO_MAX_AXES], step = 1;
     char text[1024];
     double x, y;
 
@@ -120,7 +118,7 @@ static bool begin_page(struct gnuplot *g, const struct plot *plot, const struct 
     plot_axis_write(&layout->across, g, "x");
     plot_axis_write(&layout->up, g, "y");
     gnuplot_set(g, "panels = %d; measured = %d; bars = %d", layout->panels, measured, measured);
-    put_titles(g, r, layout);
+    put_titles(g, layout);
     if (measured)
         gnuplot_legend(g, "no_number", none, "");
     else
@@ -134,18 +132,11 @@ static bool begin_page(struct gnuplot *g, const struct plot *plot, const struct 
     if (allowed->panels > 0)
         plot_allowed_legend(allowed->panel, allowed->panels, PLOT_ALLOWED_ONE, g);
     put_shares(g, r, layout, measured);
-    plot_layout_note(layout, g, r);
-    for (int a = r->axes - 1; a >= 0; a--) {
-        stride[a] = step;
-        step *= r->axis[a].count;
-    }
-    cells.stride[0] = stride[layout->x];
-    cells.stride[1] = stride[layout->y];
+    plot_layout_note(layout, g);
     for (int p = 0; p < layout->panels; p++) {
-        plot_layout_point(layout, r, p, point);
-        cells.first = 0;
-        for (int a = 0; a < r->axes; a++)
-            cells.first += point[a] * stride[a];
+        cells.first = plot_layout_index(layout, p, 0, 0);
+        cells.stride[0] = plot_layout_index(layout, p, 1, 0) - cells.first;
+        cells.stride[1] = plot_layout_index(layout, p, 0, 1) - cells.first;
         plot_cells_write(g, &cells, values, size);
         if (p < allowed->panels)
             plot_allowed_write(&allowed->panel[p], g, p + 1);
@@ -162,28 +153,6 @@ static bool find_allowed(struct plot_allowed *allowed, const struct plot *plot,
     return plot_allowed_make(allowed, plot, layout, &frame, message);
 }
 
-static bool draw_outcomes(const struct plot *plot, const struct plot_layout *layout,
-                          const struct plot_allowed *allowed, stance_message *message)
-{
-    struct gnuplot g;
-    char what[700];
-    uint64_t inferred;
-    if (!statistics_inferred(plot->r, &inferred, NULL, message))
-        return false;
-    plot_became_text(plot->r, what, sizeof what);
-    const size_t used = strlen(what);
-    if (inferred > 0) {
-        snprintf(what + used, sizeof what - used,
-                 "; %llu of them inferred from neighbours that agree",
-                 (unsigned long long)inferred);
-    }
-    plot_cut_text(plot->r, statistics_judged(plot->r), true, what, sizeof what);
-    if (!begin_page(&g, plot, layout, allowed, what, plot->r->kind, sizeof *plot->r->kind, "",
-                    message))
-        return false;
-    return plot_end(plot, &g, "map", message);
-}
-
 /* ---- an answer ---------------------------------------------------------------------------- */
 
 /* A picture of the numbers of one answer. */
@@ -192,23 +161,6 @@ struct measure {
     const char *none;               /* the legend of cells without a number */
     double *values, low, high;
 };
-
-/* Leaves the times of cases that settled; their range. False: there are none. */
-static bool settle_range(const struct results *r, struct measure *m)
-{
-    m->low = INFINITY;
-    m->high = -INFINITY;
-    for (uint64_t i = 0; i < r->cases; i++) {
-        bool settled = r->kind[i] == RESULTS_STABILISED || r->kind[i] == RESULTS_RESTED;
-        if (!settled || !isfinite(m->values[i])) {
-            m->values[i] = NAN;
-            continue;
-        }
-        m->low = fmin(m->low, m->values[i]);
-        m->high = fmax(m->high, m->values[i]);
-    }
-    return m->low <= m->high;
-}
 
 static bool draw_measure(const struct plot *plot, const struct plot_layout *layout,
                          const struct plot_allowed *allowed, const struct measure *m,
@@ -225,29 +177,50 @@ static bool draw_measure(const struct plot *plot, const struct plot_layout *layo
     return plot_end(plot, &g, m->name, message);
 }
 
-bool plot_maps(const struct plot *plot, stance_message *message)
+/* When each case settled; said where none did. */
+static bool draw_times(const struct plot *plot, const struct plot_layout *layout,
+                       const struct plot_allowed *allowed, bool inferred, stance_message *message)
 {
-    struct plot_layout layout;
+    const struct results *const r = plot->r;
     struct measure m = {.name = "settle_time",
                         .unit = "s",
                         .what = "Time from which each case stayed settled",
-                        .none = "did not settle"};
-    uint64_t inferred;
-    if (plot->r->sample >= 0 || plot->r->axes < 2)
-        return true;
-    plot_layout_make(&layout, plot->r, MAX_PANELS);
-    if (!statistics_inferred(plot->r, &inferred, NULL, message))
-        return false;
-    m.none = inferred > 0 ? "none or inferred" : m.none;
-    struct plot_allowed allowed;
-    bool good = find_allowed(&allowed, plot, &layout, message) &&
-                draw_outcomes(plot, &layout, &allowed, message) &&
-                results_answer(plot->r, "settle_time", &m.values, message);
-    if (good && m.values && settle_range(plot->r, &m))
-        good = draw_measure(plot, &layout, &allowed, &m, message);
+                        .none = inferred ? "none or inferred" : "did not settle"};
+    bool good = results_answer(r, m.name, &m.values, message);
+    for (uint64_t i = 0; good && m.values && i < r->cases; i++)
+        if (r->kind[i] != RESULTS_STABILISED && r->kind[i] != RESULTS_RESTED)
+            m.values[i] = NAN;
+    if (good && m.values && plot_range(m.values, r->cases, &m.low, &m.high))
+        good = draw_measure(plot, layout, allowed, &m, message);
     else if (good)
         fputs("no picture of settle_time: no case has one\n", stderr);
     free(m.values);
+    return good;
+}
+
+bool plot_maps(const struct plot *plot, stance_message *message)
+{
+    const struct results *const r = plot->r;
+    struct plot_layout layout;
+    struct plot_allowed allowed;
+    struct gnuplot g;
+    char what[700];
+    uint64_t inferred;
+    if (r->sample >= 0 || r->axes < 2)
+        return true;
+    plot_layout_make(&layout, r, MAX_PANELS);
+    if (!statistics_inferred(r, &inferred, NULL, message))
+        return false;
+    plot_became_text(r, what, sizeof what);
+    if (inferred > 0)
+        add_text(what, sizeof what, "; %llu of them inferred from neighbours that agree",
+                 (unsigned long long)inferred);
+    plot_cut_text(r, statistics_judged(r), true, what, sizeof what);
+    const bool good =
+        find_allowed(&allowed, plot, &layout, message) &&
+        begin_page(&g, plot, &layout, &allowed, what, r->kind, sizeof *r->kind, "", message) &&
+        plot_end(plot, &g, "map", message) &&
+        draw_times(plot, &layout, &allowed, inferred > 0, message);
     plot_allowed_free(&allowed);
     return good;
 }
@@ -256,6 +229,7 @@ bool plot_answer_map(const struct plot *plot, const struct plot_answer *answer,
                      stance_message *message)
 {
     struct plot_layout layout;
+    struct plot_allowed allowed;
     char what[700], none[64];
     uint64_t inferred;
     struct measure m = {.name = answer->name, .unit = answer->unit, .what = what, .none = none};
@@ -271,9 +245,8 @@ bool plot_answer_map(const struct plot *plot, const struct plot_answer *answer,
                                                 : "not %s",
              answer->of == RESULTS_KIND_COUNT ? "" : results_kind_names[answer->of]);
     plot_layout_make(&layout, plot->r, MAX_PANELS);
-    struct plot_allowed allowed;
-    bool good = find_allowed(&allowed, plot, &layout, message) &&
-                draw_measure(plot, &layout, &allowed, &m, message);
+    const bool good = find_allowed(&allowed, plot, &layout, message) &&
+                      draw_measure(plot, &layout, &allowed, &m, message);
     plot_allowed_free(&allowed);
     free(m.values);
     return good;

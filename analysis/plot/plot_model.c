@@ -8,6 +8,7 @@
 #include "plot_model.h"
 #include "plot_case.h"
 
+#include "runner/base/message.h"
 #include "runner/plan/plan.h"
 
 #include <math.h>
@@ -39,7 +40,7 @@ struct model {
     struct moved moved[STANCE_MAX_COORDINATES];
     double low[2], high[2], size; /* m: of the figure */
     struct gnuplot *g;
-    int labels;
+    int labels, words; /* so far */
 };
 
 /* ---- what coordinates move ---------------------------------------------------------------- */
@@ -47,18 +48,6 @@ struct model {
 static bool is_still(const double v[2])
 {
     return hypot(v[0], v[1]) < 1e-6;
-}
-
-static void differentiate(struct model *m, int k)
-{
-    static const double step = 1e-6;
-    double position[STANCE_MAX_COORDINATES], ahead[STANCE_MAX_POINTS][2];
-    memcpy(position, m->c->position, sizeof position);
-    position[k] += step;
-    m->scene->figure(m->scene, m->c->robot, position, ahead);
-    for (int p = 0; p < m->points; p++)
-        for (int i = 0; i < 2; i++)
-            m->velocity[k][p][i] = (ahead[p][i] - m->point[p][i]) / step;
 }
 
 /* Of the points that coordinate k moves the one that the fewest others do; among them the nearest
@@ -120,8 +109,16 @@ static void make_model(struct model *m)
         }
     }
     m->size = fmax(fmax(m->high[0] - m->low[0], m->high[1] - m->low[1]), 1e-6);
-    for (int k = 0; k < m->scene->coordinates; k++)
-        differentiate(m, k);
+    for (int k = 0; k < m->scene->coordinates; k++) {
+        static const double step = 1e-6;
+        double position[STANCE_MAX_COORDINATES], ahead[STANCE_MAX_POINTS][2];
+        memcpy(position, m->c->position, sizeof position);
+        position[k] += step;
+        m->scene->figure(m->scene, m->c->robot, position, ahead);
+        for (int p = 0; p < m->points; p++)
+            for (int i = 0; i < 2; i++)
+                m->velocity[k][p][i] = (ahead[p][i] - m->point[p][i]) / step;
+    }
     for (int k = 0; k < m->scene->coordinates; k++)
         find_motion(m, k);
 }
@@ -134,12 +131,11 @@ static void label(struct model *m, enum ink ink, double x, double z, const doubl
 {
     if (m->labels == MOST_LABELS)
         return;
-    m->labels++;
-    gnuplot_text(m->g, look_label(m->g->look, text), "label_text[%d]", m->labels);
+    gnuplot_text(m->g, look_label(m->g->look, text), "label_text[%d]", ++m->labels);
     gnuplot_set(m->g,
-                "label_x[%d] = %#.9g; label_y[%d] = %#.9g; label_ink[%d] = %d; of_x[%d] = %#.9g; "
-                "of_y[%d] = %#.9g",
-                m->labels, x, m->labels, z, m->labels, ink, m->labels, of[0], m->labels, of[1]);
+                "k = %d; label_x[k] = %#.9g; label_y[k] = %#.9g; label_ink[k] = %d; "
+                "of_x[k] = %#.9g; of_y[k] = %#.9g",
+                m->labels, x, z, ink, of[0], of[1]);
 }
 
 /* At a radius about the centre of coordinate k, at an angle. */
@@ -281,10 +277,7 @@ static void put_lines(struct model *m)
 
 static void put_labels(struct model *m)
 {
-    gnuplot_set(m->g,
-                "array label_text[%d]; array label_x[%d]; array label_y[%d]; array label_ink[%d]; "
-                "array of_x[%d]; array of_y[%d]",
-                MOST_LABELS, MOST_LABELS, MOST_LABELS, MOST_LABELS, MOST_LABELS, MOST_LABELS);
+    gnuplot_arrays(m->g, MOST_LABELS, "label_text label_x label_y label_ink of_x of_y");
     for (int k = 0; k < m->scene->coordinates; k++) {
         const struct moved *const moved = &m->moved[k];
         /* Beside the arc, beyond where the angle is 0; an arc that only shows the sign: at its end.
@@ -334,11 +327,6 @@ static void put_labels(struct model *m)
     gnuplot_set(m->g, "labels = %d", m->labels);
 }
 
-static const char *directory_of(const struct look *look)
-{
-    return look->directory ? look->directory : ".";
-}
-
 /* Which way a slide goes, seen from where the robot stands. */
 static const char *way_of(const struct moved *moved)
 {
@@ -346,21 +334,25 @@ static const char *way_of(const struct moved *moved)
     return fabs(x) > fabs(z) ? (x > 0 ? "to the right" : "to the left") : z > 0 ? "up" : "down";
 }
 
-/* What stands beside the figure: each coordinate's value and meaning. */
+/* The next line of what stands beside the figure. */
+static void word(struct model *m, enum ink ink, const char *text)
+{
+    m->words++;
+    gnuplot_text(m->g, text, "word_text[%d]", m->words);
+    gnuplot_set(m->g, "word_ink[%d] = %d", m->words, ink);
+}
+
+/* Each coordinate's value and meaning. */
 static void put_words(struct model *m)
 {
     static const double dust = 1e-12; /* m, rad: what equilibria leave of a 0 */
-    int words = 0;
     char text[240];
-    gnuplot_set(m->g, "array word_text[%d]; array word_ink[%d]",
-                STANCE_MAX_COORDINATES + STANCE_MAX_ACTUATORS + 2,
-                STANCE_MAX_COORDINATES + STANCE_MAX_ACTUATORS + 2);
+    gnuplot_arrays(m->g, STANCE_MAX_COORDINATES + STANCE_MAX_ACTUATORS + 2, "word_text word_ink");
     for (int k = 0; k < m->scene->coordinates; k++) {
         const stance_quantity *const q = &m->scene->coordinate[k];
         const double at = fabs(m->c->position[k]) < dust ? 0 : m->c->position[k];
         snprintf(text, sizeof text, "%.40s = %.4g %.20s: %.120s", q->name, at, q->unit, q->text);
-        gnuplot_text(m->g, text, "word_text[%d]", ++words);
-        gnuplot_set(m->g, "word_ink[%d] = %d", words, INK_COORDINATE);
+        word(m, INK_COORDINATE, text);
     }
     for (int a = 0; a < m->scene->actuators; a++) {
         const int k = m->scene->actuated[a];
@@ -371,27 +363,21 @@ static void put_words(struct model *m)
         else
             snprintf(text, sizeof text, "%.40s: positive pushes %.40s along its axis, %s",
                      m->scene->actuator_name[a], name, way_of(&m->moved[k]));
-        gnuplot_text(m->g, text, "word_text[%d]", ++words);
-        gnuplot_set(m->g, "word_ink[%d] = %d", words, INK_ACTUATOR);
+        word(m, INK_ACTUATOR, text);
     }
-    if (plot_case_grounded(m->scene) > 0) {
-        gnuplot_text(m->g, "contacts: positive forces of the ground, normal and tangential",
-                     "word_text[%d]", ++words);
-        gnuplot_set(m->g, "word_ink[%d] = %d", words, INK_CONTACT);
-    }
-    gnuplot_set(m->g, "words_shown = %d", words);
+    if (plot_case_grounded(m->scene) > 0)
+        word(m, INK_CONTACT, "contacts: positive forces of the ground, normal and tangential");
+    gnuplot_set(m->g, "words_shown = %d", m->words);
 }
 
 static bool draw_model(const struct scenario *s, const stance_case *c, struct look *look,
-                       stance_message *message)
+                       const char *directory, stance_message *message)
 {
     struct gnuplot g;
     struct model *const m = calloc(1, sizeof *m);
     char subtitle[160], stem[300];
-    if (!m) {
-        snprintf(message->text, sizeof message->text, "stance plot: not enough memory");
-        return false;
-    }
+    if (!m)
+        return no_memory(message);
     m->scene = s->scene;
     m->c = c;
     m->g = &g;
@@ -413,7 +399,7 @@ static bool draw_model(const struct scenario *s, const stance_case *c, struct lo
         put_labels(m);
         put_words(m);
         snprintf(stem, sizeof stem, "%.250s-model", s->name);
-        good = gnuplot_end(&g, directory_of(look), stem, message);
+        good = gnuplot_end(&g, directory, stem, message);
     }
     free(m);
     return good;
@@ -422,6 +408,7 @@ static bool draw_model(const struct scenario *s, const stance_case *c, struct lo
 int plot_model(const char *file, const char *const *sets, size_t set_count, struct look *look)
 {
     const struct parallel alone = parallel_alone();
+    const char *const directory = look->directory ? look->directory : ".";
     struct scenario s;
     struct plan plan;
     struct plan_error error = {0};
@@ -439,10 +426,10 @@ int plot_model(const char *file, const char *const *sets, size_t set_count, stru
             fprintf(stderr, "stance plot: %s\n", error.message.text);
         else if (!plan_resolve(&plan, 0, c, &method))
             fprintf(stderr, "stance plot: the first case does not exist\n");
-        else if (!look->file && !gnuplot_directory(directory_of(look)))
+        else if (!look->file && !gnuplot_directory(directory))
             code = EXIT_IO;
         else
-            code = draw_model(&s, c, look, &message) ? EXIT_DONE : EXIT_IO;
+            code = draw_model(&s, c, look, directory, &message) ? EXIT_DONE : EXIT_IO;
         plan_free(&plan);
     }
     if (message.text[0])

@@ -2,9 +2,6 @@
  * each file, and in it for each value of the other axes. */
 #include "boundary.h"
 #include "plot_allowed.h"
-#include "plot_points.h"
-
-#include "analysis/statistics/statistics.h"
 #include "runner/base/message.h"
 
 #include <math.h>
@@ -37,14 +34,6 @@ static const struct results_axis *axis_of(const struct results *r, const struct 
 
 /* ---- axes --------------------------------------------------------------------------------- */
 
-static bool same_words(const struct results_axis *a, const struct results_axis *b)
-{
-    bool same = a->count == b->count && !a->word == !b->word;
-    for (size_t i = 0; same && a->word && i < a->count; i++)
-        same = strcmp(a->word[i], b->word[i]) == 0;
-    return same;
-}
-
 /* Whether a file has a map, over the axes of the first one. */
 static bool check_file(const struct page *page, int f, const struct plot_layout *first,
                        stance_message *message)
@@ -58,42 +47,52 @@ static bool check_file(const struct page *page, int f, const struct plot_layout 
     for (int k = 0; k < 2; k++) {
         const struct results_axis *const own = axis_of(r, &layout, k), *const of =
                                                                            axis_of(r0, first, k);
-        if (strcmp(own->name, of->name) != 0 || ((own->word || of->word) && !same_words(own, of)))
+        bool same = strcmp(own->name, of->name) == 0 && !own->word == !of->word &&
+                    (!own->word || own->count == of->count);
+        for (size_t i = 0; same && own->word && i < own->count; i++)
+            same = strcmp(own->word[i], of->word[i]) == 0;
+        if (!same)
             return complain(message, "%.70s: its map is over %.30s, that of %.70s over %.30s",
                             r->file, own->name, r0->file, of->name);
     }
     return true;
 }
 
-/* Where value i of a file's axis stands on the page. */
-static double place_of(const struct page *page, const struct results_axis *axis, int k, size_t i)
+/* An axis of a file's map on the page's scale. */
+static struct plot_axis on_page(const struct page *page, const struct results_axis *axis, int k)
 {
-    return page->scale[k] == PLOT_LIST  ? (double)i
-           : page->scale[k] == PLOT_LOG ? log10(axis->value[i])
-                                        : axis->value[i];
+    struct plot_axis along;
+    plot_axis_make_curve(&along, axis);
+    along.scale = page->scale[k];
+    along.low = page->low[k];
+    along.high = page->high[k];
+    return along;
 }
 
 /* The scales and ranges that hold all maps. */
 static void choose_scales(struct page *page)
 {
+    const struct results_axis *axis[MOST_OUTLINES][2];
+    for (int f = 0; f < page->files; f++) {
+        struct plot_layout layout;
+        plot_layout_make(&layout, page->plots[f].r, MOST_OUTLINES);
+        for (int k = 0; k < 2; k++)
+            axis[f][k] = axis_of(page->plots[f].r, &layout, k);
+    }
     for (int k = 0; k < 2; k++) {
         page->scale[k] = PLOT_LOG;
         for (int f = 0; f < page->files; f++) {
-            struct plot_layout layout;
             struct plot_axis along;
-            plot_layout_make(&layout, page->plots[f].r, MOST_OUTLINES);
-            plot_axis_make_curve(&along, axis_of(page->plots[f].r, &layout, k));
+            plot_axis_make_curve(&along, axis[f][k]);
             page->scale[k] = along.scale == PLOT_LOG ? page->scale[k] : along.scale;
         }
         page->low[k] = INFINITY;
         page->high[k] = -INFINITY;
         for (int f = 0; f < page->files; f++) {
-            struct plot_layout layout;
-            plot_layout_make(&layout, page->plots[f].r, MOST_OUTLINES);
-            const struct results_axis *const axis = axis_of(page->plots[f].r, &layout, k);
-            for (size_t i = 0; i < axis->count; i++) {
-                page->low[k] = fmin(page->low[k], place_of(page, axis, k, i));
-                page->high[k] = fmax(page->high[k], place_of(page, axis, k, i));
+            const struct plot_axis along = on_page(page, axis[f][k], k);
+            for (size_t i = 0; i < axis[f][k]->count; i++) {
+                page->low[k] = fmin(page->low[k], plot_axis_place(&along, i));
+                page->high[k] = fmax(page->high[k], plot_axis_place(&along, i));
             }
         }
         if (!(page->low[k] < page->high[k])) {
@@ -108,11 +107,7 @@ static void put_axes(struct page *page, const struct plot_layout *layout)
     const struct results *const r = page->plots[0].r;
     page->cross = true;
     for (int k = 0; k < 2; k++) {
-        struct plot_axis along;
-        plot_axis_make_curve(&along, axis_of(r, layout, k));
-        along.scale = page->scale[k];
-        along.low = page->low[k];
-        along.high = page->high[k];
+        const struct plot_axis along = on_page(page, axis_of(r, layout, k), k);
         plot_axis_write(&along, &page->g, k == 0 ? "x" : "y");
         page->cross = page->cross && along.axis->offset && along.scale == PLOT_LINEAR &&
                       along.low < 0 && along.high > 0;
@@ -122,24 +117,14 @@ static void put_axes(struct page *page, const struct plot_layout *layout)
 /* ---- outlines ----------------------------------------------------------------------------- */
 
 /* A place between the values of an axis, from left to right. */
-static double between(const struct plot_point *points, size_t count, double at)
+static double between(const struct statistics_place *points, size_t count, double at)
 {
     const size_t i = at < 0 ? 0 : (size_t)at, next = i + 1 < count ? i + 1 : i;
-    return points[i].place + (at - (double)i) * (points[next].place - points[i].place);
-}
-
-/* The file's axis with its values from left to right; freed by the caller. */
-static struct plot_point *sort_axis(const struct page *page, const struct results_axis *axis, int k,
-                                    stance_message *message)
-{
-    struct plot_axis along;
-    plot_axis_make_curve(&along, axis);
-    along.scale = page->scale[k];
-    return plot_points_make(&along, message);
+    return points[i].value + (at - (double)i) * (points[next].value - points[i].value);
 }
 
 static void put_lines(struct page *page, const struct boundary *b,
-                      struct plot_point *const points[2], const size_t count[2])
+                      struct statistics_place *const points[2], const size_t count[2])
 {
     gnuplot_block(&page->g, "outline%d", page->outlines);
     for (size_t l = 0; l < b->lines; l++) {
@@ -156,25 +141,10 @@ static void put_lines(struct page *page, const struct boundary *b,
     gnuplot_end_block(&page->g);
 }
 
-/* "place, friction = 0.2" or the file's name before it. */
-static void name_outline(struct page *page, int f, const struct plot_layout *layout, int panel,
-                         char *text, size_t size)
-{
-    const struct results *const r = page->plots[f].r;
-    char values[300];
-    plot_panel_title(&page->g, r, layout, panel, page->swept ? PLOT_VALUES_ALONE : PLOT_NAMES,
-                     values, sizeof values);
-    if (page->files == 1)
-        snprintf(text, size, "%s", values[0] ? values : results_kind_names[page->of]);
-    else
-        snprintf(text, size, "%s%s%s", look_label(page->g.look, r->name), values[0] ? ", " : "",
-                 values);
-}
-
 /* Which cases of a panel are inside, from left to right and from below; freed by the caller. */
 static uint8_t *find_inside(const struct page *page, int f, const struct plot_layout *layout,
-                            int panel, struct plot_point *const points[2], const size_t count[2],
-                            double *share)
+                            int panel, struct statistics_place *const points[2],
+                            const size_t count[2], double *share)
 {
     const struct results *const r = page->plots[f].r;
     uint8_t *inside = malloc(count[0] * count[1]);
@@ -182,7 +152,7 @@ static uint8_t *find_inside(const struct page *page, int f, const struct plot_la
     for (size_t j = 0; inside && j < count[1]; j++) {
         for (size_t i = 0; i < count[0]; i++) {
             const uint64_t index =
-                plot_layout_index(layout, r, panel, points[0][i].index, points[1][j].index);
+                plot_layout_index(layout, panel, points[0][i].index, points[1][j].index);
             inside[j * count[0] + i] = r->kind[index] == page->of;
             sum += r->kind[index] == page->of;
             done += r->kind[index] < RESULTS_FAILED;
@@ -197,10 +167,12 @@ static bool put_outline(struct page *page, int f, const struct plot_layout *layo
 {
     const struct results *const r = page->plots[f].r;
     const size_t count[2] = {axis_of(r, layout, 0)->count, axis_of(r, layout, 1)->count};
-    struct plot_point *points[2] = {sort_axis(page, axis_of(r, layout, 0), 0, message),
-                                    sort_axis(page, axis_of(r, layout, 1), 1, message)};
+    const struct plot_axis along[2] = {on_page(page, axis_of(r, layout, 0), 0),
+                                       on_page(page, axis_of(r, layout, 1), 1)};
+    struct statistics_place *points[2] = {plot_axis_points(&along[0], message),
+                                          plot_axis_points(&along[1], message)};
     struct boundary b = {0};
-    char name[400], more[32], colour[16];
+    char values[300], name[400], more[32], colour[16];
     double share = 0;
     uint8_t *inside =
         points[0] && points[1] ? find_inside(page, f, layout, panel, points, count, &share) : NULL;
@@ -209,7 +181,14 @@ static bool put_outline(struct page *page, int f, const struct plot_layout *layo
     if (good) {
         page->outlines++;
         put_lines(page, &b, points, count);
-        name_outline(page, f, layout, panel, name, sizeof name);
+        /* "place, friction = 0.2", or the file's name before it */
+        plot_panel_title(&page->g, layout, panel, page->swept ? PLOT_VALUES_ALONE : PLOT_NAMES,
+                         values, sizeof values);
+        if (page->files == 1)
+            snprintf(name, sizeof name, "%s", values[0] ? values : results_kind_names[page->of]);
+        else
+            snprintf(name, sizeof name, "%s%s%s", look_label(page->g.look, r->name),
+                     values[0] ? ", " : "", values);
         snprintf(more, sizeof more, "%.1f %%", share);
         const int k = page->outlines - 1;
         snprintf(colour, sizeof colour, "hue[%d]", k % HUES + 1);
@@ -272,16 +251,6 @@ static const char *find_swept(const struct page *page)
     return swept;
 }
 
-/* What the values in the legend are of. */
-static void put_head(struct page *page)
-{
-    char text[200];
-    page->swept = find_swept(page);
-    snprintf(text, sizeof text, "%s%s", page->swept && page->files > 1 ? "file, " : "",
-             page->swept ? look_label(page->g.look, page->swept) : "");
-    gnuplot_text(&page->g, text, "legend_head");
-}
-
 static bool begin(struct page *page, stance_message *message)
 {
     const struct results *const r = page->plots[0].r;
@@ -304,6 +273,7 @@ bool plot_outline(const struct plot *plots, int files, enum results_kind of,
 {
     struct page page = {.plots = plots, .files = files};
     struct plot_layout layout = {0};
+    char head[200];
     bool good = true;
     if (!plots[0].r->single && plots[0].r->axes >= 2)
         plot_layout_make(&layout, plots[0].r, MOST_OUTLINES);
@@ -316,13 +286,16 @@ bool plot_outline(const struct plot *plots, int files, enum results_kind of,
     if (!begin(&page, message))
         return false;
     put_axes(&page, &layout);
-    put_head(&page);
+    page.swept = find_swept(&page); /* what the values in the legend are of */
+    snprintf(head, sizeof head, "%s%s", page.swept && files > 1 ? "file, " : "",
+             page.swept ? look_label(page.g.look, page.swept) : "");
+    gnuplot_text(&page.g, head, "legend_head");
     const int most = MOST_OUTLINES / files; /* files are fewer: command_plot.c */
     for (int f = 0; good && f < files; f++) {
         plot_layout_make(&layout, plots[f].r, most);
         for (int p = 0; good && p < layout.panels; p++)
             good = put_outline(&page, f, &layout, p, message);
-        plot_layout_note(&layout, &page.g, plots[f].r);
+        plot_layout_note(&layout, &page.g);
     }
     good = good && put_allowed(&page, most, message);
     if (!good) {

@@ -8,6 +8,7 @@
  */
 #include "analysis/draw/plot.h"
 #include "analysis/statistics/doe_bins.h"
+#include "runner/base/message.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -38,12 +39,6 @@ struct page {
     bool shares;       /* points stand for several cases */
     struct span *span; /* [varied] */
 };
-
-static bool no_memory(stance_message *message)
-{
-    snprintf(message->text, sizeof message->text, "stance plot: not enough memory");
-    return false;
-}
 
 /* ---- what is drawn ------------------------------------------------------------------------ */
 
@@ -99,15 +94,12 @@ static void find_span(const struct page *page, int k)
                             fabs((sum / n - low) / (high - low) - 0.5);
     if (page->scale >= 0 && is_offset(v)) {
         const struct results_axis *axis = &r->axis[page->scale];
-        const double first = axis->value[0], last = axis->value[axis->count - 1],
-                     least = fmin(first, last), most = fmax(first, last), from = low, to = high;
-        low = fmin(least * from, most * from);
-        high = fmax(least * to, most * to);
+        const double first = axis->value[0], last = axis->value[axis->count - 1];
+        low = fmin(first * low, last * low);
+        high = fmax(first * high, last * high);
     }
-    if (span->logarithmic) {
-        low = log10(low);
-        high = log10(high);
-    }
+    low = span->logarithmic ? log10(low) : low;
+    high = span->logarithmic ? log10(high) : high;
     const double width = high > low ? high - low : 1;
     span->absent[0] = low - 0.3 * width;
     span->absent[1] = high + 0.3 * width;
@@ -179,14 +171,9 @@ static double place_at(const struct page *page, int k, size_t point, double scal
                                   : place_of(page, k, r->vary[k].of.value[point]);
 }
 
-static bool have_divisor(uint64_t a, uint64_t b)
+static uint64_t divisor_of(uint64_t a, uint64_t b)
 {
-    while (b > 0) {
-        const uint64_t rest = a % b;
-        a = b;
-        b = rest;
-    }
-    return a > 1;
+    return b == 0 ? a : divisor_of(b, a % b);
 }
 
 /* Every case, or every n-th where there are too many. */
@@ -195,7 +182,7 @@ static void put_cases(struct page *page)
     const struct results *r = page->plot->r;
     uint64_t every = (r->cases + MOST_DRAWN - 1) / MOST_DRAWN;
 
-    while (every > 1 && have_divisor(every, r->axis[r->sample].count))
+    while (every > 1 && divisor_of(every, r->axis[r->sample].count) > 1)
         every++; /* else some points of the sample would be left out altogether */
     for (uint64_t i = 0; i < r->cases; i += every) {
         size_t point[SCENARIO_MAX_AXES];

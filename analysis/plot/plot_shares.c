@@ -1,41 +1,16 @@
 /* plot_shares.c - how the shares of stabilised and rested cases and the extent of the stabilised
  * set depend on a parameter. */
-#include "plot_points.h"
+#include "analysis/draw/plot.h"
 
 #include "analysis/basin/basin.h"
 #include "analysis/statistics/intervals.h"
-#include "analysis/statistics/statistics.h"
+#include "runner/base/message.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 GNUPLOT_SCRIPT(plot_shares_gp, "analysis/plot/plot_shares.gp");
-
-static bool no_memory(stance_message *message)
-{
-    snprintf(message->text, sizeof message->text, "stance plot: not enough memory");
-    return false;
-}
-
-static int by_place(const void *a, const void *b)
-{
-    double x = ((const struct plot_point *)a)->place, y = ((const struct plot_point *)b)->place;
-    return (x > y) - (x < y);
-}
-
-struct plot_point *plot_points_make(const struct plot_axis *along, stance_message *message)
-{
-    size_t n = along->axis->count;
-    struct plot_point *points = malloc(n * sizeof *points);
-    for (size_t i = 0; points && i < n; i++)
-        points[i] = (struct plot_point){plot_axis_place(along, i), i};
-    if (points)
-        qsort(points, n, sizeof *points, by_place);
-    else
-        no_memory(message);
-    return points;
-}
 
 /* ---- shares against a parameter ----------------------------------------------------------- */
 
@@ -67,14 +42,14 @@ static void share_at(const struct share *share, size_t i, double part[PARTS])
 
 /* Share with its interval, in per cent. */
 static void put_share(struct gnuplot *g, const struct plot_axis *along,
-                      const struct plot_point *points, const struct share *share, int number,
+                      const struct statistics_place *points, const struct share *share, int number,
                       bool apart)
 {
     static const int types[SHARES] = {7, 5, 9, 11, 13, 15}; /* of points */
     double row[1 + PARTS];
     gnuplot_block(g, "share%d", number);
     for (size_t i = 0; i < along->axis->count; i++) {
-        row[0] = points[i].place;
+        row[0] = points[i].value;
         share_at(share, points[i].index, row + 1);
         for (int k = 0; k < PARTS; k++)
             row[1 + k] *= 100;
@@ -84,8 +59,9 @@ static void put_share(struct gnuplot *g, const struct plot_axis *along,
     const int dash = apart && !along->axis->word ? number : 0, type = apart ? types[number - 1] : 0;
     gnuplot_legend_mark(g, share->colour, dash, type, share->label, "");
     gnuplot_set(
-        g, "share_colour[%d] = legend_colour[legends]; share_dash[%d] = %d; share_type[%d] = %d",
-        number, number, apart ? number : 1, number, apart ? type : 7);
+        g,
+        "k = %d; share_colour[k] = legend_colour[legends]; share_dash[k] = %d; share_type[k] = %d",
+        number, apart ? number : 1, apart ? type : 7);
 }
 
 /* The end of the axis in per cent: the highest end of a share of more than no case at all, of which
@@ -127,25 +103,6 @@ static bool measure_sample(const struct results *r, int axis, struct share *shar
     return good;
 }
 
-/* Ends of a basin's share; over a sample of parameters nothing is certain. */
-static void find_ends(const struct basin *basin, const struct basin_row *row, double part[PARTS])
-{
-    const bool certain = basin->averaged < 0;
-    part[SHARE] = row->volume / basin->box;
-    part[LOW] = fmax(0, (row->volume - row->reach) / basin->box);
-    part[HIGH] = fmin(1, (row->volume + row->reach) / basin->box);
-    part[LOWEST] = certain ? row->low / basin->box : NAN;
-    part[HIGHEST] = certain ? row->high / basin->box : NAN;
-}
-
-/* Which row has point i of `axis` and point k of `second`, rows being in the order of the axes. */
-static size_t row_at(const struct results *r, int axis, int second, size_t i, size_t k)
-{
-    return second < 0      ? i
-           : axis < second ? i * r->axis[second].count + k
-                           : k * r->axis[axis].count + i;
-}
-
 /* The volumes of basins, where there are starts, and intervals of samples. Share k is of its own
  * kind or, with a second axis, of its point k. Of a grid of other things the shares are left as
  * they are. */
@@ -173,12 +130,21 @@ static bool measure_volumes(const struct results *r, int axis, int second, struc
         }
         const size_t values = r->axis[axis].count;
         shares[k].parts = malloc(PARTS * values * sizeof *shares[k].parts);
-        for (size_t i = 0; shares[k].parts && i < values; i++) {
-            find_ends(&basin, &basin.row[row_at(r, axis, second, i, (size_t)k)],
-                      shares[k].parts + PARTS * i);
-        }
         const bool good = shares[k].parts != NULL;
-        *bounded = basin.averaged < 0;
+        *bounded = basin.averaged < 0; /* over a sample of parameters nothing is certain */
+        for (size_t i = 0; good && i < values; i++) {
+            /* rows are in the order of the axes */
+            const struct basin_row *const row =
+                &basin.row[second < 0      ? i
+                           : axis < second ? i * r->axis[second].count + (size_t)k
+                                           : (size_t)k * values + i];
+            double *const part = shares[k].parts + PARTS * i;
+            part[SHARE] = row->volume / basin.box;
+            part[LOW] = fmax(0, (row->volume - row->reach) / basin.box);
+            part[HIGH] = fmin(1, (row->volume + row->reach) / basin.box);
+            part[LOWEST] = *bounded ? row->low / basin.box : NAN;
+            part[HIGHEST] = *bounded ? row->high / basin.box : NAN;
+        }
         basin_free(&basin);
         if (!good)
             return no_memory(message);
@@ -229,25 +195,9 @@ static void choose_parameters(const struct results *r, int *along, int *second)
     }
 }
 
-/* A curve for each value of the second parameter: of stabilised cases, or where there are none of
- * rested ones. */
-static int choose_values(const struct results *r, int along, int second,
-                         const struct statistics_counts *counts, struct share *shares)
-{
-    size_t n = r->axis[second].count;
-    struct share kinds[2];
-    choose_kinds(counts, r->axis[along].count * n, kinds);
-    for (size_t k = 0; k < n; k++) {
-        shares[k] = (struct share){.kind = kinds[0].kind, .counts = counts + k, .stride = n};
-        snprintf(shares[k].colour, sizeof shares[k].colour, "hue[%zu]", k + 1);
-        results_value_text(&r->axis[second], k, true, shares[k].label, sizeof shares[k].label);
-    }
-    return (int)n;
-}
-
 /* The extent of the stabilised set along an axis of offsets, for every value of the first axis. */
 static void put_extent(struct gnuplot *g, const struct results *r, const struct plot_axis *along,
-                       const struct plot_point *points, int axis, int number)
+                       const struct statistics_place *points, int axis, int number)
 {
     const struct results_axis *of = &r->axis[axis];
     size_t point[SCENARIO_MAX_AXES] = {0};
@@ -265,7 +215,7 @@ static void put_extent(struct gnuplot *g, const struct results *r, const struct 
     for (size_t i = 0; i < along->axis->count; i++) {
         point[0] = points[i].index;
         bool any = statistics_extent(r, axis, point, &extent) && extent.any;
-        GNUPLOT_ROW(g, points[i].place, any ? extent.low : NAN, any ? extent.high : NAN);
+        GNUPLOT_ROW(g, points[i].value, any ? extent.low : NAN, any ? extent.high : NAN);
     }
     gnuplot_end_block(g);
 }
@@ -288,28 +238,16 @@ static int choose_extents(const struct results *r, int *axes)
     return count;
 }
 
-static void put_notes(struct gnuplot *g, bool words, bool ends, bool bounded, int extents)
-{
-    char text[120];
-    snprintf(text, sizeof text, "%s: likely error (95 %%)%s", words ? "bars" : "band",
-             !bounded ? ""
-             : words  ? ", thin: certain bounds"
-                      : ", light: certain bounds");
-    if (ends)
-        gnuplot_note(g, text);
-    if (extents > 0)
-        gnuplot_note(g, "below: how far it is stabilised along each axis through the equilibrium");
-}
-
 /* `second`: the axis whose values have a curve each, or -1. */
 static bool draw_page(const struct plot *plot, const struct plot_axis *along,
-                      const struct plot_point *points, const struct share *shares, int count,
+                      const struct statistics_place *points, const struct share *shares, int count,
                       int second, bool bounded, stance_message *message)
 {
     const struct results *r = plot->r;
     struct gnuplot g;
     char what[900];
     int extents[MAX_EXTENTS], extent_count = choose_extents(r, extents);
+    const bool words = along->axis->word != NULL;
     const size_t values = along->axis->count * (second < 0 ? 1 : r->axis[second].count);
     const uint64_t each = r->cases / (values ? values : 1);
 
@@ -327,20 +265,23 @@ static bool draw_page(const struct plot *plot, const struct plot_axis *along,
     plot_axis_write(along, &g, "x");
     if (second >= 0)
         gnuplot_text(&g, r->axis[second].name, "legend_head");
-    gnuplot_set(&g, "words = %d; volumes = %d; bounded = %d; most = %#.10g",
-                along->axis->word != NULL, shares[0].parts != NULL, bounded,
-                find_most(shares, count, along->axis->count));
-    gnuplot_set(&g,
-                "shares = %d\narray share_colour[%d]\narray share_dash[%d]\narray share_type[%d]",
-                count, count, count, count);
+    gnuplot_set(&g, "words = %d; volumes = %d; bounded = %d; most = %#.10g", words,
+                shares[0].parts != NULL, bounded, find_most(shares, count, along->axis->count));
+    gnuplot_set(&g, "shares = %d; extents = %d", count, extent_count);
+    gnuplot_arrays(&g, count, "share_colour share_dash share_type");
+    gnuplot_arrays(&g, MAX_EXTENTS, "extent extent_name extent_unit extent_low extent_high");
     for (int k = 0; k < count; k++)
         put_share(&g, along, points, &shares[k], k + 1, second >= 0);
-    gnuplot_set(&g, "extents = %d\narray extent[%d]\narray extent_name[%d]\narray extent_unit[%d]",
-                extent_count, MAX_EXTENTS, MAX_EXTENTS, MAX_EXTENTS);
-    gnuplot_set(&g, "array extent_low[%d]\narray extent_high[%d]", MAX_EXTENTS, MAX_EXTENTS);
     for (int k = 0; k < extent_count; k++)
         put_extent(&g, r, along, points, extents[k], k + 1);
-    put_notes(&g, along->axis->word != NULL, shares[0].parts != NULL, bounded, extent_count);
+    snprintf(what, sizeof what, "%s: likely error (95 %%)%s", words ? "bars" : "band",
+             !bounded ? ""
+             : words  ? ", thin: certain bounds"
+                      : ", light: certain bounds");
+    if (shares[0].parts)
+        gnuplot_note(&g, what);
+    if (extent_count > 0)
+        gnuplot_note(&g, "below: how far it is stabilised along each axis through the equilibrium");
     return plot_end(plot, &g, "curve", message);
 }
 
@@ -354,7 +295,7 @@ bool plot_shares(const struct plot *plot, stance_message *message)
         return true;
     choose_parameters(r, &first, &second);
     plot_axis_make_curve(&along, &r->axis[first]);
-    struct plot_point *points = plot_points_make(&along, message);
+    struct statistics_place *points = plot_axis_points(&along, message);
     size_t counted = r->axis[first].count * (second < 0 ? 1 : r->axis[second].count);
     struct statistics_counts *counts = malloc(counted * sizeof *counts);
     bool good = points && (counts || no_memory(message)), bounded = false;
@@ -364,7 +305,15 @@ bool plot_shares(const struct plot *plot, stance_message *message)
             count = choose_kinds(counts, counted, shares);
         } else {
             statistics_count_pair(r, first, second, counts);
-            count = choose_values(r, first, second, counts, shares);
+            struct share kinds[2]; /* of stabilised cases, or where there are none of rested ones */
+            choose_kinds(counts, counted, kinds);
+            for (size_t k = 0; k < r->axis[second].count; k++) {
+                struct share *const share = &shares[count++];
+                *share = (struct share){
+                    .kind = kinds[0].kind, .counts = counts + k, .stride = r->axis[second].count};
+                snprintf(share->colour, sizeof share->colour, "hue[%zu]", k + 1);
+                results_value_text(&r->axis[second], k, true, share->label, sizeof share->label);
+            }
         }
         good = measure_volumes(r, first, second, shares, count, &bounded, message) &&
                draw_page(plot, &along, points, shares, count, second, bounded, message);

@@ -2,6 +2,8 @@
  * intervals of time. Both directions have the same scale. */
 #include "plot_case.h"
 
+#include "runner/base/message.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -22,76 +24,65 @@ struct strip {
 
 /* ---- figures ------------------------------------------------------------------------------ */
 
-/* Places stay put unless the figures travel further than they are tall. */
-static void centre_figures(struct strip *strip)
+/* How far the points of a figure reach about a place: along x to either side, and from where down
+ * and up. */
+static void reach(const struct figure *figure, double centre, double base, double size[3])
+{
+    for (int p = 0; p < figure->points; p++) {
+        size[0] = fmax(size[0], fabs(figure->point[p][0] - centre));
+        size[1] = fmin(size[1], figure->point[p][1] - base);
+        size[2] = fmax(size[2], figure->point[p][1] - base);
+    }
+}
+
+/* Of all figures; heights count from the ground below a figure's centre. */
+static double measure_figures(struct strip *strip)
+{
+    double size[3] = {0, 0, 1e-9};
+    for (int i = 0; i < strip->count; i++) {
+        struct figure *const figure = &strip->figure[i];
+        figure->base = -strip->fall * figure->centre;
+        reach(figure, figure->centre, figure->base, size);
+        reach(&strip->other[i], figure->centre, figure->base, size);
+    }
+    strip->low = size[1];
+    strip->high = size[2];
+    return size[0];
+}
+
+/* Where and how large the figures are drawn. */
+static void measure(struct strip *strip)
 {
     double low = INFINITY, high = -INFINITY;
+    measure_figures(strip);
     for (int i = 0; i < strip->count; i++) {
         low = fmin(low, strip->figure[i].centre);
         high = fmax(high, strip->figure[i].centre);
     }
+    /* Places stay put unless the figures travel further than they are tall. */
     strip->follows = high - low > strip->high - strip->low;
     for (int i = 0; i < strip->count && !strip->follows; i++)
         strip->figure[i].centre = 0.5 * (low + high);
-}
-
-/* Heights count from the ground below a figure's centre. */
-static void measure_heights(struct strip *strip)
-{
-    strip->low = 0;
-    strip->high = 1e-9;
-    for (int i = 0; i < strip->count; i++) {
-        struct figure *const figure = &strip->figure[i];
-        figure->base = -strip->fall * figure->centre;
-        for (int p = 0; p < figure->points; p++) {
-            strip->low = fmin(strip->low, figure->point[p][1] - figure->base);
-            strip->high = fmax(strip->high, figure->point[p][1] - figure->base);
-        }
-        for (int p = 0; p < strip->other[i].points; p++) {
-            strip->low = fmin(strip->low, strip->other[i].point[p][1] - figure->base);
-            strip->high = fmax(strip->high, strip->other[i].point[p][1] - figure->base);
-        }
-    }
-}
-
-static void measure(struct strip *strip)
-{
-    double half = 0;
-    measure_heights(strip);
-    centre_figures(strip);
-    measure_heights(strip);
-    for (int i = 0; i < strip->count; i++) {
-        const double centre = strip->figure[i].centre;
-        for (int p = 0; p < strip->figure[i].points; p++)
-            half = fmax(half, fabs(strip->figure[i].point[p][0] - centre));
-        for (int p = 0; p < strip->other[i].points; p++)
-            half = fmax(half, fabs(strip->other[i].point[p][0] - centre));
-    }
-    double tall = strip->high - strip->low;
+    const double half = measure_figures(strip), tall = strip->high - strip->low;
     strip->spacing = 2.1 * fmax(half, 0.1 * tall);
     strip->low = fmin(strip->low, -0.5 * fabs(strip->fall) * strip->spacing) - 0.05 * tall;
     strip->high += 0.06 * tall;
 }
 
-/* The other case at the same instant. */
-static void make_other(struct strip *strip, int i)
-{
-    const struct plot_case *const c = strip->c->other;
-    const double time = strip->figure[i].time;
-    strip->other[i].points = 0;
-    for (size_t row = 0; c && row < c->t->rows && c->t->time[row] <= time + 1e-9; row++)
-        if (row + 1 == c->t->rows ? c->t->time[row] > time - 0.05 : c->t->time[row + 1] > time)
-            figure_make(&strip->other[i], c, row);
-}
-
 static void make_strip(struct strip *strip)
 {
+    const struct plot_case *const other = strip->c->other;
     const struct results_trajectory *t = strip->c->t;
     strip->count = t->rows < MOST_FIGURES ? (int)t->rows : MOST_FIGURES;
     for (int i = 0; i < strip->count; i++) {
         size_t row = strip->count > 1 ? (size_t)i * (t->rows - 1) / (size_t)(strip->count - 1) : 0;
+        const double time = t->time[row];
         figure_make(&strip->figure[i], strip->c, row);
-        make_other(strip, i);
+        /* The other case at the same instant. */
+        const struct results_trajectory *o = other ? other->t : NULL;
+        for (row = 0; o && row < o->rows && o->time[row] <= time + 1e-9; row++)
+            if (row + 1 == o->rows ? o->time[row] > time - 0.05 : o->time[row + 1] > time)
+                figure_make(&strip->other[i], other, row);
     }
     measure(strip);
 }
@@ -110,11 +101,10 @@ static void put_figures(struct gnuplot *g, const struct strip *strip)
     gnuplot_end_block(g);
     for (int part = FIGURE_SEGMENTS; part <= FIGURE_POINTS; part++) {
         gnuplot_block(g, part == FIGURE_SEGMENTS ? "segments" : "points");
-        for (int i = 0; i < strip->count; i++) {
-            const struct figure *figure = &strip->figure[i];
-            figure_put(g, figure, strip->contacts, (enum figure_part)part,
-                       (i + 0.5) * strip->spacing - figure->centre, -figure->base);
-        }
+        for (int i = 0; i < strip->count; i++)
+            figure_put(g, &strip->figure[i], strip->contacts, (enum figure_part)part,
+                       (i + 0.5) * strip->spacing - strip->figure[i].centre,
+                       -strip->figure[i].base);
         gnuplot_end_block(g);
     }
     gnuplot_block(g, "other");
@@ -129,15 +119,11 @@ static void put_figures(struct gnuplot *g, const struct strip *strip)
 
 bool plot_strip(const struct plot_case *c, stance_message *message)
 {
-    const stance_scene *scene = c->scenario.scene;
     struct gnuplot g;
     struct strip *strip = calloc(1, sizeof *strip);
-    if (!strip) {
-        snprintf(message->text, sizeof message->text, "stance plot: not enough memory");
-        return false;
-    }
+    if (!strip)
+        return no_memory(message);
     strip->c = c;
-    strip->contacts = plot_case_grounded(scene);
     strip->fall = figure_fall(c);
     make_strip(strip);
     const bool good = plot_case_begin(c, &g, plot_strip_gp, "Stick figures", message);
@@ -147,10 +133,8 @@ bool plot_strip(const struct plot_case *c, stance_message *message)
                     "cases = %d",
                     strip->count, strip->spacing, strip->low, strip->high, strip->follows,
                     c->other ? 2 : 1);
-        gnuplot_set(&g, "contacts = %d\narray contact_name[%d]\narray time[%d]", strip->contacts,
-                    STANCE_MAX_CONTACTS, strip->count);
-        for (int k = 0; k < strip->contacts; k++)
-            gnuplot_text(&g, scene->contact_name[k], "contact_name[%d]", k + 1);
+        strip->contacts = figure_names(&g, c->scenario.scene);
+        gnuplot_arrays(&g, strip->count, "time");
         for (int i = 0; i < strip->count; i++)
             gnuplot_number(&g, strip->figure[i].time, "time[%d]", i + 1);
         put_figures(&g, strip);

@@ -16,30 +16,23 @@ struct request {
     int failed; /* what they count as: its word */
 };
 
-static bool draw(struct look *look, const struct sensitivity_study *study, stance_message *message)
-{
-    const char *answer = study->request.answer;
-    char stem[400], own[1024];
-    snprintf(stem, sizeof stem, "%.300s%s%s-sensitivity", study->r->name, answer ? "-" : "",
-             answer ? answer : "");
-    return sensitivity_picture(study, look, look_directory(look, study->r->file, own, sizeof own),
-                               stem, message);
-}
-
 static int work(struct report *report, const struct results *r, stance_message *message)
 {
     struct request *request = (struct request *)report;
+    struct look *const look = &request->look;
+    const bool draws = look_given(look);
     struct sensitivity_study study;
+    char own[1024];
     int code = sensitivity_study_make(&study, r, &request->asked, message);
-    if (code == EXIT_DONE) {
-        if (!sensitivity_print(&study, report->form) ||
-            (look_given(&request->look) && !draw(&request->look, &study, message)))
-            code = EXIT_IO;
-        else if (look_given(&request->look) &&
-                 !look_end(&request->look, &command_sensitivity, r->file))
-            code = EXIT_USAGE;
-        sensitivity_study_free(&study);
-    }
+    if (code != EXIT_DONE)
+        return code;
+    if (!sensitivity_print(&study, report->form) ||
+        (draws && !sensitivity_picture(&study, look, look_directory(look, r->file, own, sizeof own),
+                                       message)))
+        code = EXIT_IO;
+    else if (draws && !look_end(look, &command_sensitivity, r->file))
+        code = EXIT_USAGE;
+    sensitivity_study_free(&study);
     return code;
 }
 

@@ -7,6 +7,7 @@
 #include "sensitivity_study.h"
 
 #include "analysis/draw/plot.h"
+#include "runner/base/message.h"
 
 #include <math.h>
 #include <string.h>
@@ -72,18 +73,16 @@ static void subtitle_of(const struct sensitivity_study *study, char *text, size_
     for (size_t t = 0; t < study->response.tables; t++)
         failed += study->response.table[t].failed;
     sensitivity_response_text(study, response, sizeof response);
-    const size_t used = (size_t)snprintf(
-        text, size, "What the %s depends on: %s with %g %% intervals, %llu %s.", response,
-        design->method == DOE_MORRIS ? "Morris's elementary effects over the ranges"
-                                     : "Sobol' indices",
-        100 * study->request.bootstrap.level, (unsigned long long)design->count,
-        design->method == DOE_MORRIS     ? "trajectories"
-        : design->method == DOE_SALTELLI ? "base points"
-                                         : "points");
-    if (failed > 0 && used < size) {
-        snprintf(text + used, size - used, " %llu failed cases %s.", (unsigned long long)failed,
+    snprintf(text, size, "What the %s depends on: %s with %g %% intervals, %llu %s.", response,
+             design->method == DOE_MORRIS ? "Morris's elementary effects over the ranges"
+                                          : "Sobol' indices",
+             100 * study->request.bootstrap.level, (unsigned long long)design->count,
+             design->method == DOE_MORRIS     ? "trajectories"
+             : design->method == DOE_SALTELLI ? "base points"
+                                              : "points");
+    if (failed > 0)
+        add_text(text, size, " %llu failed cases %s.", (unsigned long long)failed,
                  study->request.fallen ? "count as fallen" : "are left out");
-    }
 }
 
 /* ---- panels ------------------------------------------------------------------------------- */
@@ -104,68 +103,63 @@ static void put_names(struct drawing *d)
     }
 }
 
-/* An estimate and its interval, which is a point where there is none. */
-static void interval_of(const struct sensitivity_value *v, double number[3])
+/* An estimate and its interval, which is a point where there is none, of each factor: rows of what
+ * there is of `count` measures. */
+static void put_rows(struct drawing *d, const struct sensitivity_value *const *measure, int count)
 {
-    const bool whole = isfinite(v->low);
-    number[0] = v->estimate;
-    number[1] = whole ? v->low : v->estimate;
-    number[2] = whole ? v->high : v->estimate;
+    for (size_t i = 0; i < d->study->factors; i++) {
+        double number[6];
+        for (int k = 0; k < count; k++) {
+            const struct sensitivity_value *v = &measure[k][d->study->order[i]];
+            const bool whole = isfinite(v->low);
+            number[3 * k] = v->estimate;
+            number[3 * k + 1] = whole ? v->low : v->estimate;
+            number[3 * k + 2] = whole ? v->high : v->estimate;
+        }
+        gnuplot_row(&d->g, number, 3 * (size_t)count);
+    }
+    gnuplot_end_block(&d->g);
 }
 
 static void put_indices(struct drawing *d, size_t t)
 {
     for (int c = 0; c < SERIES; c++) {
         const struct sensitivity_value *v = d->study->table[t].s.measure[series[c].measure];
-        double number[3];
-        if (!v)
-            continue;
-        gnuplot_block(&d->g, "series%d_%zu", c + 1, t + 1);
-        for (size_t i = 0; i < d->study->factors; i++) {
-            interval_of(&v[d->study->order[i]], number);
-            gnuplot_row(&d->g, number, 3);
+        if (v) {
+            gnuplot_block(&d->g, "series%d_%zu", c + 1, t + 1);
+            put_rows(d, &v, 1);
         }
-        gnuplot_end_block(&d->g);
     }
 }
 
 static void put_plane(struct drawing *d, size_t t)
 {
     const struct sensitivity *s = &d->study->table[t].s;
-    double number[6];
+    const struct sensitivity_value *const of[] = {s->measure[SENSITIVITY_MU_STAR],
+                                                  s->measure[SENSITIVITY_SIGMA]};
     gnuplot_block(&d->g, "effects%zu", t + 1);
-    for (size_t i = 0; i < d->study->factors; i++) {
-        interval_of(&s->measure[SENSITIVITY_MU_STAR][d->study->order[i]], number);
-        interval_of(&s->measure[SENSITIVITY_SIGMA][d->study->order[i]], number + 3);
-        gnuplot_row(&d->g, number, 6);
-    }
-    gnuplot_end_block(&d->g);
+    put_rows(d, of, 2);
     for (size_t i = 0; i < d->study->factors; i++) {
         const size_t j = d->study->order[i], place = t * d->study->factors + i + 1;
-        gnuplot_number(&d->g, s->measure[SENSITIVITY_MU_STAR][j].estimate, "mu_star[%zu]", place);
-        gnuplot_number(&d->g, s->measure[SENSITIVITY_SIGMA][j].estimate, "sigma[%zu]", place);
+        gnuplot_number(&d->g, of[0][j].estimate, "mu_star[%zu]", place);
+        gnuplot_number(&d->g, of[1][j].estimate, "sigma[%zu]", place);
     }
 }
 
 /* ---- the picture -------------------------------------------------------------------------- */
 
-static bool has_any(const struct sensitivity_study *study)
-{
-    for (size_t t = 0; t < study->response.tables; t++)
-        if (study->table[t].s.blocks > 1 && study->table[t].s.deviation > 0)
-            return true;
-    return false;
-}
-
 bool sensitivity_picture(const struct sensitivity_study *study, struct look *look,
-                         const char *directory, const char *stem, stance_message *message)
+                         const char *directory, stance_message *message)
 {
     const struct results *r = study->r;
-    const char *title = r->title[0] ? r->title : r->name;
+    const char *answer = study->request.answer;
     struct drawing d = {.study = study};
     char subtitle[400];
 
-    if (!has_any(study)) {
+    bool any = false;
+    for (size_t t = 0; t < study->response.tables; t++)
+        any = any || (study->table[t].s.blocks > 1 && study->table[t].s.deviation > 0);
+    if (!any) {
         fprintf(stderr, "%s: too few points, or none that differ: no picture of sensitivity\n",
                 r->file);
         return true;
@@ -174,7 +168,8 @@ bool sensitivity_picture(const struct sensitivity_study *study, struct look *loo
     d.panels = study->response.tables < MOST_PANELS ? study->response.tables : MOST_PANELS;
     measure_ranges(&d);
     subtitle_of(study, subtitle, sizeof subtitle);
-    if (!gnuplot_begin(&d.g, look, plot_sensitivity_gp, title, subtitle, message))
+    if (!gnuplot_begin(&d.g, look, plot_sensitivity_gp, r->title[0] ? r->title : r->name, subtitle,
+                       message))
         return false;
     gnuplot_set(&d.g, "morris = %d; panels = %zu; low = %#.17g; high = %#.17g; high_sigma = %#.17g",
                 d.morris, d.panels, d.low, d.high, d.high_sigma);
@@ -187,9 +182,10 @@ bool sensitivity_picture(const struct sensitivity_study *study, struct look *loo
     for (int k = 0; k < SERIES && !d.morris; k++)
         if (study->table[0].s.measure[series[k].measure])
             gnuplot_legend(&d.g, series[k].colour, series[k].text, "");
-    gnuplot_set(&d.g, "array mu_star[%zu]\narray sigma[%zu]", d.panels * study->factors,
-                d.panels * study->factors);
+    gnuplot_arrays(&d.g, (int)(d.panels * study->factors), "mu_star sigma");
     for (size_t t = 0; t < d.panels; t++)
         (d.morris ? put_plane : put_indices)(&d, t);
-    return gnuplot_end(&d.g, directory, stem, message);
+    snprintf(subtitle, sizeof subtitle, "%.300s%s%.80s-sensitivity", r->name, answer ? "-" : "",
+             answer ? answer : "");
+    return gnuplot_end(&d.g, directory, subtitle, message);
 }

@@ -42,16 +42,6 @@ static bool make_tables(struct response *response, const struct results *r)
     return response->table != NULL;
 }
 
-/* Which table the cases of a grid point belong to. */
-static size_t table_of(const struct response *response, const struct results *r, uint64_t grid)
-{
-    size_t point[SCENARIO_MAX_AXES], t = 0;
-    results_point(r, grid * response->points, point);
-    for (int a = 0; a < r->axes; a++)
-        t = response->kept[a] ? t * r->axis[a].count + point[a] : t;
-    return t;
-}
-
 /* What a case adds to the mean of its point; NAN: nothing. */
 static double value_of(const struct response_choice *choice, enum results_kind kind, double answer)
 {
@@ -71,7 +61,10 @@ static void take_means(struct response *response, const struct results *r,
 {
     const size_t points = response->points;
     for (uint64_t i = 0; i < r->cases; i += points) {
-        const size_t t = table_of(response, r, i / points);
+        size_t point[SCENARIO_MAX_AXES], t = 0; /* the table of this grid point */
+        results_point(r, i, point);
+        for (int a = 0; a < r->axes; a++)
+            t = response->kept[a] ? t * r->axis[a].count + point[a] : t;
         struct response_table *table = &response->table[t];
         table->cases += points;
         for (size_t p = 0; p < points; p++) {
@@ -115,24 +108,17 @@ static int read_answers(const struct results *r, const char *name, double **answ
     return code;
 }
 
-static bool has_outcomes(const struct results *r)
-{
-    for (uint64_t i = 0; i < r->cases; i++)
-        if (r->kind[i] == RESULTS_DONE)
-            return false;
-    return true;
-}
-
 int response_make(struct response *response, const struct results *r,
                   const struct response_choice *choice, const bool *kept, stance_message *message)
 {
     double *answers = NULL;
     *response = (struct response){.points = r->axis[r->sample].count};
     memcpy(response->kept, kept, (size_t)r->sample * sizeof *kept);
-    if (choice->of != RESULTS_KIND_COUNT && !has_outcomes(r)) {
-        complain(message, "%.200s: does not store outcomes", r->file);
-        return EXIT_USAGE;
-    }
+    for (uint64_t i = 0; choice->of != RESULTS_KIND_COUNT && i < r->cases; i++)
+        if (r->kind[i] == RESULTS_DONE) {
+            complain(message, "%.200s: does not store outcomes", r->file);
+            return EXIT_USAGE;
+        }
     int code = choice->answer ? read_answers(r, choice->answer, &answers, message) : EXIT_DONE;
     if (code != EXIT_DONE)
         return code;

@@ -1,6 +1,7 @@
 /* sensitivity.c - Sobol' indices, Morris's effects and first-order indices of given data. */
 #include "sensitivity.h"
 
+#include "analysis/statistics/statistics.h"
 #include "runner/scenario/doe.h"
 
 #include <Random123/philox.h>
@@ -18,13 +19,25 @@ const char *const sensitivity_words[SENSITIVITY_MEASURE_COUNT] = {
 /* Share of resamples that must have an estimate for there to be an interval. */
 static const double LEAST_RESAMPLED = 0.9;
 
+/* Number, mean and squared deviations of what has been added, as it comes (Welford). */
+struct moments {
+    double n, mean, squares;
+};
+
+static void add_number(struct moments *m, double value)
+{
+    const double step = value - m->mean;
+    m->mean += step / ++m->n;
+    m->squares += step * (value - m->mean);
+}
+
 /* Rows to estimate from: blocks, one after the other, and what an estimate needs beside them. */
 struct block_rows {
     size_t factors, count, width;
-    const double *value;   /* [count][width] */
-    bool second_order;     /* sobol */
-    const uint32_t *group; /* [count]: rows of a group may hang together */
-    double *work;
+    double *value;     /* [count][width] */
+    bool second_order; /* sobol */
+    uint32_t *group;   /* [count]: rows of a group may hang together */
+    double *work;      /* sobol: of its sums */
 };
 
 /* Estimates from rows pick[count] (NULL: each of them once) into the flat list of quantities. */
@@ -45,11 +58,6 @@ struct sums {
     double *with_b;
     double *pair; /* [factors][factors]: AB_i BA_j */
 };
-
-static size_t sums_size(size_t width, size_t factors, bool second_order)
-{
-    return 4 * width + (second_order ? factors * factors : 0);
-}
 
 static void add_row(const struct block_rows *rows, const double *y, struct sums *sums)
 {
@@ -95,7 +103,7 @@ static void estimate_sobol(const struct block_rows *rows, const uint32_t *pick, 
     double *work = rows->work;
     struct sums sums = {work, work + width, work + 2 * width, work + 3 * width, work + 4 * width};
 
-    memset(work, 0, sums_size(width, k, rows->second_order) * sizeof *work);
+    memset(work, 0, (4 * width + (rows->second_order ? k * k : 0)) * sizeof *work);
     for (size_t i = 0; i < rows->count; i++)
         add_row(rows, row_at(rows, pick, i), &sums);
     const double chance = correlation(&sums, n, 0, width - 1, sums.with_a[width - 1]);
@@ -129,26 +137,19 @@ static void estimate_sobol(const struct block_rows *rows, const uint32_t *pick, 
 static void estimate_morris(const struct block_rows *rows, const uint32_t *pick, double *quantity)
 {
     const size_t k = rows->factors;
-    double *mu = quantity, *mu_star = quantity + k, *sigma = quantity + 2 * k, *n = rows->work;
-
-    memset(quantity, 0, 3 * k * sizeof *quantity);
-    memset(n, 0, k * sizeof *n);
-    for (size_t i = 0; i < rows->count; i++) {
-        const double *effect = row_at(rows, pick, i);
-        for (size_t j = 0; j < k; j++) {
-            if (!isnan(effect[j])) {
-                n[j]++;
-                mu_star[j] += fabs(effect[j]);
-                const double step = effect[j] - mu[j]; /* Welford's recurrence */
-                mu[j] += step / n[j];
-                sigma[j] += step * (effect[j] - mu[j]);
+    for (size_t j = 0; j < k; j++) {
+        struct moments m = {0, 0, 0};
+        double magnitudes = 0;
+        for (size_t i = 0; i < rows->count; i++) {
+            const double effect = row_at(rows, pick, i)[j];
+            if (!isnan(effect)) {
+                add_number(&m, effect);
+                magnitudes += fabs(effect);
             }
         }
-    }
-    for (size_t j = 0; j < k; j++) {
-        mu[j] = n[j] > 0 ? mu[j] : NAN;
-        mu_star[j] = n[j] > 0 ? mu_star[j] / n[j] : NAN;
-        sigma[j] = n[j] > 1 ? sqrt(sigma[j] / (n[j] - 1)) : NAN;
+        quantity[j] = m.n > 0 ? m.mean : NAN;
+        quantity[k + j] = m.n > 0 ? magnitudes / m.n : NAN;
+        quantity[2 * k + j] = m.n > 1 ? sqrt(m.squares / (m.n - 1)) : NAN;
     }
 }
 
@@ -180,12 +181,13 @@ struct points {
     bool even;
 };
 
-/* What bins along factor j say of the points chosen (NULL: all), n of them with the sum of squares
- * `all`: the share between bins, and what chance adds to it if points are independent. */
-static void bin_factor(const struct points *p, const bool *chosen, size_t n, size_t j, double mean,
-                       double all, double *share, double *chance)
+/* What bins along factor j say of the points chosen (NULL: all), with their moments: the share
+ * between bins, and what chance adds to it if points are independent. */
+static void bin_factor(const struct points *p, const bool *chosen, const struct moments *m,
+                       size_t j, double *share, double *chance)
 {
     const uint32_t *order = p->order + j * p->count;
+    const size_t n = (size_t)m->n;
     const size_t most = p->even ? (size_t)sqrt((double)n) : n / IN_BIN;
     const double least = (double)n / (double)(most < 2 ? 2 : most);
     double sum = 0, number = 0, between = 0, bins = 0, seen = 0, last = NAN;
@@ -199,42 +201,26 @@ static void bin_factor(const struct points *p, const bool *chosen, size_t n, siz
             bins++;
             sum = number = 0;
         }
-        sum += p->y[point] - mean;
+        sum += p->y[point] - m->mean;
         number++;
         seen++;
         last = u;
     }
     between += number > 0 ? sum * sum / number : 0;
     bins += number > 0;
-    *share = all > 0 && seen > bins ? between / all : NAN;
+    *share = m->squares > 0 && seen > bins ? between / m->squares : NAN;
     *chance = (1 - *share) * (bins - 1) / (seen - bins);
 }
 
 /* share[k], then chance[k]. */
 static void bin_all(const struct points *p, const bool *chosen, double *quantity)
 {
-    double mean = 0, all = 0, n = 0;
-    for (size_t i = 0; i < p->count; i++) {
-        if (!chosen || chosen[i]) {
-            const double step = p->y[i] - mean;
-            mean += step / ++n;
-            all += step * (p->y[i] - mean);
-        }
-    }
+    struct moments m = {0, 0, 0};
+    for (size_t i = 0; i < p->count; i++)
+        if (!chosen || chosen[i])
+            add_number(&m, p->y[i]);
     for (size_t j = 0; j < p->factors; j++)
-        bin_factor(p, chosen, (size_t)n, j, mean, all, &quantity[j], &quantity[p->factors + j]);
-}
-
-struct place {
-    double u;
-    uint32_t point;
-};
-
-static int by_place(const void *a, const void *b)
-{
-    const struct place *x = a, *y = b;
-    return x->u != y->u ? (x->u > y->u) - (x->u < y->u)
-                        : (x->point > y->point) - (x->point < y->point);
+        bin_factor(p, chosen, &m, j, &quantity[j], &quantity[p->factors + j]);
 }
 
 /* Chooses `size` of `count` points at random (Fisher, Yates); deck[count] is the order so far. */
@@ -254,22 +240,6 @@ static void choose(const struct sensitivity_bootstrap *bootstrap, size_t resampl
     }
 }
 
-/* Mean and standard deviation of what is a number; false: too few are. */
-static bool spread_of(const double *value, size_t n, double *mean, double *deviation)
-{
-    double squares = 0, found = 0;
-    *mean = 0;
-    for (size_t i = 0; i < n; i++) {
-        if (isfinite(value[i])) {
-            const double step = value[i] - *mean;
-            *mean += step / ++found;
-            squares += step * (value[i] - *mean);
-        }
-    }
-    *deviation = sqrt(squares / (found - 1));
-    return found > 1 && found >= LEAST_RESAMPLED * (double)n;
-}
-
 /* Index q < factors, or the sum of them, from the whole and from subsamples[n]. */
 static struct sensitivity_value value_of(const struct points *p, const double *share,
                                          const double *chance, size_t first, size_t last,
@@ -277,7 +247,8 @@ static struct sensitivity_value value_of(const struct points *p, const double *s
 {
     struct sensitivity_value value = {0, NAN, NAN};
     const size_t size = p->count / PART, k = p->factors;
-    double taken = 0, mean, deviation;
+    double taken = 0;
+    struct moments m = {0, 0, 0};
     memset(line, 0, n * sizeof *line);
     for (size_t j = first; j < last; j++) {
         value.estimate += share[j];
@@ -287,15 +258,19 @@ static struct sensitivity_value value_of(const struct points *p, const double *s
     }
     const double corrected = value.estimate - taken;
     value.estimate = isfinite(corrected) ? p->even ? value.estimate : corrected : NAN;
-    if (isfinite(corrected) && size >= 2 * IN_BIN && spread_of(line, n, &mean, &deviation)) {
+    for (size_t s = 0; s < n; s++)
+        if (isfinite(line[s]))
+            add_number(&m, line[s]);
+    if (isfinite(corrected) && size >= 2 * IN_BIN && m.n > 1 &&
+        m.n >= LEAST_RESAMPLED * (double)n) {
         const double rest = (double)(p->count - size), times = (double)p->count / (double)size;
-        const double half =
-            gsl_cdf_ugaussian_Pinv((1 + level) / 2) * deviation * sqrt((double)size / rest);
+        const double half = gsl_cdf_ugaussian_Pinv((1 + level) / 2) * sqrt(m.squares / (m.n - 1)) *
+                            sqrt((double)size / rest);
         value.low = corrected - half;
         value.high = value.estimate + half;
         if (p->even) { /* whose chance may be twice as large, and bins of parts twice as wide */
             value.low -= taken;
-            value.high += fmax(0, (corrected - mean) / (sqrt(times) - 1));
+            value.high += fmax(0, (corrected - m.mean) / (sqrt(times) - 1));
         }
     }
     return value;
@@ -335,16 +310,6 @@ static bool estimate_given(const struct points *p, const struct sensitivity_boot
 
 enum { GROUPS = DOE_REPLICATES };
 
-/* The rows that are not in the group; how many. */
-static size_t leave_out(const struct block_rows *rows, uint32_t group, uint32_t *pick)
-{
-    size_t count = 0;
-    for (size_t i = 0; i < rows->count; i++)
-        if (rows->group[i] != group)
-            pick[count++] = (uint32_t)i;
-    return count;
-}
-
 /* Student's interval about an estimate from those without one of the groups each (Tukey). */
 static struct sensitivity_value interval_without(double estimate, const double *without, size_t n,
                                                  double level)
@@ -375,7 +340,10 @@ static bool estimate_grouped(const struct block_rows *rows, estimator estimate, 
 
     for (uint32_t g = 0; good && g < GROUPS; g++) {
         struct block_rows others = *rows;
-        others.count = leave_out(rows, g, pick);
+        others.count = 0;
+        for (size_t i = 0; i < rows->count; i++)
+            if (rows->group[i] != g)
+                pick[others.count++] = (uint32_t)i;
         if (others.count < rows->count)
             estimate(&others, pick, table + groups++ * quantities);
     }
@@ -417,43 +385,51 @@ void sensitivity_free(struct sensitivity *s)
 /* Mean and standard deviation of what is a number among y[n]. */
 static void describe(struct sensitivity *s, const double *y, size_t n)
 {
-    double mean = 0, squares = 0;
-    size_t found = 0;
-    for (size_t i = 0; i < n; i++) {
-        if (!isnan(y[i])) {
-            const double step = y[i] - mean;
-            mean += step / (double)++found;
-            squares += step * (y[i] - mean);
-        }
-    }
-    s->mean = found > 0 ? mean : NAN;
-    s->deviation = found > 1 ? sqrt(squares / (double)(found - 1)) : NAN;
+    struct moments m = {0, 0, 0};
+    for (size_t i = 0; i < n; i++)
+        if (!isnan(y[i]))
+            add_number(&m, y[i]);
+    s->mean = m.n > 0 ? m.mean : NAN;
+    s->deviation = m.n > 1 ? sqrt(m.squares / (m.n - 1)) : NAN;
 }
 
-static bool is_whole(const double *y, size_t n)
+/* Room for the rows of so many blocks; makes `s`, too. */
+static bool begin_rows(struct sensitivity *s, struct block_rows *rows, size_t blocks,
+                       size_t quantities, size_t work)
 {
-    for (size_t i = 0; i < n; i++)
-        if (isnan(y[i]))
-            return false;
-    return true;
+    rows->value = malloc((blocks + 1) * rows->width * sizeof *rows->value);
+    rows->group = malloc((blocks + 1) * sizeof *rows->group);
+    rows->work = malloc((work + 1) * sizeof *rows->work);
+    return begin(s, rows->factors, quantities) && rows->value && rows->group && rows->work;
+}
+
+/* `good`, without which nothing is left. */
+static bool end_rows(struct sensitivity *s, struct block_rows *rows, bool good)
+{
+    free(rows->value);
+    free(rows->group);
+    free(rows->work);
+    if (!good)
+        sensitivity_free(s);
+    return good;
 }
 
 bool sensitivity_sobol(struct sensitivity *s, const double *y, size_t blocks, size_t factors,
                        bool second_order, double level)
 {
     const size_t width = (second_order ? 2 * factors : factors) + 2;
-    const size_t quantities = 2 * factors + 1 + (second_order ? factors * factors : 0);
-    double *value = malloc((blocks + 1) * width * sizeof *value);
-    uint32_t *group = malloc((blocks + 1) * sizeof *group);
-    struct block_rows rows = {.factors = factors, .width = width, .value = value, .group = group};
+    const size_t pairs = second_order ? factors * factors : 0, quantities = 2 * factors + 1 + pairs;
+    struct block_rows rows = {.factors = factors, .width = width, .second_order = second_order};
 
-    rows.second_order = second_order;
-    rows.work = malloc(sums_size(width, factors, second_order) * sizeof *rows.work);
-    bool good = begin(s, factors, quantities) && value && group && rows.work;
+    bool good = begin_rows(s, &rows, blocks, quantities, 4 * width + pairs);
     for (size_t i = 0; good && i < blocks; i++) {
-        if (is_whole(y + i * width, width)) {
-            group[rows.count] = (uint32_t)(i % GROUPS);
-            memcpy(value + rows.count++ * width, y + i * width, width * sizeof *value);
+        const double *const own = y + i * width;
+        bool whole = true;
+        for (size_t c = 0; c < width; c++)
+            whole = whole && !isnan(own[c]);
+        if (whole) {
+            rows.group[rows.count] = (uint32_t)(i % GROUPS);
+            memcpy(rows.value + rows.count++ * width, own, width * sizeof *own);
         }
     }
     if (good) {
@@ -461,37 +437,27 @@ bool sensitivity_sobol(struct sensitivity *s, const double *y, size_t blocks, si
         s->measure[SENSITIVITY_FIRST] = s->all;
         s->measure[SENSITIVITY_TOTAL] = s->all + factors;
         s->second = second_order ? s->all + 2 * factors + 1 : NULL;
-        describe(s, value, rows.count * width);
+        describe(s, rows.value, rows.count * width);
         for (size_t i = 0; i < rows.count * width; i++)
-            value[i] -= s->mean; /* sums of squares lose nothing to a large mean */
+            rows.value[i] -= s->mean; /* sums of squares lose nothing to a large mean */
         good = rows.count < 2 || estimate_grouped(&rows, estimate_sobol, quantities, level, s->all);
         s->first_sum = s->all[2 * factors];
     }
-    free(value);
-    free(group);
-    free(rows.work);
-    if (!good)
-        sensitivity_free(s);
-    return good;
+    return end_rows(s, &rows, good);
 }
 
 bool sensitivity_morris(struct sensitivity *s, const double *y, const double *u, size_t blocks,
                         size_t factors, double level)
 {
-    double *effect = malloc((blocks + 1) * factors * sizeof *effect);
-    uint32_t *group = malloc((blocks + 1) * sizeof *group);
-    struct block_rows rows = {
-        .factors = factors, .width = factors, .value = effect, .group = group};
-
-    rows.work = malloc(factors * sizeof *rows.work);
-    bool good = begin(s, factors, 3 * factors) && effect && group && rows.work;
+    struct block_rows rows = {.factors = factors, .width = factors};
+    bool good = begin_rows(s, &rows, blocks, 3 * factors, 0);
     for (size_t i = 0; good && i < blocks; i++) {
-        double *own = effect + rows.count * factors;
+        double *own = rows.value + rows.count * factors;
         bool any = false;
         find_effects(y + i * (factors + 1), u + i * (factors + 1) * factors, factors, own);
         for (size_t j = 0; j < factors; j++)
             any = any || !isnan(own[j]);
-        group[rows.count] = (uint32_t)(i % GROUPS);
+        rows.group[rows.count] = (uint32_t)(i % GROUPS);
         rows.count += any;
     }
     if (good) {
@@ -504,12 +470,7 @@ bool sensitivity_morris(struct sensitivity *s, const double *y, const double *u,
         for (size_t q = factors; q < 3 * factors; q++) /* not below what can be */
             s->all[q].low = s->all[q].low < 0 ? 0 : s->all[q].low;
     }
-    free(effect);
-    free(group);
-    free(rows.work);
-    if (!good)
-        sensitivity_free(s);
-    return good;
+    return end_rows(s, &rows, good);
 }
 
 bool sensitivity_given(struct sensitivity *s, const double *y, const double *u, size_t points,
@@ -518,7 +479,7 @@ bool sensitivity_given(struct sensitivity *s, const double *y, const double *u, 
     double *value = malloc((points + 1) * sizeof *value);
     double *place = malloc((points + 1) * factors * sizeof *place);
     uint32_t *order = malloc((points + 1) * factors * sizeof *order);
-    struct place *places = malloc((points + 1) * sizeof *places);
+    struct statistics_place *places = malloc((points + 1) * sizeof *places);
     struct points p = {.factors = factors, .y = value, .u = place, .order = order, .even = even};
     bool good = begin(s, factors, factors + 1) && value && place && order && places;
 
@@ -530,10 +491,10 @@ bool sensitivity_given(struct sensitivity *s, const double *y, const double *u, 
     }
     for (size_t j = 0; good && j < factors; j++) {
         for (size_t i = 0; i < p.count; i++)
-            places[i] = (struct place){place[i * factors + j], (uint32_t)i};
-        qsort(places, p.count, sizeof *places, by_place);
+            places[i] = (struct statistics_place){place[i * factors + j], i};
+        statistics_order(places, p.count);
         for (size_t i = 0; i < p.count; i++)
-            order[j * p.count + i] = places[i].point;
+            order[j * p.count + i] = (uint32_t)places[i].index;
     }
     if (good) {
         s->blocks = p.count;

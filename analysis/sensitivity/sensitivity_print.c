@@ -20,26 +20,14 @@ static const char *policy_word(const struct sensitivity_study *study)
 }
 
 /* What a block is called. */
-static const char *block_word(const struct sensitivity_study *study)
+static const char *block_word(const struct sensitivity_study *study, size_t count)
 {
-    return is_sobol(study) ? "block" : is_morris(study) ? "trajectory" : "point";
-}
-
-static const char *blocks_word(const struct sensitivity_study *study)
-{
-    return is_sobol(study) ? "blocks" : is_morris(study) ? "trajectories" : "points";
+    static const char *const words[][2] = {
+        {"block", "blocks"}, {"trajectory", "trajectories"}, {"point", "points"}};
+    return words[is_sobol(study) ? 0 : is_morris(study) ? 1 : 2][count != 1];
 }
 
 /* ---- the table ---------------------------------------------------------------------------- */
-
-static json_t *paths_json(const struct sensitivity_study *study, size_t factor)
-{
-    json_t *paths = json_array();
-    const char *path;
-    for (int k = 0; (path = sensitivity_factor_path(study, factor, k)); k++)
-        table_append(paths, as_text(path));
-    return paths;
-}
 
 /* Indices are shares, with as many decimals as matter; effects have a unit. */
 static void add_measure(struct table *t, const char *word, const struct sensitivity_value *v,
@@ -75,9 +63,13 @@ static void add_factors(struct table *t, const struct sensitivity_study *study,
         if (form == TABLE_AS_CSV)
             table_axes(t, study->r, kept, count, table->response->point);
         sensitivity_factor_text(study, j, name, sizeof name);
+        json_t *paths = json_array();
+        const char *path;
+        for (int k = 0; (path = sensitivity_factor_path(study, j, k)); k++)
+            table_append(paths, as_text(path));
         TABLE_FACTS(t, {{"factor", .key = "path"}, as_text(sensitivity_factor_path(study, j, 0))},
                     {{"label", "factor", .hidden = TABLE_VIEW_ONLY, .left = true}, as_text(name)},
-                    {{"paths", .hidden = TABLE_NO_CSV}, as_tree(paths_json(study, j))});
+                    {{"paths", .hidden = TABLE_NO_CSV}, as_tree(paths)});
         for (int m = 0; m < SENSITIVITY_MEASURE_COUNT; m++)
             if (table->s.measure[m])
                 add_measure(t, sensitivity_words[m], &table->s.measure[m][j], !is_morris(study));
@@ -101,7 +93,7 @@ static void print_head(const struct sensitivity_study *study)
 
     printf("%s\n%s, %zu factors: ", r->title[0] ? r->title : r->name, doe_words[d->method],
            study->factors);
-    printf("%" PRIu64 " %s", (uint64_t)d->count, blocks_word(study));
+    printf("%" PRIu64 " %s", (uint64_t)d->count, block_word(study, 0));
     if (study->block > 1)
         printf(" of %zu points", study->block);
     sensitivity_response_text(study, text, sizeof text);
@@ -181,14 +173,12 @@ static void print_counts(const struct sensitivity_study *study,
 {
     const struct sensitivity *s = &table->s;
     const char *unit = study->request.unit;
-    printf("  %zu %s", s->blocks, s->blocks == 1 ? block_word(study) : blocks_word(study));
+    printf("  %zu %s", s->blocks, block_word(study, s->blocks));
     if (table->waiting > 0)
         printf(", %zu not complete yet", table->waiting);
     if (table->lost > 0) {
         printf(", %zu %s lost for want of a case", table->lost,
-               is_morris(study)   ? "effects"
-               : table->lost == 1 ? block_word(study)
-                                  : blocks_word(study));
+               is_morris(study) ? "effects" : block_word(study, table->lost));
     }
     if (isfinite(s->deviation)) {
         printf("; response %.4g on the mean, standard deviation %.4g%s%s", s->mean, s->deviation,
@@ -202,14 +192,6 @@ static void print_counts(const struct sensitivity_study *study,
         puts("  the response is the same at all points: it depends on none of the factors");
     else if (s->blocks < 2)
         puts("  too few to say anything");
-}
-
-/* With fewer than these a mean is not yet normal: measured, see tests/test_sensitivity.c. */
-static void print_caution(const struct sensitivity_study *study, size_t blocks)
-{
-    const size_t least = is_sobol(study) ? 128 : is_morris(study) ? 10 : 512;
-    if (blocks > 1 && blocks < least)
-        printf("  intervals from fewer than %zu %s may be too narrow\n", least, blocks_word(study));
 }
 
 static void print_policies(const struct sensitivity_study *study,
@@ -243,14 +225,17 @@ static bool print_text(const struct sensitivity_study *study)
         if (table->s.blocks > 1 && table->s.deviation > 0) {
             struct table t = {0};
             add_factors(&t, study, table, TABLE_AS_TEXT);
-            good =
-                table_write_text(&t, stdout, "label first/ total/ mu/ mu_star/ sigma/", 0) && good;
-            table_free(&t);
+            good = table_print(&t, TABLE_AS_TEXT, "label first/ total/ mu/ mu_star/ sigma/", 0) &&
+                   good;
             if (table->s.measure[SENSITIVITY_FIRST])
                 print_sum(table);
             if (table->s.second)
                 print_pairs(study, table);
-            print_caution(study, table->s.blocks);
+            /* with fewer a mean is not yet normal: measured, see tests/test_sensitivity.c */
+            const size_t least = is_sobol(study) ? 128 : is_morris(study) ? 10 : 512;
+            if (table->s.blocks < least)
+                printf("  intervals from fewer than %zu %s may be too narrow\n", least,
+                       block_word(study, 0));
         }
         print_policies(study, table);
     }
@@ -295,13 +280,12 @@ static json_t *table_of(const struct sensitivity_study *study,
         {"used", as_whole(table->s.blocks)}, {"incomplete", as_whole(table->waiting)},
         {is_morris(study) ? "lost_effects" : "lost", as_whole(table->lost)},
         {"mean", as_number(table->s.mean)}, {"deviation", as_number(table->s.deviation)},
-        {"factors", as_tree(table_json(&factors, false))},
+        {"factors", as_tree(table_tree(&factors, false))},
         {"policies_differ", as_truth(table->moved)});
     if (table->s.measure[SENSITIVITY_FIRST])
         json_object_set_new(object, "first_sum", value_json(&table->s.first_sum));
     if (table->s.second)
         json_object_set_new(object, "pairs", pairs_json(study, table));
-    table_free(&factors);
     return object;
 }
 
@@ -339,14 +323,9 @@ static bool print_json(const struct sensitivity_study *study)
 bool sensitivity_print(const struct sensitivity_study *study, enum table_form form)
 {
     struct table t = {0};
-    bool good = true;
-    if (form == TABLE_AS_TEXT)
-        return print_text(study);
-    if (form == TABLE_AS_JSON)
-        return print_json(study);
+    if (form != TABLE_AS_CSV)
+        return (form == TABLE_AS_TEXT ? print_text : print_json)(study);
     for (size_t k = 0; k < study->response.tables; k++)
         add_factors(&t, study, &study->table[k], form);
-    good = table_write_csv(&t, stdout);
-    table_free(&t);
-    return good;
+    return table_print(&t, form, NULL, 0);
 }

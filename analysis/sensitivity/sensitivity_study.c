@@ -20,59 +20,49 @@ const char *sensitivity_factor_path(const struct sensitivity_study *study, size_
     return k < f->paths ? axis->path[f->first + k] : NULL;
 }
 
-/* Bytes that `path` has in common with the one named before it: up to a dot. */
-static size_t same_folder(const char *before, const char *path)
-{
-    const char *dot = strrchr(before, '.');
-    const size_t length = dot ? (size_t)(dot - before) + 1 : 0;
-    return strncmp(before, path, length) == 0 ? length : 0;
-}
-
 void sensitivity_factor_text(const struct sensitivity_study *study, size_t factor, char *text,
                              size_t size)
 {
     enum { NAMED = 3 }; /* most paths that are named */
     const int paths = study->scenario->sample.factor[factor].paths;
-    const char *path = sensitivity_factor_path(study, factor, 0), *before;
-    size_t used = (size_t)snprintf(text, size, "%s", path);
-    for (int k = 1; k < paths && used < size; k++) {
+    const char *before = sensitivity_factor_path(study, factor, 0);
+    snprintf(text, size, "%s", before ? before : "");
+    for (int k = 1; k < paths; k++) {
         if (paths > NAMED && k + 1 == NAMED) {
-            snprintf(text + used, size - used, " and %d more", paths - k);
+            add_text(text, size, " and %d more", paths - k);
             return;
         }
+        /* without what it has in common with the one named before it, up to a dot */
+        const char *const path = sensitivity_factor_path(study, factor, k);
+        const char *const dot = strrchr(before, '.');
+        const size_t folder = dot ? (size_t)(dot - before) + 1 : 0;
+        add_text(text, size, ", %s", path + (strncmp(before, path, folder) == 0 ? folder : 0));
         before = path;
-        path = sensitivity_factor_path(study, factor, k);
-        used +=
-            (size_t)snprintf(text + used, size - used, ", %s", path + same_folder(before, path));
     }
 }
 
 void sensitivity_response_text(const struct sensitivity_study *study, char *text, size_t size)
 {
     const struct sensitivity_request *request = &study->request;
-    if (!request->answer) {
+    if (!request->answer)
         snprintf(text, size, "share of %s cases", results_kind_names[request->of]);
-    } else if (request->of == RESULTS_KIND_COUNT) {
+    else
         snprintf(text, size, "mean %s", request->answer);
-    } else {
-        snprintf(text, size, "mean %s of the %s cases", request->answer,
-                 results_kind_names[request->of]);
-    }
+    if (request->answer && request->of != RESULTS_KIND_COUNT)
+        add_text(text, size, " of the %s cases", results_kind_names[request->of]);
 }
 
 void sensitivity_table_text(const struct sensitivity_study *study, size_t table, char *text,
                             size_t size)
 {
     const struct results *r = study->r;
-    size_t used = 0;
     char value[128];
     text[0] = '\0';
-    for (int a = 0; a < r->axes && used < size; a++) {
+    for (int a = 0; a < r->axes; a++) {
         if (study->response.kept[a]) {
             results_value_text(&r->axis[a], study->response.table[table].point[a], true, value,
                                sizeof value);
-            used += (size_t)snprintf(text + used, size - used, "%s%s = %s", used ? ", " : "",
-                                     r->axis[a].name, value);
+            add_text(text, size, "%s%s = %s", text[0] ? ", " : "", r->axis[a].name, value);
         }
     }
 }
@@ -115,13 +105,11 @@ static int choose_axes(const struct results *r, const struct sensitivity_request
 
 bool sensitivity_study_fits(const struct results *r)
 {
-    struct scenario *s = calloc(1, sizeof *s);
-    bool fits = false;
-    if (s && r->sample >= 0 && results_scenario(r, s)) {
-        fits = s->sample.given && s->sample.design.method != DOE_SPHERE && !r->other_points;
-        scenario_free(s);
-    }
-    free(s);
+    struct scenario s;
+    if (r->sample < 0 || !results_scenario(r, &s))
+        return false;
+    const bool fits = s.sample.given && s.sample.design.method != DOE_SPHERE && !r->other_points;
+    scenario_free(&s);
     return fits;
 }
 
@@ -163,20 +151,11 @@ static int read_design(struct sensitivity_study *study, stance_message *message)
 
 /* ---- points ------------------------------------------------------------------------------- */
 
-/* Whether the factor takes whole numbers only. */
-static bool is_whole(const struct sensitivity_study *study, const struct scenario_factor *f)
-{
-    const struct scenario_axis *axis = &study->scenario->axis[study->scenario->axes - 1];
-    bool whole = true;
-    for (int k = 0; k < f->paths; k++)
-        whole = whole && axis->integer[f->first + k];
-    return whole;
-}
-
 /* u[points][factors], of factors of few values the number of the part of the unit interval that
  * means the same value. Freed by the caller; NULL: no memory. */
 static double *make_points(const struct sensitivity_study *study)
 {
+    const struct scenario_axis *axis = &study->scenario->axis[study->scenario->axes - 1];
     struct doe design = *study->design;
     const size_t k = study->factors, points = study->response.points;
     double *u = malloc(points * k * sizeof *u);
@@ -187,7 +166,10 @@ static double *make_points(const struct sensitivity_study *study)
     for (size_t j = 0; good && design.method != DOE_MORRIS && j < k; j++) {
         const struct scenario_factor *f = &study->scenario->sample.factor[j];
         double parts = f->listed ? (double)f->points : 0;
-        for (int p = 0; !f->listed && is_whole(study, f) && p < f->paths; p++)
+        bool whole = true; /* it takes whole numbers only */
+        for (int p = 0; p < f->paths; p++)
+            whole = whole && axis->integer[f->first + p];
+        for (int p = 0; !f->listed && whole && p < f->paths; p++)
             parts = fmax(parts, fabs(f->value[f->paths + p] - f->value[p]) + 1);
         for (size_t i = 0; parts > 0 && i < points; i++)
             u[i * k + j] = floor(parts * u[i * k + j]);

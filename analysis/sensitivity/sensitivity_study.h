@@ -68,9 +68,9 @@ void sensitivity_table_text(const struct sensitivity_study *study, size_t table,
 
 /* Prints the results; false: no memory, or the output failed. */
 bool sensitivity_print(const struct sensitivity_study *study, enum table_form form);
-/* DIRECTORY/STEM.svg and .png, or as the look has it (NULL: it has nothing); prints their paths. */
+/* DIRECTORY/NAME[-ANSWER]-sensitivity of the file's NAME, as the look has it. */
 struct look;
 bool sensitivity_picture(const struct sensitivity_study *study, struct look *look,
-                         const char *directory, const char *stem, stance_message *message);
+                         const char *directory, stance_message *message);
 
 #endif
