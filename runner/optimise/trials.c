@@ -5,9 +5,6 @@
 #include "runner/base/message.h"
 #include "runner/base/units.h"
 #include "runner/plan/design.h"
-#include "runner/plan/instruction_set.h"
-#include "runner/plan/schedule.h"
-#include "runner/ranks/deadline.h"
 #include "runner/run/work.h"
 
 #include <math.h>
@@ -158,56 +155,23 @@ static bool look_at_loops(struct trials *t, size_t candidates, uint64_t starts)
 
 /* ---- cases ---------------------------------------------------------------------------------- */
 
-struct task {
-    stance_case input; /* first: by this the kernel names it */
-    stance_result result;
-    uint64_t row;
-    struct task *next, *next_idle;
-};
-
-struct stream {
+/* What is computed together. */
+struct batch {
     struct trials *t;
-    const struct plan *plan;
-    uint64_t starts;
+    uint64_t starts, cases;
     const int64_t *weight;
-    struct schedule schedule;
-    struct task *tasks, *idle;
-    uint64_t cases;
-    double look_at;
-    bool leaving, no_memory;
 };
 
-static bool asked_to_stop(const struct trials *t, double now)
+static bool is_tried(void *context, uint64_t row)
 {
-    return work_stop_asked() || now > t->until;
+    const struct batch *const batch = context;
+    return batch->t->loop[row / batch->starts].tried;
 }
 
-/* About every millisecond. */
-static bool attend(void *context)
+static bool attend(void *context, double now)
 {
-    struct stream *const stream = context;
-    struct trials *const t = stream->t;
-    const double now = clock_seconds();
-    if (stream->leaving)
-        return true;
-    bool stop = asked_to_stop(t, now);
-    if (t->attend && t->parallel->rank == 0)
-        stop = t->attend(t->context, now) || stop;
-    if (stop) {
-        parallel_add(t->parallel, COUNTER_STOP, 1);
-        stream->leaving = true;
-        deadline_begin();
-    } else if (now >= stream->look_at || t->parallel->rank == 0) {
-        parallel_beat(t->parallel, ++t->beats);
-        stream->leaving = parallel_add(t->parallel, COUNTER_STOP, 0) != 0;
-        stream->look_at = now + schedule_look_interval(t->parallel->size);
-    }
-    return stream->leaving;
-}
-
-static void wait_for_others(void *context)
-{
-    attend(context);
+    const struct batch *const batch = context;
+    return batch->t->attend && batch->t->attend(batch->t->context, now);
 }
 
 /* What a stabilised start is worth: 1 or an answer, less prices. */
@@ -226,101 +190,34 @@ static int64_t worth_of(const struct scenario_search *search, const stance_resul
     return llround(TRIALS_WORTH * fmin(fmax(worth, -TRIALS_MOST_WORTH), TRIALS_MOST_WORTH));
 }
 
-static void end_case(struct stream *stream, uint64_t row, const stance_result *result)
+static void end_case(void *context, uint64_t row, const stance_result *result)
 {
-    struct trials *const t = stream->t;
-    const bool failed = result->status != STANCE_DONE;
-    t->label[row] = (uint8_t)(failed ? TRIAL_FAILED : (int)result->outcome + 1);
-    if (!failed && result->outcome == STANCE_STABILISED)
-        t->worth[row / stream->starts] +=
-            stream->weight[row % stream->starts] * worth_of(&t->scenario->search, result);
-    stream->cases++;
-}
-
-static struct task *take_task(struct stream *stream)
-{
-    struct task *task = stream->idle;
-    if (task) {
-        stream->idle = task->next_idle;
-        return task;
-    }
-    task = calloc(1, sizeof *task);
-    if (task) {
-        task->next = stream->tasks;
-        stream->tasks = task;
-    }
-    return task;
-}
-
-static bool draw_row(struct stream *stream, uint64_t *row)
-{
-    while (schedule_take(&stream->schedule, 1, row) == 0) {
-        const int64_t k = parallel_add(stream->t->parallel, COUNTER_CHUNK, 1);
-        if (!schedule_draw(&stream->schedule, (uint64_t)k))
-            return false;
-    }
-    return true;
-}
-
-static bool next_case(void *context, const stance_case **input, stance_result **result)
-{
-    struct stream *const stream = context;
-    struct trials *const t = stream->t;
-    uint64_t row;
-    while (!stream->leaving && draw_row(stream, &row)) {
-        int method;
-        if (!t->loop[row / stream->starts].tried)
-            continue;
-        struct task *const task = take_task(stream);
-        if (!task) {
-            stream->no_memory = stream->leaving = true;
-            parallel_add(t->parallel, COUNTER_STOP, 1);
-            return false;
-        }
-        task->row = row;
-        if (plan_resolve(stream->plan, row, &task->input, &method)) {
-            /* All candidates meet the same noise. */
-            task->input.grid_index %= t->circumstances;
-            *input = &task->input;
-            *result = &task->result;
-            return true;
-        }
-        t->label[row] = TRIAL_FAILED;
-        task->next_idle = stream->idle;
-        stream->idle = task;
-    }
-    return false;
-}
-
-static void case_done(void *context, const stance_case *input, stance_result *result)
-{
-    struct stream *const stream = context;
-    struct task *const task = (struct task *)(uintptr_t)input;
-    end_case(stream, task->row, result);
-    task->next_idle = stream->idle;
-    stream->idle = task;
+    struct batch *const batch = context;
+    struct trials *const t = batch->t;
+    if (result->status == STANCE_DONE && result->outcome == STANCE_STABILISED)
+        t->worth[row / batch->starts] +=
+            batch->weight[row % batch->starts] * worth_of(&t->scenario->search, result);
+    batch->cases += result->failure != STANCE_FAILURE_INITIAL;
 }
 
 static enum trials_end simulate(struct trials *t, const struct plan *plan, uint64_t starts,
                                 const int64_t *weight, stance_message *message)
 {
-    const stance_kernel *const kernel =
-        instruction_set_kernel(t->scenario->scene, stance_methods()[t->scenario->base.method]);
-    struct stream stream = {.t = t,
-                            .plan = plan,
-                            .starts = starts,
-                            .weight = weight,
-                            .schedule = schedule_make(plan->rows, t->parallel->size, NULL)};
+    struct batch batch = {.t = t, .starts = starts, .weight = weight};
+    struct work work = {.plan = plan,
+                        .parallel = t->parallel,
+                        .quiet = true,
+                        .time_limit = t->until,
+                        .beats = t->beats,
+                        .ends = end_case,
+                        .takes = is_tried,
+                        .attend = t->parallel->rank == 0 ? attend : NULL,
+                        .context = &batch,
+                        .cycle = t->circumstances};
     parallel_restart(t->parallel);
-    if (!attend(&stream))
-        kernel->stream(&(stance_feed){&stream, next_case, case_done, attend});
-    parallel_beat(t->parallel, HEARTBEAT_WAITS);
-    parallel_meet(t->parallel, wait_for_others, &stream);
-    for (struct task *task = stream.tasks, *next; task; task = next) {
-        next = task->next;
-        free(task);
-    }
-    if (!parallel_agree(t->parallel, !stream.no_memory, message->text, sizeof message->text))
+    const bool good = work_run(&work, NULL, t->label, message);
+    t->beats = work.beats;
+    if (!parallel_agree(t->parallel, good, message->text, sizeof message->text))
         return TRIALS_BROKEN;
     uint64_t stopped = parallel_add(t->parallel, COUNTER_STOP, 0) != 0;
     parallel_sum(t->parallel, &stopped, 1);
@@ -329,8 +226,8 @@ static enum trials_end simulate(struct trials *t, const struct plan *plan, uint6
     const size_t pairs = plan->rows / starts;
     parallel_largest(t->parallel, t->label, plan->rows);
     parallel_sum(t->parallel, (uint64_t *)t->worth, (int)pairs);
-    parallel_sum(t->parallel, &stream.cases, 1);
-    t->cases += stream.cases;
+    parallel_sum(t->parallel, &batch.cases, 1);
+    t->cases += batch.cases;
     return TRIALS_DONE;
 }
 
@@ -339,7 +236,7 @@ static enum trials_end simulate(struct trials *t, const struct plan *plan, uint6
 static bool stop_designs(void *context)
 {
     const struct trials *const t = context;
-    const bool stop = asked_to_stop(t, clock_seconds());
+    const bool stop = work_stop_asked() || clock_seconds() > t->until;
     return parallel_add(t->parallel, COUNTER_STOP, stop) != 0 || stop;
 }
 

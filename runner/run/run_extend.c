@@ -210,37 +210,30 @@ bool run_extend_designs(struct run *run, stance_message *message)
     return store && store_close(store, good ? message : &ignored) && good;
 }
 
-/* Whether a row can be taken over with all that the new file has of it. */
-static bool is_whole(const struct extension *e, const struct plan *new, uint64_t row, uint64_t to)
+/* Where a row goes that can be taken over with all that the new file has of it. */
+static uint64_t target_of(void *context, uint64_t row)
 {
+    const struct run *run = context;
+    const struct extension *e = run->extension;
+    const struct plan *new = &run->plan;
     uint64_t place;
+    const uint64_t to = moved(e, row);
+    if (new->stop && row % (1 << 14) == 0)
+        (void)new->stop(new->stop_context); /* a sign of life; a stop comes after this */
     return !plan_recorded(new, to, &place) ||
-           (plan_recorded(&e->plan, row, &place) && e->plan.record_rows == new->record_rows);
+                   (plan_recorded(&e->plan, row, &place) && e->plan.record_rows == new->record_rows)
+               ? to
+               : STORE_NOWHERE;
 }
 
 bool run_extend_copy(struct run *run, stance_message *message)
 {
     struct extension *e = run->extension;
-    struct plan *plan = &run->plan;
     struct store_copied copied = {0};
     struct store *old = NULL;
-    uint64_t row[STORE_ROWS], target[STORE_ROWS];
 
-    bool good = store_open_to_read(&old, e->file, &e->plan, message);
-    for (uint64_t r = 0, n = 0; good && r < e->plan.rows; r++) {
-        const uint64_t to = moved(e, r);
-        if (is_whole(e, plan, r, to)) {
-            row[n] = r;
-            target[n++] = to;
-        }
-        if (n == STORE_ROWS || (n > 0 && r + 1 == e->plan.rows)) {
-            const struct rows rows = {.row = row, .count = n};
-            good = store_copy(old, &rows, run->store, target, &copied, message);
-            n = 0;
-        }
-        if (plan->stop && r % (1 << 14) == 0)
-            (void)plan->stop(plan->stop_context); /* a sign of life; a stop comes after this */
-    }
+    bool good = store_open_to_read(&old, e->file, &e->plan, message) &&
+                store_copy(old, run->store, target_of, run, &copied, message);
     stance_message ignored;
     good = old && store_close(old, good ? message : &ignored) && good;
     if (good && copied.damaged > 0) {

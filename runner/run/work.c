@@ -78,8 +78,7 @@ struct task {
     stance_case input; /* first: by this the kernel names it */
     stance_result result;
     stance_trajectory trajectory;
-    double *samples; /* of the trajectory */
-    uint64_t place;  /* of the trajectory in the file */
+    uint64_t place; /* of the trajectory in the file */
     struct block *block;
     size_t slot;
     int hand; /* place in the list of what is in hand, see crash.h */
@@ -138,44 +137,16 @@ static struct block *block_make(const struct job *job)
 {
     struct block *block = calloc(1, sizeof *block);
     if (block) {
-        block->rows = store_block_make(job->work->store, job->capacity);
+        const struct store *const store = job->work->store;
+        block->rows = store ? store_block_make(store, job->capacity) : NULL;
         block->state = malloc(job->capacity);
         block->method = malloc(job->capacity);
-        if (!block->rows || !block->state || !block->method) {
+        if ((store && !block->rows) || !block->state || !block->method) {
             block_free(block);
             return NULL;
         }
     }
     return block;
-}
-
-/* Doubles of one recorded instant. */
-static size_t instant_size(const stance_scene *scene)
-{
-    return 2 * (size_t)scene->coordinates + (size_t)scene->actuators + 3 * (size_t)scene->contacts;
-}
-
-/* The task's trajectory, blank: NAN stays where a case ends before. false: no memory. */
-static bool blank_trajectory(struct task *task, const struct plan *plan)
-{
-    const stance_scene *scene = plan->scenario->scene;
-    const size_t rows = (size_t)plan->record_rows, size = rows * instant_size(scene);
-    stance_trajectory *trajectory = &task->trajectory;
-
-    if (!task->samples && !(task->samples = malloc(size * sizeof *task->samples)))
-        return false;
-    double *at = task->samples;
-    for (size_t i = 0; i < size; i++)
-        at[i] = NAN;
-    trajectory->interval = plan->record_interval;
-    trajectory->rows = plan->record_rows;
-    trajectory->position = at;
-    trajectory->velocity = at += rows * (size_t)scene->coordinates;
-    trajectory->torque = at += rows * (size_t)scene->coordinates;
-    trajectory->force = at += rows * (size_t)scene->actuators;
-    trajectory->gap = at + 2 * rows * (size_t)scene->contacts;
-    task->input.trajectory = trajectory;
-    return true;
 }
 
 static struct task *task_take(struct job *job)
@@ -246,7 +217,8 @@ static void write_block(struct job *job, struct block *block, size_t least)
         if (n < least)
             continue;
         const struct rows rows = rows_part(&job->schedule.rows, block->first + slot, n);
-        if (!store_write(job->work->store, block->rows, slot, &rows, job->message)) {
+        if (job->work->store &&
+            !store_write(job->work->store, block->rows, slot, &rows, job->message)) {
             break_off(job);
             return;
         }
@@ -292,7 +264,10 @@ static void close_block(struct job *job, struct block *block)
 /* The result of a row, which was pending or in a lane. */
 static void end_row(struct job *job, struct block *block, size_t slot, const stance_result *result)
 {
-    store_put(block->rows, slot, result);
+    if (block->rows)
+        store_put(block->rows, slot, result);
+    else
+        job->work->ends(job->work->context, row_at(job, block, slot), result);
     tally(job, block->first + slot, result->status, result->outcome);
     block->state[slot] = ENDED;
     job->work->computed++;
@@ -381,6 +356,17 @@ static void keep_rows(struct job *job, struct block *block)
     job->checking += clock_seconds() - start;
 }
 
+/* So are those that are left out. */
+static void leave_rows(struct job *job, struct block *block)
+{
+    for (size_t slot = 0; slot < block->count; slot++) {
+        if (!job->work->takes(job->work->context, row_at(job, block, slot))) {
+            block->state[slot] = STORED;
+            block->open--;
+        }
+    }
+}
+
 /* The next rows of the chunk in hand, or of a new one. false: there are none, or no memory. */
 static bool open_block(struct job *job)
 {
@@ -415,6 +401,8 @@ static bool open_block(struct job *job)
         block->method[slot] = (uint8_t)plan_method(job->plan, row_at(job, block, slot));
     if (job->work->resume)
         keep_rows(job, block);
+    if (job->work->takes)
+        leave_rows(job, block);
     job->pending += block->open;
     job->at = job->at ? job->at : block;
     if (block->open == 0)
@@ -462,17 +450,21 @@ static bool next_case(void *context, const stance_case **input, stance_result **
             return false;
         const uint64_t row = row_at(job, block, slot);
         const bool exists = plan_resolve(job->plan, row, &task->input, &method);
+        if (job->work->cycle > 0)
+            task->input.grid_index %= job->work->cycle;
         task->block = block;
         task->slot = slot;
-        task->input.trajectory = NULL;
-        if (plan_recorded(job->plan, row, &task->place) && !blank_trajectory(task, job->plan)) {
+        const bool recorded = plan_recorded(job->plan, row, &task->place);
+        task->input.trajectory = recorded ? &task->trajectory : NULL;
+        if (recorded && !store_blank_trajectory(job->work->store, &task->trajectory)) {
             task_leave(job, task);
             out_of_memory(job, "trajectories");
             return false;
         }
         block->state[slot] = RUNNING;
         if (exists) {
-            task->hand = crash_take(plan_case(job->plan, row));
+            if (job->work->store)
+                task->hand = crash_take(plan_case(job->plan, row));
             *input = &task->input;
             *result = &task->result;
             return true;
@@ -522,6 +514,10 @@ static bool asked_to_stop(const struct work *work, double now)
 static void keep_pulse(struct job *job, double now)
 {
     struct work *work = job->work;
+    if (work->attend && !job->leaving && work->attend(work->context, now)) {
+        job->leaving = true;
+        parallel_add(work->parallel, COUNTER_STOP, 1);
+    }
     if (!work->heartbeat || now < work->heartbeat->due || job->broken || job->lost)
         return;
     const uint64_t done = work->before + (uint64_t)parallel_add(work->parallel, COUNTER_DONE, 0);
@@ -647,7 +643,7 @@ static void job_free(struct job *job)
     for (struct task *task = job->tasks, *next; task; task = next) {
         next = task->next;
         crash_leave(task->hand);
-        free(task->samples);
+        free(task->trajectory.position);
         free(task);
     }
 }
@@ -661,7 +657,7 @@ bool work_run(struct work *work, const struct rows *only, uint8_t *label, stance
         .schedule = schedule_make(work->plan->rows, work->parallel->size, only),
         .label = label,
         .message = message,
-        .capacity = schedule_block_rows(store_row_size(work->store)),
+        .capacity = schedule_block_rows(work->store ? store_row_size(work->store) : 1),
         .start = start,
     };
     uint64_t first, largest;

@@ -26,7 +26,14 @@ struct work {
     double start;                    /* clock_seconds() when the program began */
     double time_limit;               /* s since then, INFINITY: none */
     struct heartbeat *heartbeat;     /* on rank 0, may be NULL: signs of life of the job */
-    int round; /* of several, counted from 1, for the progress; 0: there is one only */
+    /* Where `store` is NULL: is told what came out. The others may be NULL: whether a row is
+     * computed; what is called about every millisecond and may say to stop. */
+    void (*ends)(void *context, uint64_t row, const stance_result *result);
+    bool (*takes)(void *context, uint64_t row);
+    bool (*attend)(void *context, double now);
+    void *context;
+    uint64_t cycle; /* rows that are so many apart meet the same random numbers; 0: none */
+    int round;      /* of several, counted from 1, for the progress; 0: there is one only */
     struct progress progress; /* all 0: not begun */
 
     /* What came out, for this rank's cases. */

@@ -219,6 +219,7 @@ struct making {
     struct plan *plan;
     struct changed_scenario_counts *counts;
     stance_message *message;
+    bool stopped;
 };
 
 static bool system_failed(const struct making *making, const char *what)
@@ -226,27 +227,25 @@ static bool system_failed(const struct making *making, const char *what)
     return complain(making->message, "%.150s: cannot %s: %s", making->file, what, strerror(errno));
 }
 
-/* Copies the rows that verify, some at a time. */
-static bool copy_rows(const struct making *making, struct store *from, struct store *to)
+/* A row keeps its place; once told to stop none is copied. */
+static uint64_t same_row(void *context, uint64_t row)
 {
+    struct making *making = context;
     const struct plan *plan = making->plan;
-    struct store_copied copied = {0};
-    uint64_t target[STORE_ROWS];
-    bool good = true;
+    if (row % STORE_ROWS == 0 && plan->stop && plan->stop(plan->stop_context))
+        making->stopped = true;
+    return making->stopped ? STORE_NOWHERE : row;
+}
 
-    for (uint64_t row = 0, n; good && row < plan->rows; row += n) {
-        n = plan->rows - row < STORE_ROWS ? plan->rows - row : STORE_ROWS;
-        const struct rows rows = {.count = n, .first = row};
-        for (uint64_t i = 0; i < n; i++)
-            target[i] = row + i;
-        if (plan->stop && plan->stop(plan->stop_context)) {
-            making->message->text[0] = '\0';
-            return false;
-        }
-        good = store_copy(from, &rows, to, target, &copied, making->message);
-    }
+/* Copies the rows that verify. */
+static bool copy_rows(struct making *making, struct store *from, struct store *to)
+{
+    struct store_copied copied = {0};
+    const bool good = store_copy(from, to, same_row, making, &copied, making->message);
     *making->counts = (struct changed_scenario_counts){copied.copied, copied.damaged, false};
-    return good;
+    if (making->stopped)
+        making->message->text[0] = '\0';
+    return good && !making->stopped;
 }
 
 /* To the disk, then under the old one's name. */

@@ -178,57 +178,23 @@ static bool collect_designs(struct merge *m, struct plan *plan, bool *usage,
 
 /* ---- rows --------------------------------------------------------------------------------- */
 
-/* A part's rows that are not pending: of a shard few are. */
-struct walk {
-    struct store *store;
-    uint64_t rows, row;
-    uint64_t read; /* up to this one */
-    uint8_t status[1 << 16];
+struct moving {
+    const struct merge *merge;
+    const struct merge_part *part;
 };
 
-/* Goes on to the next; false where it cannot be read. At the end row == rows. */
-static bool find_row(struct walk *walk, stance_message *message)
+static uint64_t target_of(void *context, uint64_t row)
 {
-    enum { PIECE = sizeof walk->status };
-    for (; walk->row < walk->rows; walk->row++) {
-        if (walk->row == walk->read) {
-            const uint64_t left = walk->rows - walk->row;
-            const size_t count = left < PIECE ? (size_t)left : PIECE;
-            if (!store_statuses(walk->store, walk->row, count, walk->status, message))
-                return false;
-            walk->read += count;
-        }
-        if (walk->status[walk->row % PIECE] != STANCE_PENDING)
-            return true;
-    }
-    return true;
+    const struct moving *moving = context;
+    return merge_row(moving->merge, moving->part, row);
 }
 
 static bool copy_rows(struct merge *m, struct merge_part *part, const struct opened *opened,
                       struct store *store, stance_message *message)
 {
-    uint64_t row[STORE_ROWS], target[STORE_ROWS];
     const uint64_t before = m->copied.copied + m->copied.same;
-    struct walk *walk = malloc(sizeof *walk);
-    if (!walk)
-        return no_memory(message);
-    walk->store = opened->store;
-    walk->rows = opened->plan.rows;
-    walk->row = walk->read = 0;
-    bool good = find_row(walk, message);
-    while (good && walk->row < walk->rows) {
-        struct rows rows = {.row = row};
-        while (good && walk->row < walk->rows && rows.count < STORE_ROWS) {
-            const uint64_t aim = merge_row(m, part, walk->row);
-            if (rows.count > 0 && aim <= target[rows.count - 1])
-                break; /* a part whose points are in another order */
-            target[rows.count] = aim;
-            row[rows.count++] = walk->row++;
-            good = find_row(walk, message);
-        }
-        good = good && store_copy(opened->store, &rows, store, target, &m->copied, message);
-    }
-    free(walk);
+    struct moving moving = {m, part};
+    const bool good = store_copy(opened->store, store, target_of, &moving, &m->copied, message);
     part->taken = m->copied.copied + m->copied.same - before;
     return good;
 }

@@ -35,12 +35,16 @@ const struct store_column store_columns[COLUMNS] = {
                        "whether the case was computed"},
 };
 
+#define TRACK(member, unit, text, over, parts)                                                     \
+    {                                                                                              \
+#member, unit, text, over, parts, offsetof(stance_trajectory, member)                      \
+    }
 const struct store_trajectory store_trajectories[TRAJECTORIES] = {
-    [TRAJECTORY_POSITION] = {"position", NULL, "coordinates, in m and rad"},
-    [TRAJECTORY_VELOCITY] = {"velocity", NULL, "rates of the coordinates, in m/s and rad/s"},
-    [TRAJECTORY_TORQUE] = {"torque", "N m", "torque applied in the step that ends there"},
-    [TRAJECTORY_FORCE] = {"force", "N", "contact force, mean since the instant before"},
-    [TRAJECTORY_GAP] = {"gap", "m", "height of the contact point above the ground"},
+    TRACK(position, NULL, "coordinates, in m and rad", OVER_COORDINATES, 1),
+    TRACK(velocity, NULL, "rates of the coordinates, in m/s and rad/s", OVER_COORDINATES, 1),
+    TRACK(torque, "N m", "torque applied in the step that ends there", OVER_ACTUATORS, 1),
+    TRACK(force, "N", "contact force, mean since the instant before", OVER_CONTACTS, 2),
+    TRACK(gap, "m", "height of the contact point above the ground", OVER_CONTACTS, 1),
 };
 
 bool store_is_column(const char *path)
@@ -76,16 +80,9 @@ size_t store_column_width(const struct scenario *scenario, int column)
 
 size_t store_trajectory_width(const stance_scene *scene, int variable)
 {
-    switch (variable) {
-    case TRAJECTORY_TORQUE:
-        return (size_t)scene->actuators;
-    case TRAJECTORY_FORCE:
-        return 2 * (size_t)scene->contacts;
-    case TRAJECTORY_GAP:
-        return (size_t)scene->contacts;
-    default:
-        return (size_t)scene->coordinates;
-    }
+    const int over[] = {scene->coordinates, scene->actuators, scene->contacts};
+    const struct store_trajectory *const t = &store_trajectories[variable];
+    return (size_t)over[t->over] * t->parts;
 }
 
 int store_dimensions(const struct plan *plan, hsize_t lengths[SCENARIO_MAX_AXES])
@@ -512,16 +509,37 @@ bool store_write(struct store *store, struct store_block *block, size_t slot,
 
 /* ---- trajectories ------------------------------------------------------------------------- */
 
+static double **track_of(const stance_trajectory *trajectory, int v)
+{
+    return (double **)(void *)((char *)(uintptr_t)trajectory + store_trajectories[v].offset);
+}
+
+bool store_blank_trajectory(const struct store *store, stance_trajectory *trajectory)
+{
+    size_t size = 0;
+    for (int v = 0; v < TRAJECTORIES; v++)
+        size += store->trajectory_size[v];
+    double *at = trajectory->position ? trajectory->position : malloc(size * sizeof *at);
+    for (size_t i = 0; at && i < size; i++)
+        at[i] = NAN;
+    for (int v = 0; at && v < TRAJECTORIES; at += store->trajectory_size[v++])
+        *track_of(trajectory, v) = at;
+    trajectory->interval = store->plan->record_interval;
+    trajectory->rows = store->plan->record_rows;
+    return trajectory->position != NULL;
+}
+
 bool store_move_trajectory(struct store *store, uint64_t place, enum hdf_direction way,
-                           double *const data[TRAJECTORIES], uint32_t *crc, uint32_t *stored)
+                           const stance_trajectory *trajectory, uint32_t *crc, uint32_t *stored)
 {
     bool good = true;
     *crc = 0;
     for (int v = 0; good && v < TRAJECTORIES; v++) {
         const hsize_t n = store->trajectory_size[v];
+        double *const data = *track_of(trajectory, v);
         if (n > 0) {
-            good = hdf_move(store->trajectory[v], H5T_IEEE_F64LE, place * n, n, way, data[v]);
-            *crc = checksum_crc32c(*crc, data[v], n * sizeof **data);
+            good = hdf_move(store->trajectory[v], H5T_IEEE_F64LE, place * n, n, way, data);
+            *crc = checksum_crc32c(*crc, data, n * sizeof *data);
         }
     }
     if (way == HDF_WRITE)
@@ -532,38 +550,20 @@ bool store_move_trajectory(struct store *store, uint64_t place, enum hdf_directi
 bool store_write_trajectory(struct store *store, uint64_t place,
                             const stance_trajectory *trajectory, stance_message *message)
 {
-    double *const data[TRAJECTORIES] = {
-        [TRAJECTORY_POSITION] = trajectory->position, [TRAJECTORY_VELOCITY] = trajectory->velocity,
-        [TRAJECTORY_TORQUE] = trajectory->torque,     [TRAJECTORY_FORCE] = trajectory->force,
-        [TRAJECTORY_GAP] = trajectory->gap,
-    };
     uint32_t crc, stored;
-    return store_move_trajectory(store, place, HDF_WRITE, data, &crc, &stored) ||
+    return store_move_trajectory(store, place, HDF_WRITE, trajectory, &crc, &stored) ||
            store_failed(message, store->file, "write a trajectory");
-}
-
-bool store_trajectory_room(const struct store *store, double *data[TRAJECTORIES])
-{
-    size_t size = 1;
-    for (int v = 0; v < TRAJECTORIES; v++)
-        size += store->trajectory_size[v];
-    double *all = malloc(size * sizeof *all);
-    for (int v = 0; all && v < TRAJECTORIES; v++) {
-        data[v] = all;
-        all += store->trajectory_size[v];
-    }
-    return all != NULL;
 }
 
 static bool verify_trajectory(struct store *store, uint64_t place, bool *whole,
                               stance_message *message)
 {
     uint32_t crc, stored = 0;
-    double *data[TRAJECTORIES];
-    if (!store_trajectory_room(store, data))
+    stance_trajectory trajectory = {0};
+    if (!store_blank_trajectory(store, &trajectory))
         return no_memory(message);
-    const bool good = store_move_trajectory(store, place, HDF_READ, data, &crc, &stored);
-    free(data[0]);
+    const bool good = store_move_trajectory(store, place, HDF_READ, &trajectory, &crc, &stored);
+    free(trajectory.position);
     *whole = crc == stored;
     return good || store_failed(message, store->file, "read a trajectory");
 }

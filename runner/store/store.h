@@ -135,6 +135,9 @@ void store_put(struct store_block *block, size_t slot, const stance_result *resu
  * file, their status last; one write per variable and unbroken stretch of the innermost axis. */
 bool store_write(struct store *store, struct store_block *block, size_t slot,
                  const struct rows *rows, stance_message *message);
+/* Makes a trajectory of the file's cases blank, all NAN; room is made where `position` is NULL, and
+ * freed by free(position). false: no memory. */
+bool store_blank_trajectory(const struct store *store, stance_trajectory *trajectory);
 /* The trajectory at one place of the recorded cases; before the row itself. */
 bool store_write_trajectory(struct store *store, uint64_t place,
                             const stance_trajectory *trajectory, stance_message *message);
@@ -143,9 +146,6 @@ bool store_write_trajectory(struct store *store, uint64_t place,
  * cases are verified, too. */
 bool store_verify(struct store *store, const struct rows *rows, stance_result *results, bool *whole,
                   stance_message *message);
-/* Statuses of `count` rows from `first` on, as the file has them. */
-bool store_statuses(struct store *store, uint64_t first, size_t count, uint8_t *status,
-                    stance_message *message);
 /* What became of rows that were to be copied; the numbers add up over calls. */
 struct store_copied {
     uint64_t copied;
@@ -154,11 +154,14 @@ struct store_copied {
     uint64_t conflicting; /* differ from what was there; left as they were */
     uint64_t conflict;    /* where the first of these is, in the file that is written */
 };
-/* Copies 1 to STORE_ROWS rows, with their trajectories, to the rows target[rows->count] (ascending)
- * of a file whose cases have the same answers and the same instants, each once it has been
- * verified. Where only that file has numbers of scenarios, the rows are of the first one, 0. */
-bool store_copy(struct store *from, const struct rows *rows, struct store *to,
-                const uint64_t *target, struct store_copied *copied, stance_message *message);
+/* Copies rows that are not pending, with their trajectories, to the rows that `target` says
+ * (STORE_NOWHERE: it stays) of a file whose cases have the same answers and the same instants, each
+ * once it has been verified. Where only that file has numbers of scenarios, the rows are of the
+ * first one, 0. */
+#define STORE_NOWHERE UINT64_MAX
+bool store_copy(struct store *from, struct store *to,
+                uint64_t (*target)(void *context, uint64_t row), void *context,
+                struct store_copied *copied, stance_message *message);
 /* Appends the times of a file to those of another, rank after rank from *rank on, which moves on.
  */
 bool store_copy_timing(struct store *from, struct store *to, int *rank, stance_message *message);

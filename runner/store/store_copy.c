@@ -73,15 +73,15 @@ static void take_row(const struct store_block *from, size_t slot, struct store_b
 static bool copy_trajectory(struct store *from, uint64_t place, struct store *to, uint64_t to_place,
                             stance_message *message)
 {
-    double *data[TRAJECTORIES];
+    stance_trajectory data = {0};
     uint32_t crc, stored = 0;
-    if (!store_trajectory_room(from, data))
+    if (!store_blank_trajectory(from, &data))
         return no_memory(message);
-    const bool good = (store_move_trajectory(from, place, HDF_READ, data, &crc, &stored) ||
+    const bool good = (store_move_trajectory(from, place, HDF_READ, &data, &crc, &stored) ||
                        store_failed(message, from->file, "read a trajectory")) &&
-                      (store_move_trajectory(to, to_place, HDF_WRITE, data, &crc, &stored) ||
+                      (store_move_trajectory(to, to_place, HDF_WRITE, &data, &crc, &stored) ||
                        store_failed(message, to->file, "write a trajectory"));
-    free(data[0]);
+    free(data.position);
     return good;
 }
 
@@ -105,8 +105,9 @@ static void choose_rows(struct store *from, struct store *to, const uint64_t *ta
     }
 }
 
-bool store_copy(struct store *from, const struct rows *rows, struct store *to,
-                const uint64_t *target, struct store_copied *copied, stance_message *message)
+/* Copies 1 to STORE_ROWS rows to the rows target[rows->count] (ascending). */
+static bool copy_some(struct store *from, const struct rows *rows, struct store *to,
+                      const uint64_t *target, struct store_copied *copied, stance_message *message)
 {
     bool whole[STORE_ROWS], there[STORE_ROWS], wanted[STORE_ROWS];
     uint64_t kept[STORE_ROWS], place, to_place;
@@ -135,6 +136,35 @@ bool store_copy(struct store *from, const struct rows *rows, struct store *to,
     }
     const struct rows written = {.row = kept, .count = count};
     return count == 0 || store_write(to, to->checked, 0, &written, message);
+}
+
+bool store_copy(struct store *from, struct store *to,
+                uint64_t (*target)(void *context, uint64_t row), void *context,
+                struct store_copied *copied, stance_message *message)
+{
+    enum { PIECE = 1 << 16 };
+    const uint64_t all = from->plan->rows;
+    uint64_t row[STORE_ROWS], aim[STORE_ROWS];
+    struct rows rows = {.row = row};
+    uint8_t *const status = malloc(PIECE); /* of a shard few are not pending */
+    bool good = status || no_memory(message);
+    for (uint64_t r = 0; good && r < all; r++) {
+        if (r % PIECE == 0)
+            good = hdf_move(from->column[COLUMN_STATUS], H5T_STD_U8LE, r,
+                            all - r < PIECE ? all - r : PIECE, HDF_READ, status) ||
+                   store_failed(message, from->file, "read the results");
+        const uint64_t to_row = target(context, r);
+        if (!good || to_row == STORE_NOWHERE || status[r % PIECE] == STANCE_PENDING)
+            continue;
+        if (rows.count == STORE_ROWS || (rows.count > 0 && to_row <= aim[rows.count - 1])) {
+            good = copy_some(from, &rows, to, aim, copied, message);
+            rows.count = 0;
+        }
+        aim[rows.count] = to_row;
+        row[rows.count++] = r;
+    }
+    free(status);
+    return good && (rows.count == 0 || copy_some(from, &rows, to, aim, copied, message));
 }
 
 /* The times of one file to as many places of the other, from `rank` on, as it has for them. */

@@ -412,14 +412,13 @@ static bool put_trajectories(struct layout *layout)
                  (make_words(&layout->dimensions, group, "contact", scene->contact_name,
                              (hsize_t)scene->contacts, &contact) &&
                   make_words(&layout->dimensions, group, "component", components, 2, &component)));
-    const struct dimension *last[TRAJECTORIES] = {&coordinate, &coordinate, &actuator, &contact,
-                                                  &contact};
+    const struct dimension *const last[] = {&coordinate, &actuator, &contact};
     for (int v = 0; good && v < TRAJECTORIES; v++) {
-        const struct dimension *over[] = {&number, &time, last[v], &component};
         const struct store_trajectory *t = &store_trajectories[v];
+        const struct dimension *over[] = {&number, &time, last[t->over], &component};
         const struct variable variable = {t->name, KIND_double, t->unit, t->text, true, NAN, NULL};
         good = store_trajectory_width(scene, v) == 0 ||
-               put_variable(group, &variable, over, v == TRAJECTORY_FORCE ? 4 : 3);
+               put_variable(group, &variable, over, t->parts > 1 ? 4 : 3);
     }
     if (good) {
         const struct dimension *over[] = {&number};

@@ -126,13 +126,6 @@ bool store_read_axis(const char *file, struct scenario_axis *axis, stance_messag
     return good || store_failed(message, file, "read an axis");
 }
 
-bool store_statuses(struct store *store, uint64_t first, size_t count, uint8_t *status,
-                    stance_message *message)
-{
-    return hdf_move(store->column[COLUMN_STATUS], H5T_STD_U8LE, first, count, HDF_READ, status) ||
-           store_failed(message, store->file, "read the results");
-}
-
 /* Reads the status variable, whatever its shape, in pieces. */
 static bool count_status(hid_t dataset, struct store_counts *counts)
 {

@@ -31,17 +31,12 @@ struct store_column {
 };
 extern const struct store_column store_columns[COLUMNS];
 
-/* The variables of a trajectory: (case, time, width, parts). */
-enum {
-    TRAJECTORY_POSITION,
-    TRAJECTORY_VELOCITY,
-    TRAJECTORY_TORQUE,
-    TRAJECTORY_FORCE,
-    TRAJECTORY_GAP,
-    TRAJECTORIES
-};
+/* The variables of a trajectory: (case, time, what it is over, parts). */
+enum { TRAJECTORIES = 5 };
 extern const struct store_trajectory {
     const char *name, *unit, *text;
+    enum { OVER_COORDINATES, OVER_ACTUATORS, OVER_CONTACTS } over;
+    size_t parts, offset; /* of the pointer in stance_trajectory */
 } store_trajectories[TRAJECTORIES];
 
 /* Whether a variable is over the cases; over those that are recorded, their checksum included. */
@@ -123,12 +118,10 @@ bool store_move_rows(struct store *store, struct store_block *block, size_t slot
                      const struct rows *rows, enum hdf_direction way, stance_message *message);
 /* What the checksum of a row of a block ought to be. */
 uint32_t store_row_checksum(const struct store_block *block, size_t slot);
-/* Moves the trajectory at a place between the file and data[], of trajectory_size each; its
- * checksum as it follows from them, and as it is in the file. */
+/* Moves a trajectory between the file and memory; its checksum as it follows from the numbers, and
+ * as it is in the file. */
 bool store_move_trajectory(struct store *store, uint64_t place, enum hdf_direction way,
-                           double *const data[TRAJECTORIES], uint32_t *crc, uint32_t *stored);
-/* Room for one; freed by free(data[0]). false: no memory. */
-bool store_trajectory_room(const struct store *store, double *data[TRAJECTORIES]);
+                           const stance_trajectory *trajectory, uint32_t *crc, uint32_t *stored);
 
 /* File access for one process: no HDF5 locks (ours is another), no buffering of raw data, so that
  * writes reach the system in the order in which they are made. Close with H5Pclose. */
