@@ -6,17 +6,11 @@
 #include "search_plan.h"
 
 #include "runner/base/message.h"
-#include "runner/base/sandbox.h"
 #include "runner/base/units.h"
 #include "runner/plan/allowed.h"
 #include "runner/plan/asked.h"
-#include "runner/plan/instruction_set.h"
 #include "runner/plan/search_numbers.h"
-#include "runner/ranks/crash.h"
-#include "runner/ranks/deadline.h"
-#include "runner/run/claim.h"
-#include "runner/run/work.h"
-#include "runner/store/build_info.h"
+#include "runner/run/run.h"
 
 #include <errno.h>
 #include <inttypes.h>
@@ -31,53 +25,37 @@ extern const struct command command_optimise; /* below */
 #define SAVE_INTERVAL 1.0 /* s */
 static const double most_undecided = 1e-3;
 
-struct options {
-    struct asked asked;
-    const char *output;
-    bool force, resume, quiet, help;
-    double time_limit; /* s, INFINITY: none */
-};
-
 struct optimise {
-    int argc;
-    char **argv;
-    struct parallel parallel;
-    struct options options;
-    struct scenario *asked, *first; /* as it was read, on rank 0; the first candidate */
-    char file[1024], best[1024];
-    struct lock lock;
-    struct heartbeat heartbeat;
+    struct run run;         /* whose scenario is the first candidate */
+    struct scenario *asked; /* as it was read, on rank 0 */
+    char best[1024];
     struct search_file origin; /* of a search that is gone on with, on rank 0 */
     bool resumes;
     struct search search;
     bool made;
-    double start, before; /* of clock_seconds(); s that earlier parts of the search took */
+    double before; /* s that earlier parts of the search took */
     double save_at;
-    struct progress progress;
     char doing[40];
-    stance_message message;
-    int code; /* of this rank's failure */
-    bool printed;
 };
 
+static struct optimise *of(struct run *run)
+{
+    return (struct optimise *)run;
+}
+
+/* With the reason in run.message. */
 static bool fail(struct optimise *o, enum exit_code code)
 {
-    o->code = code;
-    return false;
+    return run_fail(&o->run, code, "stance optimise: %s", o->run.message.text);
 }
 
 /* ---- options -------------------------------------------------------------------------------- */
 
-static bool stage_options(struct optimise *o)
+static void stage_options(struct run *run)
 {
-    struct options *const options = &o->options;
-    options->time_limit = INFINITY;
-    const int code = claim_options(&o->parallel, &command_optimise, o->argc, o->argv, options);
-    options->help = code == EXIT_DONE;
-    o->printed = code > 0;
-    deadline_limit(options->time_limit - (clock_seconds() - o->start));
-    return code > 0 ? fail(o, (enum exit_code)code)
-                    : options->help || instruction_set_check(&o->message) || fail(o, EXIT_USAGE);
+    run->options.time_limit = INFINITY;
+    run_take_options(
+        run, claim_options(&run->parallel, &command_optimise, run->argc, run->argv, &run->options));
 }
 
 /* ---- the scenario --------------------------------------------------------------------------- */
@@ -87,17 +65,18 @@ static bool say_place(struct optimise *o, const char *key, const char *text)
     int line = 1, column = 1;
     scenario_place(o->asked, key, &line, &column);
     fprintf(stderr, "%s:%d:%d: %s\n", o->asked->file, line, column, text);
-    o->printed = true;
-    return fail(o, EXIT_USAGE);
+    o->run.failure.code = EXIT_USAGE;
+    return false;
 }
 
 /* The first candidate, from a text of our own: places in it are none of the user's. */
 static bool read_first(struct optimise *o, const char *text)
 {
     char *said = NULL;
-    size_t size = 0, place = strlen(o->options.asked.file);
+    size_t size = 0, place = strlen(o->run.options.asked.file);
     FILE *const to = open_memstream(&said, &size);
-    const bool good = to && scenario_read(o->first, o->options.asked.file, text, NULL, 0, to);
+    const bool good =
+        to && scenario_read(o->run.scenario, o->run.options.asked.file, text, NULL, 0, to);
     if (to)
         fclose(to);
     if (!good && size > place) {
@@ -106,100 +85,96 @@ static bool read_first(struct optimise *o, const char *text)
         say_place(o, "optimise.vary:", said + place);
     }
     free(said);
-    return good || fail(o, EXIT_USAGE);
+    if (!good && o->run.failure.code == EXIT_DONE)
+        fail(o, EXIT_USAGE);
+    return good;
 }
 
 /* Rank 0: the scenario, and of it the first candidate. */
 static bool read_scenario(struct optimise *o)
 {
-    const struct options *const options = &o->options;
+    const struct options *const options = &o->run.options;
     if (!scenario_read(o->asked, options->asked.file, NULL, options->asked.sets.text,
                        options->asked.sets.count, stderr)) {
-        o->printed = true;
-        return fail(o, access(options->asked.file, R_OK) == 0 ? EXIT_USAGE : EXIT_IO);
+        o->run.failure.code = access(options->asked.file, R_OK) == 0 ? EXIT_USAGE : EXIT_IO;
+        return false; /* the reader has printed why */
     }
     if (!o->asked->search.given)
         return say_place(o, "stance:",
                          "no section optimise, which says what to vary (stance describe optimise)");
-    char *const text = best_first(o->asked, &o->message);
+    char *const text = best_first(o->asked, &o->run.message);
     if (!text)
-        return say_place(o, "controller:", o->message.text);
+        return say_place(o, "controller:", o->run.message.text);
     const bool good = read_first(o, text);
     free(text);
     return good;
 }
 
-static bool stage_scenario(struct optimise *o)
+static void stage_scenario(struct run *run)
 {
+    static const char none[] = "optimise.vary: all of these stay 0 while the contacts hold";
+    struct optimise *const o = of(run);
     o->asked = calloc(1, sizeof *o->asked);
-    o->first = calloc(1, sizeof *o->first);
-    if (!o->asked || !o->first)
+    run->scenario = calloc(1, sizeof *run->scenario);
+    if (!o->asked || !run->scenario)
         abort(); /* the others wait in the broadcast: MPI ends the job */
-    const bool read = o->parallel.rank == 0 && read_scenario(o);
-    if (claim_scenario(&o->parallel, o->first, o->options.asked.file, read, &o->message)) {
-        search_numbers_keep(o->first);
-        static const char none[] = "optimise.vary: all of these stay 0 while the contacts hold";
-        if (o->first->search.axis.paths > 0)
-            return true;
-        return o->parallel.rank == 0 ? say_place(o, none, none) : fail(o, EXIT_USAGE);
+    const bool read = run->parallel.rank == 0 && read_scenario(o);
+    if (claim_scenario(&run->parallel, run->scenario, run->options.asked.file, read,
+                       &run->message)) {
+        search_numbers_keep(run->scenario);
+        if (run->scenario->search.axis.paths == 0 && run->parallel.rank == 0)
+            say_place(o, none, none);
+    } else if (run->message.text[0]) {
+        fail(o, EXIT_IO);
     }
-    return o->code != EXIT_DONE || o->parallel.rank != 0 ? false : fail(o, EXIT_IO);
 }
 
 /* ---- the file ------------------------------------------------------------------------------- */
 
 static bool name_files(struct optimise *o)
 {
-    const char *const output = o->options.output;
-    const size_t size = sizeof o->file;
-    const int length = output ? snprintf(o->file, size, "%s", output)
-                              : snprintf(o->file, size, "results/%s-search.h5", o->first->name);
+    struct run *const run = &o->run;
+    const char *const output = run->options.output;
+    const size_t size = sizeof run->file;
+    const int length = output
+                           ? snprintf(run->file, size, "%s", output)
+                           : snprintf(run->file, size, "results/%s-search.h5", run->scenario->name);
     if (length < 0 || (size_t)length >= size - 16)
-        return complain(&o->message, "the name of the file is too long") || fail(o, EXIT_IO);
+        return complain(&run->message, "the name of the file is too long") || fail(o, EXIT_IO);
     size_t stem = (size_t)length;
-    if (stem > 3 && strcmp(o->file + stem - 3, ".h5") == 0)
+    if (stem > 3 && strcmp(run->file + stem - 3, ".h5") == 0)
         stem -= 3;
-    if (stem > 7 && strncmp(o->file + stem - 7, "-search", 7) == 0)
+    if (stem > 7 && strncmp(run->file + stem - 7, "-search", 7) == 0)
         stem -= 7;
-    snprintf(o->best, sizeof o->best, "%.*s-best.yaml", (int)stem, o->file);
+    snprintf(o->best, sizeof o->best, "%.*s-best.yaml", (int)stem, run->file);
     return true;
 }
 
-/* In a process of its own: a damaged file may do anything. */
-static int check_file(void *file)
+/* Of a damaged file. */
+static bool check_file(const char *file, stance_message *message)
 {
     struct search_file f;
-    stance_message message = {""};
-    sandbox_limit(true);
-    const bool good = search_file_read(&f, file, &message);
-    sandbox_limit(false);
+    const bool good = search_file_read(&f, file, message);
     if (good)
         search_file_free(&f);
-    else
-        fprintf(stderr, "stance optimise: %s\n", message.text);
-    return good ? EXIT_DONE : EXIT_IO;
+    return good;
 }
 
 static bool look_into_file(struct optimise *o)
 {
-    const int code = sandbox(check_file, o->file, o->file);
-    if (code != EXIT_DONE) {
-        o->printed = true;
-        return fail(o, (enum exit_code)code);
-    }
-    if (!search_file_read(&o->origin, o->file, &o->message))
+    struct run *const run = &o->run;
+    run->failure.code = run_check_file(run, check_file, run->file);
+    if (run->failure.code != EXIT_DONE)
+        return false; /* it has been said why */
+    if (!search_file_read(&o->origin, run->file, &run->message))
         return fail(o, EXIT_IO);
     if (strcmp(o->origin.scenario, o->asked->text) != 0)
-        return complain(&o->message,
+        return complain(&run->message,
                         "%.150s is a search of another scenario: --force replaces it, -o names "
                         "another file",
-                        o->file) ||
+                        run->file) ||
                fail(o, EXIT_USAGE);
-    if (strcmp(o->origin.revision, build_revision()) != 0)
-        fprintf(stderr,
-                "stance optimise: warning: %s was begun by revision %s, this is %s: results may "
-                "differ\n",
-                o->file, o->origin.revision, build_revision());
+    run_warn_of_revision(run, run->file, o->origin.revision);
     o->resumes = true;
     return true;
 }
@@ -208,37 +183,32 @@ static bool look_into_file(struct optimise *o)
  * not taken for one of an earlier search. */
 static bool spares_files(struct optimise *o)
 {
-    const char *const names[] = {o->file, o->best};
-    const struct options *const options = &o->options;
+    const char *const names[] = {o->run.file, o->best};
+    const struct options *const options = &o->run.options;
     struct stat scenario, other;
     if (stat(options->asked.file, &scenario) != 0)
         return true; /* read all the same: from a pipe */
     for (int i = 0; i < 2; i++)
         if (stat(names[i], &other) == 0 && other.st_dev == scenario.st_dev &&
             other.st_ino == scenario.st_ino)
-            return complain(&o->message,
+            return complain(&o->run.message,
                             "%.150s is the scenario and would be written over: give another -o",
                             names[i]);
     return options->force || options->resume || access(o->best, F_OK) != 0 ||
-           complain(&o->message, "%.150s exists; --force replaces it, -o names other files",
+           complain(&o->run.message, "%.150s exists; --force replaces it, -o names other files",
                     o->best);
 }
 
-static bool take_file(struct optimise *o)
+static void stage_claim(struct run *run)
 {
+    struct optimise *const o = of(run);
     bool exists;
-    if (!claim_file(o->file, o->options.force, o->options.resume, !o->options.output, &o->lock,
-                    &exists, &o->message) ||
-        !spares_files(o) ||
-        (!heartbeat_begin(&o->heartbeat, &o->lock, &o->parallel, "starting") &&
-         !no_memory(&o->message)))
-        return fail(o, EXIT_IO);
-    return !exists || !o->options.resume || look_into_file(o);
-}
-
-static bool stage_claim(struct optimise *o)
-{
-    return name_files(o) && (o->parallel.rank != 0 || take_file(o));
+    if (!name_files(o) || run->parallel.rank != 0 || !run_claim_file(run, &exists))
+        return;
+    if (!spares_files(o))
+        fail(o, EXIT_IO);
+    else if (exists && run->options.resume)
+        look_into_file(o);
 }
 
 /* ---- signs of life -------------------------------------------------------------------------- */
@@ -258,7 +228,7 @@ static void describe_work(struct optimise *o, char *text, size_t size)
 
 static void show_progress(struct optimise *o, double now)
 {
-    if (!progress_due(&o->progress, now))
+    if (!progress_due(&o->run.progress, now))
         return;
     char text[80], time[32], left[64] = "";
     const double seconds = outlook_left(&o->search.outlook);
@@ -266,7 +236,7 @@ static void show_progress(struct optimise *o, double now)
     text_of_seconds(time, sizeof time, seconds);
     if (seconds >= 0)
         snprintf(left, sizeof left, "; at most about %s left", time);
-    progress_say(&o->progress, "%s%s", text, left);
+    progress_say(&o->run.progress, "%s%s", text, left);
 }
 
 /* Rank 0, about every millisecond. */
@@ -274,11 +244,11 @@ static bool attend(void *context, double now)
 {
     struct optimise *const o = context;
     const uint64_t candidates = o->search.record.length[SEARCH_CANDIDATE];
-    if (now >= o->heartbeat.due) {
+    if (now >= o->run.heartbeat.due) {
         describe_work(o, o->doing, sizeof o->doing);
-        o->heartbeat.doing = o->doing;
-        o->heartbeat.left = outlook_left(&o->search.outlook);
-        if (!heartbeat_beat(&o->heartbeat, now, candidates, candidates, 0, &o->message))
+        o->run.heartbeat.doing = o->doing;
+        o->run.heartbeat.left = outlook_left(&o->search.outlook);
+        if (!heartbeat_beat(&o->run.heartbeat, now, candidates, candidates, 0, &o->run.message))
             return !fail(o, EXIT_IO);
     }
     show_progress(o, now);
@@ -291,10 +261,10 @@ static bool save(void *context, bool last, stance_message *message)
     const double now = clock_seconds();
     if (!last && now < o->save_at)
         return true;
-    o->search.record.seconds = o->before + now - o->start;
-    if (!search_file_write(&o->search.record, o->file, message))
+    o->search.record.seconds = o->before + now - o->run.start;
+    if (!search_file_write(&o->search.record, o->run.file, message))
         return false;
-    heartbeat_guard(&o->heartbeat, o->file);
+    heartbeat_guard(&o->run.heartbeat, o->run.file);
     const double end = clock_seconds();
     o->save_at = end + fmax(SAVE_INTERVAL, 20 * (end - now)); /* 5 % of the time at most */
     return true;
@@ -302,52 +272,58 @@ static bool save(void *context, bool last, stance_message *message)
 
 /* ---- the search ----------------------------------------------------------------------------- */
 
-static bool stage_make(struct optimise *o)
+static void stage_make(struct run *run)
 {
-    if (!parallel_share(&o->parallel))
-        return no_memory(&o->message) || fail(o, EXIT_IO);
-    const char *const text = o->parallel.rank == 0 ? o->asked->text : "";
-    if (!search_make(&o->search, o->first, text, &o->parallel, o->resumes ? &o->origin : NULL,
-                     &o->message))
-        return fail(o, EXIT_IO);
+    struct optimise *const o = of(run);
+    const char *const text = run->parallel.rank == 0 ? o->asked->text : "";
+    if (!parallel_share(&run->parallel)) {
+        no_memory(&run->message);
+        fail(o, EXIT_IO);
+        return;
+    }
+    if (!search_make(&o->search, run->scenario, text, &run->parallel,
+                     o->resumes ? &o->origin : NULL, &run->message)) {
+        fail(o, EXIT_IO);
+        return;
+    }
     o->made = true;
     struct trials *const trials = &o->search.trials;
-    trials->quiet = o->options.quiet;
-    trials->until = o->start + o->options.time_limit;
+    trials->quiet = run->options.quiet;
+    trials->until = run->start + run->options.time_limit;
     trials->attend = attend;
     trials->context = o;
     o->search.save = save;
     o->search.context = o;
     o->before = o->search.record.seconds;
-    o->progress = progress_begin(o->options.quiet);
-    if (o->parallel.rank == 0 &&
-        o->first->search.candidates < (uint64_t)search_lambda(&o->search)) {
+    if (run->parallel.rank == 0 &&
+        run->scenario->search.candidates < (uint64_t)search_lambda(&o->search)) {
         char line[120];
         snprintf(line, sizeof line,
                  "optimise.candidates: %" PRIu64 " are less than one generation%s, %d",
-                 o->first->search.candidates,
-                 o->first->search.restarts > 0 ? " after the restarts" : "",
+                 run->scenario->search.candidates,
+                 run->scenario->search.restarts > 0 ? " after the restarts" : "",
                  search_lambda(&o->search));
-        return say_place(o, line, line);
+        say_place(o, line, line);
     }
-    return true;
 }
 
-static bool stage_search(struct optimise *o)
+static void stage_search(struct run *run)
 {
-    const enum trials_end end = search_run(&o->search, &o->message);
-    progress_end(&o->progress);
-    if (o->code != EXIT_DONE) /* the file is not ours any more */
-        return false;
-    if (end == TRIALS_BROKEN)
-        return fail(o, EXIT_IO);
-    if (end == TRIALS_DONE && o->parallel.rank == 0 &&
-        !best_write(&o->search.record, o->best, &o->message))
-        return fail(o, EXIT_IO);
-    if (end == TRIALS_STOPPED)
-        o->code = EXIT_INTERRUPTED;
-    o->printed = o->code == EXIT_INTERRUPTED;
-    return o->code == EXIT_DONE;
+    struct optimise *const o = of(run);
+    const enum trials_end end = search_run(&o->search, &run->message);
+    progress_end(&run->progress);
+    if (run->failure.code != EXIT_DONE) /* the file is not ours any more */
+        return;
+    if (end == TRIALS_BROKEN || (end == TRIALS_DONE && run->parallel.rank == 0 &&
+                                 !best_write(&o->search.record, o->best, &run->message))) {
+        fail(o, EXIT_IO);
+    } else if (end == TRIALS_STOPPED) {
+        char what[80];
+        snprintf(what, sizeof what, "stopped after %zu of at most %zu generations",
+                 o->search.record.length[SEARCH_GENERATION], o->search.generations);
+        run->failure.code = EXIT_INTERRUPTED;
+        claim_say_stopped(&run->parallel, run->argc, run->argv, "--resume", what);
+    }
 }
 
 /* ---- what came out -------------------------------------------------------------------------- */
@@ -442,7 +418,7 @@ static void warn(const struct optimise *o)
 
 static void print_objective(const struct optimise *o, double value)
 {
-    if (scenario_search_plain(o->first))
+    if (scenario_search_plain(o->run.scenario))
         printf("%.2f %%", 100 * value);
     else
         printf("%.6g", value);
@@ -455,109 +431,60 @@ static void print_limit(const struct optimise *o)
     const size_t circumstances = f->length[SEARCH_CIRCUMSTANCE];
     size_t least;
     const double limit =
-        linear_limit_overall(o->first->search.worst, circumstances,
+        linear_limit_overall(o->run.scenario->search.worst, circumstances,
                              &f->confirmed_allowed[(size_t)f->chosen * circumstances], &least);
     if (!isfinite(limit))
         return;
     printf(", linear theory allows any %.2f %%", 100 * limit);
     if (least < circumstances)
         printf(" in its worst circumstance (%s)", f->circumstance[least]);
-    if (allowed_glued_in(o->first))
+    if (allowed_glued_in(o->run.scenario))
         fputs(" (" ALLOWED_GLUED ")", stdout);
 }
 
-static int conclude(struct optimise *o)
+static int conclude(struct run *run)
 {
+    struct optimise *const o = of(run);
     const struct search_file *const f = &o->search.record;
-    if (o->parallel.rank != 0)
+    if (o->run.parallel.rank != 0)
         return EXIT_DONE;
     warn(o);
-    if (o->options.quiet)
+    if (o->run.options.quiet)
         return EXIT_DONE;
-    const bool plain = scenario_search_plain(o->first);
-    printf("%s: %zu candidates in %zu generation%s, %s; %s", o->file, f->length[SEARCH_CANDIDATE],
-           f->length[SEARCH_GENERATION], f->length[SEARCH_GENERATION] == 1 ? "" : "s", f->note,
-           plain ? "" : "objective ");
+    const bool plain = scenario_search_plain(o->run.scenario);
+    printf("%s: %zu candidates in %zu generation%s, %s; %s", o->run.file,
+           f->length[SEARCH_CANDIDATE], f->length[SEARCH_GENERATION],
+           f->length[SEARCH_GENERATION] == 1 ? "" : "s", f->note, plain ? "" : "objective ");
     print_objective(o, f->confirmed_objective[f->chosen]);
     printf(" of %zu fresh starts, the first ", f->length[SEARCH_START]);
     print_objective(o, f->confirmed_objective[0]);
     if (plain)
         print_limit(o);
-    printf("; %.1f s on %d rank%s\n%s: the scenario of the best\n", clock_seconds() - o->start,
-           o->parallel.size, o->parallel.size == 1 ? "" : "s", o->best);
+    printf("; %.1f s on %d rank%s\n%s: the scenario of the best\n", clock_seconds() - o->run.start,
+           o->run.parallel.size, o->run.parallel.size == 1 ? "" : "s", o->best);
     return EXIT_DONE;
 }
 
 /* ---- the whole ------------------------------------------------------------------------------ */
 
-/* What all ranks agree on. */
-struct verdict {
-    int code;
-    bool printed;
-    char text[300];
-};
-
-/* Goes through the stages; stops where one failed on any rank. */
-static int go_through(struct optimise *o)
-{
-    static const struct {
-        bool (*go)(struct optimise *);
-        const char *doing;
-    } stage[] = {
-        {stage_options, "reading its options"}, {stage_scenario, "reading the scenario"},
-        {stage_claim, "looking into the file"}, {stage_make, "preparing the search"},
-        {stage_search, "trying candidates"},
-    };
-    for (size_t i = 0; i < sizeof stage / sizeof *stage; i++) {
-        crash_stage(stage[i].doing);
-        const bool good = stage[i].go(o);
-        struct verdict verdict = {.code = o->code, .printed = o->printed};
-        snprintf(verdict.text, sizeof verdict.text, "%s", o->message.text);
-        if (!good && verdict.code == EXIT_DONE)
-            verdict.code = EXIT_IO;
-        if (!parallel_agree(&o->parallel, good, (char *)&verdict, sizeof verdict)) {
-            if (o->parallel.rank == 0 && verdict.code == EXIT_INTERRUPTED) {
-                char what[80];
-                snprintf(what, sizeof what, "stopped after %zu of at most %zu generations",
-                         o->search.record.length[SEARCH_GENERATION], o->search.generations);
-                claim_say_stopped(&o->parallel, o->argc, o->argv, "--resume", what);
-            } else if (o->parallel.rank == 0 && !verdict.printed) {
-                fprintf(stderr, "stance optimise: %s\n", verdict.text);
-            }
-            return verdict.code;
-        }
-        if (o->options.help)
-            return EXIT_DONE;
-    }
-    return conclude(o);
-}
-
 static int run_optimise(int argc, char **argv)
 {
+    static const struct stage stages[] = {
+        {stage_options, "reading its options"}, {stage_scenario, "reading the scenario"},
+        {stage_claim, "looking into the file"}, {stage_make, "preparing the search"},
+        {stage_search, "trying candidates"},    {NULL, NULL},
+    };
     struct optimise *const o = calloc(1, sizeof *o);
-    if (!o) {
-        fprintf(stderr, "stance optimise: not enough memory\n");
-        return EXIT_IO;
+    const int code = run_through(o ? &o->run : NULL, argc, argv, stages, conclude);
+    if (o) {
+        if (o->made)
+            search_free(&o->search);
+        search_file_free(&o->origin);
+        if (o->asked)
+            scenario_free(o->asked);
+        free(o->asked);
+        run_end(&o->run);
     }
-    *o = (struct optimise){
-        .argc = argc, .argv = argv, .start = clock_seconds(), .lock = {.descriptor = -1}};
-    if (!claim_ranks("optimise", &o->parallel)) {
-        free(o);
-        return EXIT_USAGE;
-    }
-    const int code = go_through(o);
-    if (o->made)
-        search_free(&o->search);
-    search_file_free(&o->origin);
-    if (o->asked)
-        scenario_free(o->asked);
-    if (o->first)
-        scenario_free(o->first);
-    lock_release(&o->lock);
-    heartbeat_end(&o->heartbeat);
-    parallel_finish(&o->parallel);
-    free(o->asked);
-    free(o->first);
     free(o);
     return code;
 }

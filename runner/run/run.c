@@ -30,7 +30,7 @@
 
 bool run_fail_io(struct run *run)
 {
-    return run_fail(run, EXIT_IO, "stance run: %s", run->message.text);
+    return run_fail(run, EXIT_IO, "stance %s: %s", run->argv[0], run->message.text);
 }
 
 /* An error of the scenario, with its place in the text. */
@@ -44,18 +44,25 @@ static void fail_scenario(struct run *run, const struct plan_error *error)
 
 /* ---- options ------------------------------------------------------------------------------ */
 
+void run_take_options(struct run *run, int code)
+{
+    struct options *o = &run->options;
+    run->over = code == EXIT_DONE; /* help */
+    if (code > 0)
+        run->failure.code = code; /* it has been said why */
+    deadline_limit(o->time_limit - (clock_seconds() - run->start));
+    if (code == COMMAND_GOES_ON && !instruction_set_check(&run->message))
+        run_fail(run, EXIT_USAGE, "stance %s: %s", run->argv[0], run->message.text);
+}
+
 static void stage_options(struct run *run)
 {
     struct options *o = &run->options;
     const int code = run_read_options(o, &run->parallel, run->argc, run->argv);
-    o->help = code == EXIT_DONE;
-    if (code > 0 ||
-        (code < 0 && run->parallel.rank == 0 && !run_read_shard(o, run->argc, run->argv)))
+    run_take_options(run, code);
+    if (code < 0 && run->parallel.rank == 0 && !run_read_shard(o, run->argc, run->argv))
         run->failure.code = EXIT_USAGE; /* it has been said why */
     parallel_broadcast(&run->parallel, &o->shard, sizeof o->shard);
-    deadline_limit(o->time_limit - (clock_seconds() - run->start));
-    if (code == COMMAND_GOES_ON && !instruction_set_check(&run->message))
-        run_fail(run, EXIT_USAGE, "stance run: %s", run->message.text);
 }
 
 /* ---- the scenario ------------------------------------------------------------------------- */
@@ -153,30 +160,43 @@ bool run_same_scenario(struct run *run, const char *file, const char *old)
     return false;
 }
 
-/* In a process of its own: see store_check. */
-static int check_file(void *file)
+struct check {
+    const struct run *run;
+    bool (*check)(const char *file, stance_message *message);
+    const char *file;
+};
+
+static int check_alone(void *context)
 {
+    const struct check *check = context;
     stance_message message = {""};
     sandbox_limit(true);
-    bool good = store_check(file, true, &message);
+    bool good = check->check(check->file, &message);
     sandbox_limit(false);
     if (!good)
-        fprintf(stderr, "stance run: %s\n", message.text);
+        fprintf(stderr, "stance %s: %s\n", check->run->argv[0], message.text);
     return good ? EXIT_DONE : EXIT_IO;
 }
 
-int run_check_file(const char *file)
+int run_check_file(const struct run *run, bool (*check)(const char *, stance_message *),
+                   const char *file)
 {
-    return sandbox(check_file, (void *)(uintptr_t)file, file);
+    struct check context = {run, check, file};
+    return sandbox(check_alone, &context, file);
 }
 
-void run_warn_of_revision(const char *file, const char *revision)
+bool run_check_results(const char *file, stance_message *message)
+{
+    return store_check(file, true, message);
+}
+
+void run_warn_of_revision(const struct run *run, const char *file, const char *revision)
 {
     if (strcmp(revision, build_revision()) != 0) {
         fprintf(stderr,
-                "stance run: warning: %s was begun by revision %s, this is %s: results may "
+                "stance %s: warning: %s was begun by revision %s, this is %s: results may "
                 "differ\n",
-                file, revision, build_revision());
+                run->argv[0], file, revision, build_revision());
     }
 }
 
@@ -201,7 +221,7 @@ static bool same_shard(struct run *run)
 /* An existing file that is to be gone on with. */
 static void look_into_file(struct run *run)
 {
-    run->failure.code = run_check_file(run->file);
+    run->failure.code = run_check_file(run, run_check_results, run->file);
     if (run->failure.code != EXIT_DONE)
         return; /* it has been said why */
     if (euidaccess(run->file, W_OK) != 0) {
@@ -222,10 +242,19 @@ static void look_into_file(struct run *run)
         return;
     }
     if (!run->succeed)
-        run_warn_of_revision(run->file, run->origin.revision);
+        run_warn_of_revision(run, run->file, run->origin.revision);
     for (int a = 0; a < run->scenario->axes; a++)
         if (!store_read_axis(run->file, &run->scenario->axis[a], &run->message))
             run_fail_io(run);
+}
+
+bool run_claim_file(struct run *run, bool *exists)
+{
+    const struct options *o = &run->options;
+    if (!claim_file(run->file, o->force, o->resume, !o->output, &run->lock, exists, &run->message))
+        return run_fail_io(run);
+    return heartbeat_begin(&run->heartbeat, &run->lock, &run->parallel, "starting") ||
+           run_fail(run, EXIT_IO, "stance %s: not enough memory", run->argv[0]);
 }
 
 /* Rank 0: where the results go, whether they may, and nobody else writes there. */
@@ -234,16 +263,9 @@ static void take_file(struct run *run)
     const struct options *o = &run->options;
     bool exists;
 
-    if (!claim_file(run->file, o->force, o->resume, !o->output, &run->lock, &exists,
-                    &run->message)) {
-        run_fail_io(run);
+    if (!run_claim_file(run, &exists))
         return;
-    }
     changed_scenario_clear(run->file);
-    if (!heartbeat_begin(&run->heartbeat, &run->lock, &run->parallel, "starting")) {
-        run_fail(run, EXIT_IO, "stance run: not enough memory");
-        return;
-    }
     run->resume = exists && o->resume;
     run->replace = exists && o->force;
     if (run->resume)
@@ -366,6 +388,7 @@ static void stage_designs(struct run *run)
         report_plan(&run->plan, run->parallel.size, run->file, false, "stance run", stdout);
     if (good && run->parallel.rank == 0)
         run->warned = warnings_print(&run->plan, "stance run", stderr);
+    run->over = run->options.dry_run;
 }
 
 /* Of a scene that is described, compiled for it. */
@@ -528,12 +551,56 @@ static void stage_close(struct run *run)
 /* ---- the whole ----------------------------------------------------------------------------- */
 
 /* Goes through the stages; stops where one failed on any rank. */
-static int go_through(struct run *run)
+static int go_through(struct run *run, const struct stage *stage, int (*conclude)(struct run *))
 {
-    static const struct {
-        void (*go)(struct run *);
-        const char *doing;
-    } stage[] = {
+    for (; stage->go; stage++) {
+        crash_stage(stage->doing);
+        run->heartbeat.doing = stage->doing;
+        run->heartbeat.due = 0;
+        /* A compiler has a word of its own. */
+        run->progress = progress_begin(run->options.quiet || stage->go == stage_kernels);
+        stage->go(run);
+        progress_end(&run->progress);
+        if (!parallel_agree(&run->parallel, run->failure.code == EXIT_DONE, (char *)&run->failure,
+                            sizeof run->failure)) {
+            if (run->parallel.rank == 0 && run->failure.text[0])
+                fprintf(stderr, "%s\n", run->failure.text);
+            return run->failure.code;
+        }
+        if (run->over)
+            return EXIT_DONE;
+    }
+    return conclude(run);
+}
+
+int run_through(struct run *run, int argc, char **argv, const struct stage *stages,
+                int (*conclude)(struct run *))
+{
+    if (!run) {
+        fprintf(stderr, "stance %s: not enough memory\n", argv[0]);
+        return EXIT_IO;
+    }
+    run->argc = argc;
+    run->argv = argv;
+    run->start = clock_seconds();
+    run->lock.descriptor = -1;
+    run->parallel = parallel_alone();
+    return claim_ranks(argv[0], &run->parallel) ? go_through(run, stages, conclude) : EXIT_USAGE;
+}
+
+void run_end(struct run *run)
+{
+    if (run->scenario)
+        scenario_free(run->scenario);
+    free(run->scenario);
+    lock_release(&run->lock);
+    heartbeat_end(&run->heartbeat);
+    parallel_finish(&run->parallel);
+}
+
+int run_run(int argc, char **argv)
+{
+    static const struct stage stages[] = {
         {stage_options, "reading its options"},
         {stage_scenario, "reading the scenario"},
         {stage_claim, "looking into the results file"},
@@ -547,56 +614,18 @@ static int go_through(struct run *run)
         {stage_compute, "computing"},
         {stage_timing, "storing times"},
         {stage_close, "closing the results file"},
+        {NULL, NULL},
     };
-    for (size_t i = 0; i < sizeof stage / sizeof stage[0]; i++) {
-        crash_stage(stage[i].doing);
-        run->heartbeat.doing = stage[i].doing;
-        run->heartbeat.due = 0;
-        /* A compiler has a word of its own. */
-        run->progress = progress_begin(run->options.quiet || stage[i].go == stage_kernels);
-        stage[i].go(run);
-        progress_end(&run->progress);
-        if (!parallel_agree(&run->parallel, run->failure.code == EXIT_DONE, (char *)&run->failure,
-                            sizeof run->failure)) {
-            if (run->parallel.rank == 0 && run->failure.text[0])
-                fprintf(stderr, "%s\n", run->failure.text);
-            return run->failure.code;
-        }
-        if (stage[i].go == stage_options && run->options.help)
-            return EXIT_DONE;
-        if (stage[i].go == stage_designs && run->options.dry_run)
-            return EXIT_DONE;
-    }
-    return run_conclude(run);
-}
-
-int run_run(int argc, char **argv)
-{
     struct run *run = calloc(1, sizeof *run);
-    if (!run) {
-        fprintf(stderr, "stance run: not enough memory\n");
-        return EXIT_IO;
+    const int code = run_through(run, argc, argv, stages, run_conclude);
+    if (run) {
+        store_abandon(run->store);
+        kernels_give_back(&run->kernels);
+        plan_free(&run->plan);
+        store_origin_free(&run->origin);
+        run_extend_close(run);
+        run_end(run);
     }
-    run->argc = argc;
-    run->argv = argv;
-    run->start = clock_seconds();
-    run->lock.descriptor = -1;
-    if (!claim_ranks("run", &run->parallel)) {
-        free(run);
-        return EXIT_USAGE;
-    }
-    int code = go_through(run);
-    store_abandon(run->store);
-    kernels_give_back(&run->kernels);
-    plan_free(&run->plan);
-    store_origin_free(&run->origin);
-    if (run->scenario)
-        scenario_free(run->scenario);
-    run_extend_close(run);
-    lock_release(&run->lock);
-    heartbeat_end(&run->heartbeat);
-    parallel_finish(&run->parallel);
-    free(run->scenario);
     free(run);
     return code;
 }

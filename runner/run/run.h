@@ -15,7 +15,7 @@
 struct options {
     struct asked asked;
     const char *output; /* NULL: the default */
-    bool force, force_scenario, resume, trace, dry_run, quiet, help;
+    bool force, force_scenario, resume, trace, dry_run, quiet;
     bool single; /* --only, of this case */
     uint64_t single_case;
     struct shard shard;     /* count 0: none */
@@ -39,6 +39,7 @@ struct run {
     struct options options;
     struct scenario *scenario;
     char file[1024];
+    bool over;                  /* all is done: help, --dry-run */
     bool resume, replace;       /* the file exists and is gone on with, or replaced */
     bool warned;                /* something was wrong with the designs; on rank 0 */
     bool succeed;               /* ... gone on with by this scenario, which is not its own */
@@ -69,9 +70,28 @@ bool run_read_shard(struct options *o, int argc, char **argv);
 bool run_fail_io(struct run *run);
 /* Whether a file, whose scenario's text is given, is of this scenario; fails where not. */
 bool run_same_scenario(struct run *run, const char *file, const char *text);
-/* Exit code of a look into a results file, in a process of its own; says what is wrong. */
-int run_check_file(const char *file);
-void run_warn_of_revision(const char *file, const char *revision);
+/* Exit code of a look into a file, in a process of its own; says what is wrong. */
+int run_check_file(const struct run *run, bool (*check)(const char *, stance_message *),
+                   const char *file);
+bool run_check_results(const char *file, stance_message *message);
+void run_warn_of_revision(const struct run *run, const char *file, const char *revision);
+
+/* ---- what `stance optimise`, which is such a command, too, shares --------------------------- */
+
+/* A command goes through its stages, {NULL, NULL} is the last, and ends with what is said at the
+ * end, unless one failed or it is over. Before that begins, *run is all 0. Returns the exit code.
+ * `run` NULL: no memory. */
+struct stage {
+    void (*go)(struct run *);
+    const char *doing;
+};
+int run_through(struct run *run, int argc, char **argv, const struct stage *stages,
+                int (*conclude)(struct run *));
+void run_end(struct run *run);
+/* What command_begin returned. */
+void run_take_options(struct run *run, int code);
+/* Rank 0: the file is for this job alone, and it gives signs of life. */
+bool run_claim_file(struct run *run, bool *exists);
 
 /* run_extend.c. Whether the scenario can be extended; fails where not. */
 bool run_extend_check(struct run *run);

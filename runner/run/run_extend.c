@@ -123,7 +123,7 @@ static bool look_into_old(struct run *run, struct extension *e)
 
     if (!lock_old(e, &run->message))
         return run_fail_io(run);
-    run->failure.code = run_check_file(e->file);
+    run->failure.code = run_check_file(run, run_check_results, e->file);
     if (run->failure.code != EXIT_DONE)
         return false; /* it has been said why */
     if (!store_read_origin(e->file, &origin, &run->message))
@@ -131,7 +131,7 @@ static bool look_into_old(struct run *run, struct extension *e)
     bool good = read_old_scenario(run, e, origin.scenario) && check_count(run, e) &&
                 check_ancestors(run, e, &origin);
     if (good)
-        run_warn_of_revision(e->file, origin.revision);
+        run_warn_of_revision(run, e->file, origin.revision);
     if (good && !store_same_points(e->file, &origin, run->scenario, &run->message))
         good = run_fail(run, EXIT_USAGE, "stance run: %s", run->message.text);
     good = good && (take_axes(run, e, &run->message) || run_fail_io(run));
