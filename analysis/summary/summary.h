@@ -5,7 +5,7 @@
 #include "analysis/statistics/doe_bins.h"
 #include "analysis/statistics/faces.h"
 #include "analysis/table/table.h"
-#include "runner/store/ancestry.h"
+#include "runner/store/results.h"
 
 /* The answers that are summarised: name, kind of the cases looked at (RESULTS_KIND_COUNT: all that
  * are done; RESULTS_STABILISED: those that the study judges by, see struct summary), unit. */

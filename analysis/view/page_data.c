@@ -5,8 +5,8 @@
 #include "analysis/table/table.h"
 #include "runner/base/message.h"
 #include "runner/plan/plan.h"
-#include "runner/store/ancestry.h"
 #include "runner/store/build_info.h"
+#include "runner/store/results.h"
 #include "runner/store/results_rows.h"
 
 #include "runner/base/command.h"

@@ -216,14 +216,13 @@ static void print_conditions(const struct table *t, size_t i, size_t column)
 {
     const struct option *const o = t->row[i].option;
     char text[300];
-    size_t used = 0;
     text[0] = '\0';
     if (o->high > 0 && !o->takes)
-        used += (size_t)snprintf(text, sizeof text, "(%.10g to %.10g) ", o->low, o->high);
+        words_add(text, sizeof text, "(%.10g to %.10g) ", o->low, o->high);
     if (o->needs)
-        used += (size_t)snprintf(text + used, sizeof text - used, "(with %s) ", o->needs);
+        words_add(text, sizeof text, "(with %s) ", o->needs);
     if (o->without && !joins(t, i) && !joins(t, i + 1))
-        snprintf(text + used, sizeof text - used, "(not with %s)", o->without);
+        words_add(text, sizeof text, "(not with %s)", o->without);
     fill(text, strlen(text), column, TEXT_COLUMN);
 }
 

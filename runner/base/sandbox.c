@@ -36,14 +36,6 @@ void sandbox_limit(bool begin)
 static const int crashes[] = {SIGSEGV, SIGBUS, SIGABRT, SIGFPE, SIGILL, SIGSYS, SIGXCPU};
 enum { CRASHES = sizeof crashes / sizeof crashes[0] };
 
-static bool is_crash(int number)
-{
-    for (int k = 0; k < CRASHES; k++)
-        if (crashes[k] == number)
-            return true;
-    return false;
-}
-
 /* The child. What it says goes to `messages`, so that a dying library can be hushed. */
 static void work_and_exit(int (*work)(void *context), void *context, int messages, pid_t parent)
 {
@@ -129,7 +121,9 @@ int sandbox(int (*work)(void *context), void *context, const char *files)
         munmap(words, WORDS);
     if (alive[0] >= 0)
         close(alive[0]);
-    bool crashed = child > 0 && WIFSIGNALED(status) && is_crash(WTERMSIG(status));
+    bool crashed = false;
+    for (int k = 0; child > 0 && WIFSIGNALED(status) && k < CRASHES; k++)
+        crashed = crashed || crashes[k] == WTERMSIG(status);
     if (crashed)
         fprintf(stderr, "%s: damaged: the HDF5 library cannot cope with it\n", files);
     else if (messages)

@@ -1,6 +1,8 @@
 /* words.c - edit distances to known words; letters. */
 #include "words.h"
 
+#include <stdarg.h>
+#include <stdio.h>
 #include <string.h>
 #include <strings.h>
 
@@ -132,4 +134,14 @@ const char *hidden_letter(uint32_t character, bool *blank)
         }
     }
     return NULL;
+}
+
+void words_add(char *text, size_t size, const char *format, ...)
+{
+    const size_t used = strnlen(text, size);
+    va_list arguments;
+    va_start(arguments, format);
+    if (used < size)
+        vsnprintf(text + used, size - used, format, arguments);
+    va_end(arguments);
 }

@@ -18,4 +18,8 @@ size_t utf8_letter(const char *text, size_t left, uint32_t *character);
  * `blank`: it takes room as a blank does. */
 const char *hidden_letter(uint32_t character, bool *blank);
 
+/* Adds to a text that grows in a buffer of `size`, as far as there is room. */
+__attribute__((format(printf, 3, 4))) void words_add(char *text, size_t size, const char *format,
+                                                     ...);
+
 #endif

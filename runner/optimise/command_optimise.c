@@ -328,16 +328,17 @@ static void stage_search(struct run *run)
 
 /* ---- what came out -------------------------------------------------------------------------- */
 
-static double undecided(const struct search_file *f)
+/* Share of fresh starts of the best one that end so, in the circumstance where most do. */
+static double most_ending(const struct search_file *f, stance_outcome outcome)
 {
     const size_t circumstances = f->length[SEARCH_CIRCUMSTANCE];
     const int64_t *const count =
         &f->confirmed_count[(size_t)f->chosen * circumstances * TRIAL_LABELS];
-    double most = 0;
+    int64_t most = 0;
     for (size_t c = 0; c < circumstances; c++)
-        most = fmax(most, (double)count[c * TRIAL_LABELS + STANCE_UNDECIDED + 1] /
-                              (double)f->length[SEARCH_START]);
-    return most;
+        most = count[c * TRIAL_LABELS + outcome + 1] > most ? count[c * TRIAL_LABELS + outcome + 1]
+                                                            : most;
+    return (double)most / (double)f->length[SEARCH_START];
 }
 
 /* Share of the candidates that were not tried in any circumstance. */
@@ -352,20 +353,6 @@ static double refused(const struct search_file *f)
         count += all;
     }
     return (double)count / (double)f->length[SEARCH_CANDIDATE];
-}
-
-/* Share of fresh starts that the best one recovers, where it recovers most. */
-static double best_share(const struct search_file *f)
-{
-    const size_t circumstances = f->length[SEARCH_CIRCUMSTANCE];
-    const int64_t *const count =
-        &f->confirmed_count[(size_t)f->chosen * circumstances * TRIAL_LABELS];
-    int64_t most = 0;
-    for (size_t c = 0; c < circumstances; c++) {
-        const int64_t recovered = count[c * TRIAL_LABELS + STANCE_STABILISED + 1];
-        most = recovered > most ? recovered : most;
-    }
-    return (double)most / (double)f->length[SEARCH_START];
 }
 
 /* What linear theory and the counts say against the best. */
@@ -390,15 +377,15 @@ static void warn(const struct optimise *o)
     }
     for (size_t e = 0; e < f->length[SEARCH_ELSEWHERE]; e++)
         if (f->elsewhere_chosen[e] < f->elsewhere_first[e] ||
-            f->elsewhere_chosen[e] < 0.5 * best_share(f))
+            f->elsewhere_chosen[e] < 0.5 * most_ending(f, STANCE_STABILISED))
             fprintf(stderr, "%s %s the best recovers %.1f %% of the starts, the first %.1f %%\n",
                     who, f->elsewhere[e], 100 * f->elsewhere_chosen[e],
                     100 * f->elsewhere_first[e]);
-    if (undecided(f) > most_undecided)
+    if (most_ending(f, STANCE_UNDECIDED) > most_undecided)
         fprintf(stderr,
                 "%s %.2f %% of the best one's starts are undecided when stop.time is up and do not "
                 "count: a longer one would tell\n",
-                who, 100 * undecided(f));
+                who, 100 * most_ending(f, STANCE_UNDECIDED));
     if (f->objective[f->best[0]] < 0.01 && scenario_search_plain(search->scenario))
         fprintf(stderr,
                 "%s hardly a start recovers in the first generation: begin with another "

@@ -7,6 +7,7 @@
 
 #include "runner/base/message.h"
 #include "runner/base/units.h"
+#include "runner/base/words.h"
 #include "runner/store/build_info.h"
 
 #include <math.h>
@@ -29,7 +30,6 @@ enum { MOST_ALLOWED = 16384 }; /* starts that are held against linear theory */
 static char *circumstance_text(const struct scenario *s, size_t c)
 {
     char text[1000] = "", value[64];
-    size_t used = 0;
     struct scenario_values values;
     const size_t points = s->axis[s->axes - 1].count;
     scenario_case_values(s, c * points, &values);
@@ -37,42 +37,16 @@ static char *circumstance_text(const struct scenario *s, size_t c)
         const struct scenario_axis *const axis = &s->axis[a];
         const size_t i = c % axis->count;
         c /= axis->count;
-        for (int k = 0; k < axis->paths && used + 200 < sizeof text; k++) {
+        for (int k = 0; k < axis->paths && strlen(text) + 200 < sizeof text; k++) {
             const size_t size = axis->integer[k] ? sizeof(int) : sizeof(double);
             if (memcmp((const char *)&values + axis->offset[k],
                        (const char *)&s->base + axis->offset[k], size) == 0)
                 continue;
             scenario_axis_text(axis, i, k, value, sizeof value);
-            used += (size_t)snprintf(text + used, sizeof text - used, "%s%s = %s", used ? ", " : "",
-                                     axis->path[k], value);
+            words_add(text, sizeof text, "%s%s = %s", text[0] ? ", " : "", axis->path[k], value);
         }
     }
-    return strdup(used ? text : "as it is");
-}
-
-static char **copy_words(size_t n, const char *(*word)(const struct search *, size_t),
-                         const struct search *search)
-{
-    char **const words = calloc(n + 1, sizeof *words);
-    for (size_t i = 0; words && i < n; i++)
-        words[i] = strdup(word(search, i));
-    return words;
-}
-
-static const char *parameter_word(const struct search *search, size_t i)
-{
-    return search->scenario->search.axis.path[i];
-}
-
-static const char *kind_word(const struct search *search, size_t i)
-{
-    (void)search;
-    return search_kinds[i];
-}
-
-static const char *varied_word(const struct search *search, size_t i)
-{
-    return search->scenario->axis[search->scenario->axes - 1].path[i];
+    return strdup(text[0] ? text : "as it is");
 }
 
 /* ---- making --------------------------------------------------------------------------------- */
@@ -106,21 +80,21 @@ static bool make_record(struct search *search, const char *text)
     f->length[SEARCH_START] = s->search.confirm;
     f->length[SEARCH_VARIED] = (size_t)s->axis[s->axes - 1].paths;
     f->length[SEARCH_ELSEWHERE] = ELSEWHERE_MOST;
-    f->parameter = copy_words((size_t)search->space.n, parameter_word, search);
-    f->kind = copy_words(TRIAL_LABELS, kind_word, search);
-    f->varied = copy_words(f->length[SEARCH_VARIED], varied_word, search);
-    f->circumstance = calloc(search->trials.circumstances + 1, sizeof *f->circumstance);
-    for (size_t c = 0; f->circumstance && c < search->trials.circumstances; c++)
-        f->circumstance[c] = circumstance_text(s, c);
-    f->elsewhere = calloc(ELSEWHERE_MOST + 1, sizeof *f->elsewhere);
     f->title = strdup(s->title);
     f->scenario = strdup(text);
     f->first_scenario = strdup(s->text);
     f->revision = strdup(build_revision());
     f->date = strdup(date);
-    const bool good = search_file_room(f) && f->parameter && f->kind && f->varied &&
-                      f->circumstance && f->elsewhere && f->title && f->scenario &&
-                      f->first_scenario && f->revision && f->date;
+    const bool good = search_file_room(f) && f->title && f->scenario && f->first_scenario &&
+                      f->revision && f->date;
+    for (size_t i = 0; good && i < f->length[SEARCH_PARAMETER]; i++)
+        f->parameter[i] = strdup(s->search.axis.path[i]);
+    for (size_t i = 0; good && i < TRIAL_LABELS; i++)
+        f->kind[i] = strdup(search_kinds[i]);
+    for (size_t i = 0; good && i < f->length[SEARCH_VARIED]; i++)
+        f->varied[i] = strdup(s->axis[s->axes - 1].path[i]);
+    for (size_t c = 0; good && c < search->trials.circumstances; c++)
+        f->circumstance[c] = circumstance_text(s, c);
     f->length[SEARCH_CANDIDATE] = f->length[SEARCH_GENERATION] = f->length[SEARCH_CONFIRMED] = 0;
     f->length[SEARCH_START] = f->length[SEARCH_ELSEWHERE] = 0;
     return good;
@@ -131,20 +105,13 @@ static bool take_over(struct search *search, const struct search_file *from)
 {
     struct search_file *const f = &search->record;
     const size_t c = from->length[SEARCH_CANDIDATE], g = from->length[SEARCH_GENERATION];
-    const size_t n = (size_t)search->space.n, circumstances = search->trials.circumstances;
-    if (c > search->candidates || g > search->generations || from->length[SEARCH_PARAMETER] != n ||
-        from->length[SEARCH_CIRCUMSTANCE] != circumstances ||
+    if (c > search->candidates || g > search->generations ||
+        from->length[SEARCH_PARAMETER] != (size_t)search->space.n ||
+        from->length[SEARCH_CIRCUMSTANCE] != search->trials.circumstances ||
         from->length[SEARCH_KIND] != TRIAL_LABELS)
         return false;
-    memcpy(f->value, from->value, c * n * sizeof *f->value);
-    memcpy(f->coordinate, from->coordinate, c * n * sizeof *f->coordinate);
-    memcpy(f->of_generation, from->of_generation, c * sizeof *f->of_generation);
-    memcpy(f->count, from->count, c * circumstances * TRIAL_LABELS * sizeof *f->count);
-    memcpy(f->critical_sample_time, from->critical_sample_time,
-           c * circumstances * sizeof *f->critical_sample_time);
-    memcpy(f->score, from->score, c * sizeof *f->score);
-    memcpy(f->objective, from->objective, c * sizeof *f->objective);
-    memcpy(f->candidates, from->candidates, g * sizeof *f->candidates);
+    search_file_copy(f, from, SEARCH_CANDIDATE);
+    search_file_copy(f, from, SEARCH_GENERATION);
     f->length[SEARCH_CANDIDATE] = c;
     f->length[SEARCH_GENERATION] = g;
     f->seconds = from->seconds;
@@ -206,12 +173,6 @@ struct order {
     int which;
 };
 
-static void blank(double *value, size_t n)
-{
-    for (size_t i = 0; i < n; i++)
-        value[i] = NAN;
-}
-
 /* Rank 0: tries value[candidates][paths]. */
 static enum trials_end try_all(struct search *search, size_t candidates, const double *coordinate,
                                double *value, enum trials_starts which, uint64_t starts,
@@ -257,25 +218,7 @@ static enum trials_end follow(struct search *search, stance_message *message)
     }
 }
 
-static void tell_end(struct search *search)
-{
-    struct order order = {-1, 0, 0};
-    parallel_broadcast(search->parallel, &order, sizeof order);
-}
-
 /* ---- scores --------------------------------------------------------------------------------- */
-
-/* Of the axis of scales: its points and how many circumstances lie between two of them. */
-static const struct scenario_axis *scale_axis(const struct scenario *s, size_t *stride)
-{
-    int k;
-    const struct scenario_axis *const scale =
-        scenario_axis_of(s, offsetof(struct scenario_values, offset_scale), &k);
-    *stride = 1;
-    for (const struct scenario_axis *a = &s->axis[s->axes - 2]; a > scale; a--)
-        *stride *= a->count;
-    return scale;
-}
 
 /* Scales, in the order in which they stand, up to which all directions recover, the least over the
  * other circumstances; ties are broken by the directions that go further. */
@@ -283,8 +226,13 @@ static int64_t nearest_score(const struct search *search, size_t candidate, uint
                              double *objective)
 {
     const struct trials *const t = &search->trials;
-    size_t stride;
-    const struct scenario_axis *const scale = scale_axis(search->scenario, &stride);
+    const struct scenario *const s = search->scenario;
+    size_t stride = 1; /* so many circumstances lie between two scales */
+    int k;
+    const struct scenario_axis *const scale =
+        scenario_axis_of(s, offsetof(struct scenario_values, offset_scale), &k);
+    for (const struct scenario_axis *a = &s->axis[s->axes - 2]; a > scale; a--)
+        stride *= a->count;
     const size_t circumstances = t->circumstances;
     const uint8_t *const label = &t->label[candidate * circumstances * starts];
     size_t nearest = scale->count;
@@ -546,14 +494,6 @@ static enum trials_end try_confirmed(struct search *search, const double *coordi
     return end;
 }
 
-static void choose(struct search_file *f)
-{
-    f->chosen = 0;
-    for (size_t i = 1; i < f->length[SEARCH_CONFIRMED]; i++)
-        if (f->choice_score[i] > f->choice_score[f->chosen])
-            f->chosen = (int64_t)i;
-}
-
 static void note_fresh(struct search *search)
 {
     struct search_file *const f = &search->record;
@@ -562,8 +502,9 @@ static void note_fresh(struct search *search)
     for (size_t i = 0; i < k; i++) {
         count_labels(search, i, starts, &f->confirmed_count[i * circumstances * TRIAL_LABELS],
                      &f->confirmed_critical[i * circumstances]);
-        blank(&f->confirmed_allowed[i * circumstances], circumstances);
     }
+    for (size_t i = 0; i < k * circumstances; i++)
+        f->confirmed_allowed[i] = NAN;
     f->length[SEARCH_START] = starts;
     memcpy(f->confirmed_outcome, search->trials.label, k * circumstances * starts);
     memcpy(f->start_value, search->trials.start[TRIALS_FRESH],
@@ -584,7 +525,10 @@ static enum trials_end confirm(struct search *search, stance_message *message)
     memcpy(coordinate, f->confirmed_value, size);
     enum trials_end end = try_confirmed(search, coordinate, TRIALS_CHOICE, message);
     if (end == TRIALS_DONE) {
-        choose(f);
+        f->chosen = 0;
+        for (size_t i = 1; i < f->length[SEARCH_CONFIRMED]; i++)
+            if (f->choice_score[i] > f->choice_score[f->chosen])
+                f->chosen = (int64_t)i;
         end = try_confirmed(search, coordinate, TRIALS_FRESH, message);
     }
     if (end == TRIALS_DONE)
@@ -664,7 +608,7 @@ static enum trials_end lead(struct search *search, stance_message *message)
     }
     if (end != TRIALS_BROKEN && f->length[SEARCH_GENERATION] > 0 && !keep(search, true, message))
         end = TRIALS_BROKEN;
-    tell_end(search);
+    parallel_broadcast(search->parallel, &(struct order){-1, 0, 0}, sizeof(struct order));
     return end;
 }
 

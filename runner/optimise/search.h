@@ -10,7 +10,6 @@
 #ifndef STANCE_OPTIMISE_SEARCH_H
 #define STANCE_OPTIMISE_SEARCH_H
 
-#include "outlook.h"
 #include "space.h"
 #include "trials.h"
 
@@ -18,6 +17,15 @@
 
 /* Kinds of `count`: refused, the outcomes, failed. */
 extern const char *const search_kinds[TRIAL_LABELS];
+
+/* How long a search will go on: the cases that are planned, times what one took of late. (Better
+ * candidates are refused less often and stay up for longer, so that what the search took on the
+ * whole says too little. Stages that are over before their time drop out of the plan.) */
+struct outlook {
+    double ahead;          /* cases that are planned behind those in hand */
+    double now, begun;     /* cases in hand, and when they were taken */
+    double seconds, cases; /* of late: what so many simulated ones took */
+};
 
 struct search {
     const struct scenario *scenario; /* the first candidate, gains written out */

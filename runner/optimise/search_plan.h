@@ -1,4 +1,5 @@
-/* search_plan.h - what a search will do: generations of its stages, and cases that they take. */
+/* search_plan.h - what a search will do: generations of its stages, cases that they take,
+ * and how long that will be. */
 #ifndef STANCE_OPTIMISE_SEARCH_PLAN_H
 #define STANCE_OPTIMISE_SEARCH_PLAN_H
 
@@ -19,5 +20,12 @@ double search_plan_cases_at_end(const struct search *search);
 double search_plan_cases_of_stage(const struct search *search, int restart, int stage);
 /* Cases that are planned from a stage on, that one not counted. */
 double search_plan_cases_behind(const struct search *search, int restart, int stage);
+
+/* Cases in hand, which were planned. */
+void outlook_begin(struct outlook *outlook, double cases);
+/* They are done: so many were simulated; `apart` s were spent on something else. */
+void outlook_end(struct outlook *outlook, double simulated, double apart);
+/* s; negative: not known yet. */
+double outlook_left(const struct outlook *outlook);
 
 #endif

@@ -46,13 +46,6 @@ static double widest(const struct scenario *s, bool rate)
     return width > 0 ? width : usual[rate];
 }
 
-/* Half-width of the starts in an angle or its rate. */
-static double start_width(const struct scenario *s, int coordinate, bool rate)
-{
-    const double width = half_width(s, rate ? s->scene->coordinates + coordinate : coordinate);
-    return width > 0 ? width : widest(s, rate);
-}
-
 static double gain_unit(const struct scenario *s, size_t actuator, size_t column)
 {
     const size_t postures = (size_t)s->scene->postures;
@@ -61,7 +54,8 @@ static double gain_unit(const struct scenario *s, size_t actuator, size_t column
     double limit[STANCE_MAX_ACTUATORS];
     stance_torque_limits(s->scene, s->base.robot, s->base.torque_limit, s->base.torque_limits,
                          limit);
-    return limit[actuator] / start_width(s, coordinate, rate);
+    const double width = half_width(s, rate ? s->scene->coordinates + coordinate : coordinate);
+    return limit[actuator] / (width > 0 ? width : widest(s, rate));
 }
 
 /* Of a law's parameter: for each coordinate of the posture that of a gain, of its angle or, in

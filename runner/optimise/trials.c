@@ -42,17 +42,6 @@ static int64_t *make_weights(const struct scenario *s, uint64_t starts, const do
     return weight;
 }
 
-/* The points of the sample axis, drawn with a seed; the axis loses them. */
-static double *take_points(struct scenario *s, uint64_t count, uint64_t seed)
-{
-    struct scenario_axis *const axis = &s->axis[s->axes - 1];
-    if (!scenario_resample(s, count, seed))
-        return NULL;
-    double *const value = axis->value;
-    axis->value = NULL;
-    return value;
-}
-
 bool trials_make(struct trials *t, const struct scenario *scenario, const struct parallel *parallel)
 {
     *t = (struct trials){
@@ -66,7 +55,11 @@ bool trials_make(struct trials *t, const struct scenario *scenario, const struct
     bool good = true;
     for (int k = 0; k < TRIALS_STARTS; k++) {
         const uint64_t count = trials_count(scenario, (enum trials_starts)k);
-        t->start[k] = take_points(at, count, trials_seed(scenario, (enum trials_starts)k));
+        struct scenario_axis *const sample = &at->axis[at->axes - 1];
+        if (scenario_resample(at, count, trials_seed(scenario, (enum trials_starts)k))) {
+            t->start[k] = sample->value; /* the axis loses them */
+            sample->value = NULL;
+        }
         t->weight[k] = t->start[k] ? make_weights(scenario, count, t->start[k]) : NULL;
         good = good && t->start[k] && t->weight[k];
     }

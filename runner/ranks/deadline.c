@@ -5,9 +5,9 @@
 #include "runner/base/command.h"
 
 #include <signal.h>
-#include <stdbool.h>
 #include <stdint.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/time.h>
 #include <time.h>
@@ -26,6 +26,38 @@ static void *volatile rescue_context;
 static volatile sig_atomic_t rescued;
 static bool prepared;
 static char told[300], lost[300];
+
+/* A look each second, or none any more. */
+static bool look(void (*handler)(int number), int flags)
+{
+    const bool on = handler != SIG_DFL;
+    const struct itimerval each = {{on, 0}, {on, 0}};
+    struct sigaction action = {.sa_handler = handler, .sa_flags = SA_RESTART | flags};
+    sigemptyset(&action.sa_mask);
+    return (on || setitimer(ITIMER_REAL, &each, NULL) == 0) &&
+           sigaction(SIGALRM, &action, NULL) == 0 &&
+           (!on || setitimer(ITIMER_REAL, &each, NULL) == 0);
+}
+
+static pid_t launcher;
+static volatile sig_atomic_t looked;
+
+static void look_for_launcher(int number)
+{
+    static const char late[] =
+        "stance: MPI has not started on all ranks: left; nothing was begun\n";
+    (void)number;
+    if (getppid() != launcher)
+        _exit(EXIT_FAILURE); /* nothing has been begun, and nobody waits for the code */
+    if (++looked > DEADLINE_START)
+        _exit(write(STDERR_FILENO, late, sizeof late - 1) < 0 ? EXIT_FAILURE : EXIT_INTERRUPTED);
+}
+
+void deadline_launch(bool begin)
+{
+    launcher = getppid();
+    look(begin ? look_for_launcher : SIG_DFL, 0);
+}
 
 static int64_t now(void)
 {
@@ -61,8 +93,6 @@ static void tick(int number)
 
 void deadline_prepare(int rank)
 {
-    const struct itimerval each = {{1, 0}, {1, 0}};
-    struct sigaction action = {.sa_handler = tick, .sa_flags = SA_RESTART | SA_NODEFER};
     char host[100];
     parallel_host(host, sizeof host);
     snprintf(told, sizeof told,
@@ -74,9 +104,8 @@ void deadline_prepare(int rank)
         "stance run: rank %d on %s: rank 0 has not answered for %d s: left; what is marked done "
         "is whole, --resume goes on\n",
         rank, host, (int)DEADLINE_LOST);
-    sigemptyset(&action.sa_mask);
     ticked = now();
-    prepared = sigaction(SIGALRM, &action, NULL) == 0 && setitimer(ITIMER_REAL, &each, NULL) == 0;
+    prepared = look(tick, SA_NODEFER);
 }
 
 void deadline_begin(void)

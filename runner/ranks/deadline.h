@@ -9,11 +9,19 @@
 #ifndef STANCE_RANKS_DEADLINE_H
 #define STANCE_RANKS_DEADLINE_H
 
+#include <stdbool.h>
+
 enum {
     DEADLINE_PATIENCE = 30, /* s, with ranks that were told to stop as this one was */
     DEADLINE_LOST = 300,    /* s, until a machine that says nothing is taken for lost */
     DEADLINE_START = 600,   /* s, until MPI, which has not started on all ranks, never will */
 };
+
+/* From `begin` on until MPI has started, and looks after that itself: the process leaves when its
+ * launcher dies, or MPI takes too long. (A rank whose launcher dies waits in MPI_Init for ever, in
+ * PMIx, Open MPI 4, and now and then all do when some are killed while the launcher starts them.)
+ */
+void deadline_launch(bool begin);
 
 /* For this process, one of several ranks: when its time has come, one line on standard error and
  * exit code EXIT_INTERRUPTED. Without this call, as for a single rank, it never comes. */

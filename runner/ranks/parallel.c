@@ -7,13 +7,9 @@
 
 #include "deadline.h"
 
-#include "runner/base/command.h"
-
-#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/time.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -89,19 +85,15 @@ void parallel_leave_launcher(void)
 }
 
 /* Within one machine shared memory is all that Open MPI needs; its search for networks takes a
- * fifth of a second. What the user has set stands. */
-static void skip_networks(void)
+ * fifth of a second. What the user has set stands.
+ * Windows between machines are made of messages in Open MPI 4: they work over every network, and
+ * what goes through them is little. Its window for remote memory fails over TCP, and Debian's
+ * configuration leaves no other. Within one machine windows are shared memory. */
+static void choose_networks(void)
 {
     const char *all = getenv("OMPI_COMM_WORLD_SIZE"), *here = getenv("OMPI_COMM_WORLD_LOCAL_SIZE");
     if (all && here && strcmp(all, here) == 0)
         setenv("OMPI_MCA_pml", "ob1", 0);
-}
-
-/* Windows between machines are made of messages in Open MPI 4: they work over every network, and
- * what goes through them is little. Its window for remote memory fails over TCP, and Debian's
- * configuration leaves no other. Within one machine windows are shared memory. */
-static void choose_windows(void)
-{
 #if defined(OMPI_MAJOR_VERSION) && OMPI_MAJOR_VERSION < 5
     setenv("OMPI_MCA_osc", "sm,pt2pt", 0);
 #endif
@@ -118,50 +110,14 @@ bool parallel_misses_launcher(bool *first)
 #endif
 }
 
-/* A rank whose launcher dies while MPI starts waits in MPI_Init for ever (in PMIx, Open MPI 4), and
- * now and then all do when some are killed while the launcher starts them: until MPI has started,
- * and looks after that itself, an alarm sees each second who the parent is, and how long it has
- * been.
- */
-static pid_t launcher;
-static volatile sig_atomic_t looked;
-
-static void look_for_launcher(int number)
-{
-    static const char late[] =
-        "stance: MPI has not started on all ranks: left; nothing was begun\n";
-    (void)number;
-    if (getppid() != launcher)
-        _exit(EXIT_FAILURE); /* nothing has been begun, and nobody waits for the code */
-    if (++looked > DEADLINE_START)
-        _exit(write(STDERR_FILENO, late, sizeof late - 1) < 0 ? EXIT_FAILURE : EXIT_INTERRUPTED);
-}
-
-static void watch_launcher(bool begin)
-{
-    const struct itimerval interval = {{begin, 0}, {begin, 0}};
-    struct sigaction action = {.sa_handler = begin ? look_for_launcher : SIG_DFL,
-                               .sa_flags = SA_RESTART};
-    sigemptyset(&action.sa_mask);
-    if (begin) {
-        launcher = getppid();
-        sigaction(SIGALRM, &action, NULL);
-        setitimer(ITIMER_REAL, &interval, NULL);
-    } else {
-        setitimer(ITIMER_REAL, &interval, NULL);
-        sigaction(SIGALRM, &action, NULL);
-    }
-}
-
 struct parallel parallel_start(void)
 {
     struct parallel parallel = parallel_alone();
     if (was_launched()) {
-        skip_networks();
-        choose_windows();
-        watch_launcher(true);
+        choose_networks();
+        deadline_launch(true);
         MPI_Init(NULL, NULL);
-        watch_launcher(false);
+        deadline_launch(false);
         MPI_Comm_rank(MPI_COMM_WORLD, &parallel.rank);
         MPI_Comm_size(MPI_COMM_WORLD, &parallel.size);
     }
@@ -189,12 +145,16 @@ void parallel_broadcast(const struct parallel *parallel, void *data, size_t size
         MPI_Bcast(bytes + at, piece_of(size - at), MPI_BYTE, 0, MPI_COMM_WORLD);
 }
 
-void parallel_gather(const struct parallel *parallel, const void *data, size_t size, void *all)
+void *parallel_gather(const struct parallel *parallel, const void *data, size_t size)
 {
+    void *const all = parallel->rank == 0 ? malloc((size_t)parallel->size * size) : NULL;
+    if (parallel->rank == 0 && !all)
+        abort(); /* the others wait in the gather: MPI ends the job */
     if (parallel->size == 1)
         memcpy(all, data, size);
     else
         MPI_Gather(data, (int)size, MPI_BYTE, all, (int)size, MPI_BYTE, 0, MPI_COMM_WORLD);
+    return all;
 }
 
 void parallel_gather_block(const struct parallel *parallel, void *array, size_t element,

@@ -37,9 +37,9 @@ void parallel_finish(struct parallel *parallel);
 
 /* Collective: `size` bytes of rank 0 reach every rank. */
 void parallel_broadcast(const struct parallel *parallel, void *data, size_t size);
-/* Collective: `size` bytes of each rank, in order of rank, in all[ranks * size] on rank 0
- * (elsewhere `all` may be NULL). */
-void parallel_gather(const struct parallel *parallel, const void *data, size_t size, void *all);
+/* Collective: `size` bytes of each rank, in order of rank, in memory of ranks * size on rank 0, to
+ * be freed; NULL elsewhere. */
+void *parallel_gather(const struct parallel *parallel, const void *data, size_t size);
 /* Collective: the caller's block [first, first + count) of an array of `element` bytes reaches
  * rank 0's array; the blocks of all ranks must tile it in order of rank. */
 void parallel_gather_block(const struct parallel *parallel, void *array, size_t element,

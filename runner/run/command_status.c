@@ -55,14 +55,6 @@ static void read_origin(const char *file, struct state *state)
     free(s);
 }
 
-static bool read_search(const char *file, struct state *state, stance_message *message)
-{
-    state->searches = search_file_read(&state->search, file, message);
-    if (state->searches && state->note.running)
-        state->left = state->note.left;
-    return state->searches;
-}
-
 static bool read_state(const char *file, struct state *state, stance_message *message)
 {
     *state = (struct state){.rate = -1, .mean = -1, .left = -1};
@@ -72,8 +64,12 @@ static bool read_state(const char *file, struct state *state, stance_message *me
         return complain(message, "%.150s: not there yet: a run is %s", file,
                         note->exists ? note->doing : "starting");
     }
-    if (search_file_is(file))
-        return read_search(file, state, message);
+    if (search_file_is(file)) {
+        state->searches = search_file_read(&state->search, file, message);
+        if (state->searches && note->running)
+            state->left = note->left;
+        return state->searches;
+    }
     if (!store_count(file, &state->counts, message) || !store_check(file, false, message))
         return false;
     read_origin(file, state);

@@ -1,6 +1,6 @@
 /* refinement_run.c - ask what to simulate, compute it together, tell all ranks the labels, ask
  * again. */
-#include "refinement_run.h"
+#include "work.h"
 
 #include "runner/base/message.h"
 #include "runner/plan/refine.h"
@@ -31,14 +31,6 @@ static bool refinement_make(struct refinement *refinement, struct work *work)
     for (uint64_t k = 0; refinement->refine && k < work->plan->record_cases; k++)
         refine_want(refinement->refine, plan_recorded_case(work->plan, k));
     return refinement->refine && refinement->row && refinement->label && refinement->block;
-}
-
-static void refinement_free(struct refinement *refinement)
-{
-    refine_free(refinement->refine);
-    free(refinement->row);
-    free(refinement->label);
-    store_block_free(refinement->block);
 }
 
 /* *complete: there was nothing left to simulate. *stopped: some of the round was not. */
@@ -151,6 +143,9 @@ bool refinement_run(struct work *work, stance_message *message)
         refine_infer(refinement.refine);
         good = write_inferred(&refinement, message);
     }
-    refinement_free(&refinement);
+    refine_free(refinement.refine);
+    free(refinement.row);
+    free(refinement.label);
+    store_block_free(refinement.block);
     return good;
 }

@@ -2,6 +2,7 @@
 #include "report.h"
 
 #include "runner/base/units.h"
+#include "runner/base/words.h"
 #include "runner/plan/kernels.h"
 #include "runner/plan/refine.h"
 #include "runner/plan/search_numbers.h"
@@ -70,30 +71,28 @@ static void factor_text(const struct scenario_axis *axis, const struct scenario_
                                          .count = f->points,
                                          .value = f->value,
                                          .meaning = axis->meaning + f->first};
-    size_t used = 0;
-    for (size_t i = 0; i < f->points && used < size; i++) {
+    text[0] = '\0';
+    for (size_t i = 0; i < f->points; i++) {
         if (i == SHOWN) {
-            used += (size_t)snprintf(text + used, size - used, ", ... (%zu values)", f->points);
+            words_add(text, size, ", ... (%zu values)", f->points);
             break;
         }
-        used += (size_t)snprintf(text + used, size - used, "%s%s",
-                                 i == 0      ? ""
-                                 : f->listed ? ", "
-                                             : " ... ",
-                                 f->paths > 1 ? "[" : "");
-        for (int k = 0; k < f->paths && used < size; k++) {
+        words_add(text, size, "%s%s",
+                  i == 0      ? ""
+                  : f->listed ? ", "
+                              : " ... ",
+                  f->paths > 1 ? "[" : "");
+        for (int k = 0; k < f->paths; k++) {
             char value[64];
             scenario_axis_text(&listed, i, k, value, sizeof value);
-            used += (size_t)snprintf(text + used, size - used, "%s%s", k ? ", " : "", value);
+            words_add(text, size, "%s%s", k ? ", " : "", value);
         }
-        if (used < size)
-            used += (size_t)snprintf(text + used, size - used, "%s", f->paths > 1 ? "]" : "");
+        words_add(text, size, "%s", f->paths > 1 ? "]" : "");
     }
-    if (used < size && f->paths == 1 && !listed.meaning[0].words &&
-        strcmp(listed.meaning[0].unit, "1") != 0)
-        used += (size_t)snprintf(text + used, size - used, " %s", listed.meaning[0].unit);
-    if (used < size && f->log)
-        snprintf(text + used, size - used, ", log");
+    if (f->paths == 1 && !listed.meaning[0].words && strcmp(listed.meaning[0].unit, "1") != 0)
+        words_add(text, size, " %s", listed.meaning[0].unit);
+    if (f->log)
+        words_add(text, size, ", log");
 }
 
 static json_t *factor_json(const struct scenario_axis *axis, const struct scenario_factor *f)

@@ -4,7 +4,6 @@
  * error of any rank is printed once, and all leave together with its exit code.
  */
 #include "run.h"
-#include "refinement_run.h"
 #include "report.h"
 
 #include "runner/base/command.h"
@@ -285,19 +284,6 @@ static void stage_claim(struct run *run)
 
 /* ---- the plan ----------------------------------------------------------------------------- */
 
-/* Points of logarithmic axes and of samples come from libraries and may differ between machines:
- * every rank takes those of rank 0, which has them from the file when the run is resumed. */
-static void share_axes(struct run *run)
-{
-    for (int a = 0; a < run->scenario->axes; a++) {
-        struct scenario_axis *axis = &run->scenario->axis[a];
-        if (axis->log || axis->sample) {
-            parallel_broadcast(&run->parallel, axis->value,
-                               axis->count * (size_t)axis->paths * sizeof *axis->value);
-        }
-    }
-}
-
 /* While designs are computed: whether any rank is to stop. */
 static bool out_of_time(void *context)
 {
@@ -325,7 +311,15 @@ static void stage_plan(struct run *run)
     struct plan_error error = {0};
     const struct options *o = &run->options;
 
-    share_axes(run);
+    /* Points of logarithmic axes and of samples come from libraries and may differ between
+     * machines: every rank takes those of rank 0, which has them from the file when the run is
+     * resumed. */
+    for (int a = 0; a < run->scenario->axes; a++) {
+        struct scenario_axis *axis = &run->scenario->axis[a];
+        if (axis->log || axis->sample)
+            parallel_broadcast(&run->parallel, axis->value,
+                               axis->count * (size_t)axis->paths * sizeof *axis->value);
+    }
     if (!parallel_share(&run->parallel))
         run_fail(run, EXIT_IO, "stance run: not enough memory");
     else if (!plan_make(&run->plan, run->scenario, o->single, o->single_case, o->trace, &error) ||
@@ -416,13 +410,12 @@ static char *collect_hosts(const struct parallel *parallel)
     enum { NAME = 64 };
     char name[NAME];
     size_t ranks = (size_t)parallel->size, used = 0;
-    char *all = parallel->rank == 0 ? calloc(ranks, NAME) : NULL;
     char *list = parallel->rank == 0 ? calloc(ranks, NAME + 1) : NULL;
 
-    if (parallel->rank == 0 && (!all || !list))
-        abort(); /* the others wait in the gather: MPI ends the job */
     parallel_host(name, sizeof name);
-    parallel_gather(parallel, name, NAME, all);
+    char *all = parallel_gather(parallel, name, NAME);
+    if (all && !list)
+        abort(); /* the others wait: MPI ends the job */
     for (size_t r = 0; all && r < ranks; r++) {
         bool known = false;
         for (size_t q = 0; q < r && !known; q++)
@@ -516,15 +509,9 @@ static void stage_compute(struct run *run)
 /* Rank 0 stores how long each rank computed. */
 static void stage_timing(struct run *run)
 {
-    size_t ranks = (size_t)run->parallel.size;
-    double computed = (double)run->work.computed;
-    double *seconds = run->parallel.rank == 0 ? malloc(ranks * sizeof *seconds) : NULL;
-    double *cases = run->parallel.rank == 0 ? malloc(ranks * sizeof *cases) : NULL;
-
-    if (run->parallel.rank == 0 && (!seconds || !cases))
-        abort(); /* the others wait in the gather: MPI ends the job */
-    parallel_gather(&run->parallel, &run->work.seconds, sizeof *seconds, seconds);
-    parallel_gather(&run->parallel, &computed, sizeof computed, cases);
+    const double computed = (double)run->work.computed;
+    double *seconds = parallel_gather(&run->parallel, &run->work.seconds, sizeof *seconds);
+    double *cases = parallel_gather(&run->parallel, &computed, sizeof computed);
     if (run->parallel.rank == 0 &&
         !store_add_timing(run->store, run->parallel.size, seconds, cases, &run->message))
         run_fail_io(run);

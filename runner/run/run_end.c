@@ -4,6 +4,7 @@
 #include "runner/base/command.h"
 #include "runner/base/numbers.h"
 #include "runner/base/units.h"
+#include "runner/base/words.h"
 #include "runner/plan/warnings.h"
 
 #include <errno.h>
@@ -51,22 +52,15 @@ static void say_damaged(const struct run *run, uint64_t damaged)
 {
     uint64_t mine[WORK_NAMED];
     const size_t ranks = (size_t)run->parallel.size;
-    uint64_t *all = run->parallel.rank == 0 ? malloc(ranks * sizeof mine) : NULL;
-
-    if (run->parallel.rank == 0 && !all)
-        abort(); /* the others wait in the gather: MPI ends the job */
     for (uint64_t k = 0; k < WORK_NAMED; k++)
         mine[k] = k < run->work.damaged ? run->work.damaged_case[k] : UINT64_MAX;
-    parallel_gather(&run->parallel, mine, sizeof mine, all);
+    uint64_t *const all = parallel_gather(&run->parallel, mine, sizeof mine);
     if (all) {
         const uint64_t named = damaged < WORK_NAMED ? damaged : WORK_NAMED;
         char list[WORK_NAMED * 24] = "";
-        size_t used = 0;
         numbers_unite(all, ranks * WORK_NAMED);
-        for (uint64_t k = 0; k < named; k++) {
-            used += (size_t)snprintf(list + used, sizeof list - used, "%s%" PRIu64, k ? ", " : "",
-                                     all[k]);
-        }
+        for (uint64_t k = 0; k < named; k++)
+            words_add(list, sizeof list, "%s%" PRIu64, k ? ", " : "", all[k]);
         fprintf(stderr,
                 "stance run: warning: %.200s: %" PRIu64 " case%s marked done did not verify and "
                 "%s computed again: %s%s\n",

@@ -48,14 +48,6 @@ static bool is_same_file(const char *a, const char *b)
                                  first.st_dev == second.st_dev && first.st_ino == second.st_ino);
 }
 
-/* Nobody writes the file meanwhile: by a lock, or because nobody here could. */
-static bool lock_old(struct extension *e, stance_message *message)
-{
-    char directory[sizeof e->file];
-    store_directory(e->file, directory, sizeof directory);
-    return access(directory, W_OK) != 0 || lock_take_through(&e->lock, e->file, message);
-}
-
 /* The scenario of the old file, as it is and with the new count. */
 static bool read_old_scenario(struct run *run, struct extension *e, const char *text)
 {
@@ -95,41 +87,31 @@ static bool take_axes(struct run *run, struct extension *e, stance_message *mess
     return true;
 }
 
-static bool check_count(struct run *run, const struct extension *e)
-{
-    const uint64_t count = e->scenario->sample.design.count;
-    if (count < run->options.extend_count)
-        return true;
-    return run_fail(run, EXIT_USAGE,
-                    "stance run: --extend %" PRIu64 ": %.300s has sweep.sample.count %" PRIu64
-                    " already",
-                    run->options.extend_count, e->file, count);
-}
-
-/* Cases of other scenarios (--force-scenario) are none of the new file's. */
-static bool check_ancestors(struct run *run, const struct extension *e,
-                            const struct store_origin *origin)
-{
-    if (origin->ancestors == 0)
-        return true;
-    return run_fail(
-        run, EXIT_USAGE,
-        "stance run: --extend: %.300s holds cases of several scenarios: begin a new file", e->file);
-}
-
 static bool look_into_old(struct run *run, struct extension *e)
 {
     struct store_origin origin;
+    char directory[sizeof e->file];
 
-    if (!lock_old(e, &run->message))
+    /* Nobody writes the file meanwhile: by a lock, or because nobody here could. */
+    store_directory(e->file, directory, sizeof directory);
+    if (access(directory, W_OK) == 0 && !lock_take_through(&e->lock, e->file, &run->message))
         return run_fail_io(run);
     run->failure.code = run_check_file(run, run_check_results, e->file);
     if (run->failure.code != EXIT_DONE)
         return false; /* it has been said why */
     if (!store_read_origin(e->file, &origin, &run->message))
         return run_fail_io(run);
-    bool good = read_old_scenario(run, e, origin.scenario) && check_count(run, e) &&
-                check_ancestors(run, e, &origin);
+    bool good = read_old_scenario(run, e, origin.scenario);
+    if (good && e->scenario->sample.design.count >= run->options.extend_count)
+        good = run_fail(run, EXIT_USAGE,
+                        "stance run: --extend %" PRIu64 ": %.300s has sweep.sample.count %" PRIu64
+                        " already",
+                        run->options.extend_count, e->file, e->scenario->sample.design.count);
+    if (good && origin.ancestors > 0) /* cases of other scenarios are none of the new file's */
+        good = run_fail(run, EXIT_USAGE,
+                        "stance run: --extend: %.300s holds cases of several scenarios: begin a "
+                        "new file",
+                        e->file);
     if (good)
         run_warn_of_revision(run, e->file, origin.revision);
     if (good && !store_same_points(e->file, &origin, run->scenario, &run->message))

@@ -177,14 +177,6 @@ static void task_leave(struct job *job, struct task *task)
 
 /* ---- results ------------------------------------------------------------------------------ */
 
-/* What is stored for a case that does not exist. */
-static void fail_initially(stance_result *result)
-{
-    stance_result_clear(result);
-    result->status = STANCE_FAILED;
-    result->failure = STANCE_FAILURE_INITIAL;
-}
-
 void work_tally(struct work *work, stance_status status, stance_outcome outcome)
 {
     work->finished++;
@@ -469,7 +461,9 @@ static bool next_case(void *context, const stance_case **input, stance_result **
             *result = &task->result;
             return true;
         }
-        fail_initially(&task->result);
+        stance_result_clear(&task->result); /* what is stored for a case that does not exist */
+        task->result.status = STANCE_FAILED;
+        task->result.failure = STANCE_FAILURE_INITIAL;
         end_task(job, task);
     }
     return false;

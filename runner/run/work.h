@@ -76,4 +76,13 @@ bool work_verify(struct work *work, const struct rows *rows, stance_result *resu
  * rank has dealt with, outcome + 1, or WORK_FAILED. */
 bool work_run(struct work *work, const struct rows *only, uint8_t *label, stance_message *message);
 
+/* refinement_run.c: a map by refinement, rounds of cases, each chosen by the labels of those
+ * before.
+ *
+ * Collective. For a plan whose scenario asks for refinement (refine.h), all of it: computes round
+ * after round, then writes what the other cases are inferred to be. Every rank keeps the labels of
+ * the whole map. A resumed run goes through the same rounds and keeps the rows that the file holds
+ * whole. Leaves early as work_run does; false when any rank failed. */
+bool refinement_run(struct work *work, stance_message *message);
+
 #endif

@@ -16,42 +16,24 @@
 
 enum { MOST_LINES = 2000, MOST_SHOWN = 12, SHOWN_COLUMNS = 120 };
 
-struct line {
-    const char *text;
-    size_t length;
-};
-
 struct lines {
-    struct line *line;
+    char *text, **line; /* in it, each with its end */
     size_t count;
 };
 
 static struct lines split(const char *text)
 {
-    struct lines lines = {.line = NULL};
-    size_t count = 1;
-    for (const char *c = text; *c; c++)
-        count += *c == '\n';
-    lines.line = malloc(count * sizeof *lines.line);
-    while (lines.line && *text) {
-        const size_t length = strcspn(text, "\n");
-        lines.line[lines.count++] = (struct line){text, length};
-        text += length + (text[length] == '\n');
-    }
+    struct lines lines = {strdup(text), malloc((strlen(text) + 1) * sizeof *lines.line), 0};
+    for (char *rest = lines.line ? lines.text : NULL; rest && *rest;)
+        lines.line[lines.count++] = strsep(&rest, "\n");
     return lines;
 }
 
-static bool same(const struct line *a, const struct line *b)
+static void show(FILE *to, size_t number, char sign, const char *line)
 {
-    return a->length == b->length && memcmp(a->text, b->text, a->length) == 0;
-}
-
-static void show(FILE *to, size_t number, char sign, const struct line *line)
-{
-    const bool cut = line->length > SHOWN_COLUMNS;
+    const bool cut = strlen(line) > SHOWN_COLUMNS;
     if (to && number < MOST_SHOWN)
-        fprintf(to, "  %c %.*s%s\n", sign, cut ? SHOWN_COLUMNS : (int)line->length, line->text,
-                cut ? "..." : "");
+        fprintf(to, "  %c %.*s%s\n", sign, SHOWN_COLUMNS, line, cut ? "..." : "");
 }
 
 /* As few lines as can be, unless there are so many that between the first and the last difference
@@ -60,14 +42,14 @@ size_t changed_scenario_differences(FILE *to, const char *before, const char *af
 {
     struct lines old = split(before), new = split(after);
     size_t begin = 0, n = old.count, m = new.count, differing = 0;
-    while (begin < n && begin < m && same(&old.line[begin], &new.line[begin]))
+    while (begin < n && begin < m && strcmp(old.line[begin], new.line[begin]) == 0)
         begin++;
-    while (n > begin && m > begin && same(&old.line[n - 1], &new.line[m - 1])) {
+    while (n > begin && m > begin && strcmp(old.line[n - 1], new.line[m - 1]) == 0) {
         n--;
         m--;
     }
     const size_t a = n - begin, b = m - begin;
-    const struct line *x = old.line + begin, *y = new.line + begin;
+    char *const *const x = old.line + begin, *const *const y = new.line + begin;
     /* common[i][j]: most lines that x[i ...] and y[j ...] have in common, in order. */
     uint16_t *common =
         a <= MOST_LINES && b <= MOST_LINES ? calloc((a + 1) * (b + 1), sizeof *common) : NULL;
@@ -75,25 +57,27 @@ size_t changed_scenario_differences(FILE *to, const char *before, const char *af
         for (size_t j = b; j-- > 0;) {
             const uint16_t down = common[(i + 1) * (b + 1) + j],
                            right = common[i * (b + 1) + j + 1];
-            common[i * (b + 1) + j] = same(&x[i], &y[j])
+            common[i * (b + 1) + j] = strcmp(x[i], y[j]) == 0
                                           ? (uint16_t)(common[(i + 1) * (b + 1) + j + 1] + 1)
                                       : down > right ? down
                                                      : right;
         }
     }
     for (size_t i = 0, j = 0; i < a || j < b;) {
-        if (common && i < a && j < b && same(&x[i], &y[j])) {
+        if (common && i < a && j < b && strcmp(x[i], y[j]) == 0) {
             i++;
             j++;
         } else if (i < a && (j == b || !common ||
                              common[(i + 1) * (b + 1) + j] >= common[i * (b + 1) + j + 1])) {
-            show(to, differing++, '-', &x[i++]);
+            show(to, differing++, '-', x[i++]);
         } else {
-            show(to, differing++, '+', &y[j++]);
+            show(to, differing++, '+', y[j++]);
         }
     }
     free(common);
+    free(old.text);
     free(old.line);
+    free(new.text);
     free(new.line);
     if (to && differing > MOST_SHOWN)
         fprintf(to, "  ... and %zu more\n", differing - MOST_SHOWN);

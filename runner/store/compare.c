@@ -1,5 +1,5 @@
 /* compare.c - walks through two results files and compares variables and attributes. */
-#include "compare_values.h"
+#include "compare.h"
 
 #include "file_checksums.h"
 #include "results_private.h"
@@ -67,11 +67,6 @@ static herr_t add_link(hid_t group, const char *name, const H5L_info_t *info, vo
     return 0;
 }
 
-static bool list_objects(const struct results *r, struct names *names)
-{
-    return H5Lvisit((hid_t)r->id, H5_INDEX_NAME, H5_ITER_INC, add_link, names) >= 0;
-}
-
 static bool is_listed(const char *name, const char *const *list)
 {
     for (; *list; list++)
@@ -123,13 +118,135 @@ void compare_free(struct comparison *comparison)
     *comparison = (struct comparison){0};
 }
 
+/* ---- elements in memory, in the widest type of their kind ---------------------------------- */
+
+/* Elements of a variable or an attribute in memory. */
+enum value_kind { VALUE_REAL, VALUE_INTEGER, VALUE_NATURAL, VALUE_TEXT, VALUE_OTHER };
+
+struct values {
+    enum value_kind kind;
+    size_t count;
+    union {
+        double *real;
+        int64_t *integer;
+        uint64_t *natural;
+        char **text;
+        void *any;
+    } data;
+};
+
+static enum value_kind value_kind_of(hid_t type)
+{
+    switch (H5Tget_class(type)) {
+    case H5T_FLOAT:
+        return H5Tget_size(type) <= sizeof(double) ? VALUE_REAL : VALUE_OTHER;
+    case H5T_INTEGER:
+        return H5Tget_size(type) > sizeof(int64_t) ? VALUE_OTHER
+               : H5Tget_sign(type) == H5T_SGN_NONE ? VALUE_NATURAL
+                                                   : VALUE_INTEGER;
+    case H5T_STRING:
+        return VALUE_TEXT;
+    default:
+        return VALUE_OTHER;
+    }
+}
+
+static uint64_t bits_of(double number)
+{
+    uint64_t bits;
+    memcpy(&bits, &number, sizeof bits);
+    return bits;
+}
+
+static void values_free(struct values *values)
+{
+    if (values->kind == VALUE_TEXT)
+        hdf_free_words(values->data.text, values->count);
+    else
+        free(values->data.any);
+    values->data.any = NULL;
+}
+
+/* Reads elements [at, at + count) of a dataset, or the `count` ones of an attribute. Those of
+ * VALUE_OTHER are left. False: nothing is left allocated. */
+static bool values_read(hid_t object, hsize_t at, hid_t type, size_t count, struct values *values)
+{
+    *values = (struct values){.kind = value_kind_of(type), .count = count};
+    if (values->kind == VALUE_OTHER)
+        return true;
+    if (values->kind == VALUE_TEXT) {
+        values->data.text = hdf_words(object, at, count);
+        return values->data.text != NULL;
+    }
+    const hid_t native = values->kind == VALUE_REAL      ? H5T_NATIVE_DOUBLE
+                         : values->kind == VALUE_INTEGER ? H5T_NATIVE_INT64
+                                                         : H5T_NATIVE_UINT64;
+    values->data.any = malloc(count * sizeof(double) + 1);
+    const bool good =
+        values->data.any && hdf_move(object, native, at, count, HDF_READ, values->data.any);
+    if (!good)
+        values_free(values);
+    return good;
+}
+
+/* To the bit, but for NANs. Both are of the same kind. */
+static bool values_same(const struct values *a, const struct values *b, size_t i)
+{
+    switch (a->kind) {
+    case VALUE_REAL: /* of NANs alone the bits do not matter; 0 and -0 differ */
+        return bits_of(a->data.real[i]) == bits_of(b->data.real[i]) ||
+               (isnan(a->data.real[i]) && isnan(b->data.real[i]));
+    case VALUE_TEXT:
+        return strcmp(a->data.text[i], b->data.text[i]) == 0;
+    case VALUE_INTEGER:
+    case VALUE_NATURAL:
+        return a->data.natural[i] == b->data.natural[i];
+    default:
+        return true;
+    }
+}
+
+/* The beginning of a text in quotation marks, in whole letters; damaged bytes are no letters. */
+static void values_quote(const char *before, const char *letters, char text[COMPARE_TEXT])
+{
+    enum { SHOWN = 60 };
+    int shown = 0;
+    while (letters[shown]) {
+        int length = results_letter(letters + shown);
+        length = length > 0 ? length : 1;
+        if (shown + length > SHOWN)
+            break;
+        shown += length;
+    }
+    snprintf(text, COMPARE_TEXT, "%s'%.*s'", before, shown, letters);
+    results_clean(text);
+}
+
+/* An element for people. */
+static void values_text(const struct values *values, size_t i, char text[COMPARE_TEXT])
+{
+    switch (values->kind) {
+    case VALUE_REAL:
+        snprintf(text, COMPARE_TEXT, "%.17g", values->data.real[i]);
+        break;
+    case VALUE_INTEGER:
+        snprintf(text, COMPARE_TEXT, "%lld", (long long)values->data.integer[i]);
+        break;
+    case VALUE_NATURAL:
+        snprintf(text, COMPARE_TEXT, "%llu", (unsigned long long)values->data.natural[i]);
+        break;
+    default:
+        values_quote("", values->data.text[i], text);
+    }
+}
+
 /* ---- variables ---------------------------------------------------------------------------- */
 
-/* A variable that both files have. */
-struct variable {
+/* A variable, or an attribute, that both files have. */
+struct compared {
     const char *name;
     const struct results *const *r; /* [2] */
-    hid_t dataset[2], type[2];
+    hid_t object[2], type[2];
     int rank;
     hsize_t length[H5S_MAX_RANK];
     size_t elements;
@@ -145,7 +262,7 @@ static bool is_pending(const struct results *r, uint64_t index)
 }
 
 /* Whether element i counts: rows of cases that either file lacks do not, `status` tells of them. */
-static bool counts(const struct variable *v, size_t i)
+static bool counts(const struct compared *v, size_t i)
 {
     if (v->width == 0 || strcmp(v->name, "status") == 0)
         return true;
@@ -166,7 +283,7 @@ static void show_texts(struct compare_place *place, const char *a, const char *b
     values_quote(from ? "..." : "", b + from, place->value[1]);
 }
 
-static struct compare_place place_of(const struct variable *v, size_t i, size_t within,
+static struct compare_place place_of(const struct compared *v, size_t i, size_t within,
                                      const struct values values[2])
 {
     struct compare_place place = {.component = v->width ? i % v->width : 0};
@@ -206,20 +323,8 @@ static bool is_close(const struct compare_tolerance *tolerance, const struct val
     return distance <= tolerance->absolute + tolerance->relative * size;
 }
 
-/* The entry of a variable, made when its first difference is met. */
-static struct compare_difference *entry_of(struct comparison *comparison, const struct variable *v,
-                                           struct compare_difference **difference)
-{
-    if (!*difference && (*difference = add_difference(comparison, v->name, "values"))) {
-        (*difference)->cases = v->width > 0;
-        (*difference)->several = v->width > 1;
-        (*difference)->of = v->width ? v->elements / v->width : v->elements;
-    }
-    return *difference;
-}
-
 /* Compares elements [first, first + n) that have been read. *last is the row noted last. */
-static bool compare_block(struct comparison *comparison, const struct variable *v, size_t first,
+static bool compare_block(struct comparison *comparison, const struct compared *v, size_t first,
                           const struct values values[2], struct compare_difference **difference,
                           size_t *last)
 {
@@ -228,8 +333,13 @@ static bool compare_block(struct comparison *comparison, const struct variable *
         const bool noted = *difference && (*difference)->differing > 0 && *last == row;
         if (values_same(&values[0], &values[1], k) || !counts(v, i) || (noted && !v->tolerance))
             continue;
-        if (!entry_of(comparison, v, difference))
-            return false;
+        if (!*difference) { /* the first difference */
+            if (!(*difference = add_difference(comparison, v->name, "values")))
+                return false;
+            (*difference)->cases = v->width > 0;
+            (*difference)->several = v->width > 1;
+            (*difference)->of = v->width ? v->elements / v->width : v->elements;
+        }
         if (v->tolerance) {
             const double distance = distance_of(values, k);
             if (distance > (*difference)->largest) {
@@ -247,7 +357,7 @@ static bool compare_block(struct comparison *comparison, const struct variable *
     return true;
 }
 
-static bool compare_values(struct comparison *comparison, const struct variable *v,
+static bool compare_values(struct comparison *comparison, const struct compared *v,
                            stance_message *message)
 {
     size_t last = 0;
@@ -258,7 +368,7 @@ static bool compare_values(struct comparison *comparison, const struct variable 
         const size_t n = v->elements - at < BLOCK ? v->elements - at : BLOCK;
         struct values values[2] = {{.kind = VALUE_OTHER}, {.kind = VALUE_OTHER}};
         for (int f = 0; f < 2 && good; f++) {
-            good = values_read(v->dataset[f], at, v->type[f], n, &values[f]) ||
+            good = values_read(v->object[f], at, v->type[f], n, &values[f]) ||
                    unreadable(v->r[f], v->name, message);
         }
         good = good &&
@@ -270,7 +380,7 @@ static bool compare_values(struct comparison *comparison, const struct variable 
 }
 
 /* How the elements belong to cases. `list` is what trajectories are over. */
-static void find_rows(struct variable *v, const uint64_t *list, size_t list_count)
+static void find_rows(struct compared *v, const uint64_t *list, size_t list_count)
 {
     uint64_t rows = 0;
     if (store_is_column(v->name)) {
@@ -285,7 +395,7 @@ static void find_rows(struct variable *v, const uint64_t *list, size_t list_coun
 
 /* What holds for a variable: its own tolerance, or that of all; NULL: none. */
 static const struct compare_tolerance *tolerance_of(const struct comparison *comparison,
-                                                    const struct variable *v)
+                                                    const struct compared *v)
 {
     const struct compare_tolerances *all = comparison->tolerances;
     const enum value_kind kind = value_kind_of(v->type[0]);
@@ -301,26 +411,33 @@ static const struct compare_tolerance *tolerance_of(const struct comparison *com
     return found;
 }
 
-static bool open_variable(struct variable *v, const hid_t object[2], const char **differs)
+static bool open_variable(struct compared *v, const hid_t object[2], const char **differs)
 {
     hsize_t length[2][H5S_MAX_RANK];
     int rank[2];
     for (int f = 0; f < 2; f++) {
-        v->dataset[f] = object[f];
-        v->type[f] = H5Dget_type(object[f]);
+        v->object[f] = object[f];
+        v->type[f] = hdf_type_of(object[f]);
         rank[f] = hdf_shape(object[f], length[f]);
         if (v->type[f] < 0 || rank[f] < 0)
             return false;
     }
     v->rank = rank[0];
     memcpy(v->length, length[0], sizeof v->length);
-    bool text = value_kind_of(v->type[0]) == VALUE_TEXT && value_kind_of(v->type[1]) == VALUE_TEXT;
-    if (rank[0] != rank[1] ||
-        memcmp(length[0], length[1], (size_t)rank[0] * sizeof length[0][0]) != 0)
+    v->elements = results_elements(v->r[0], rank[0], length[0]);
+    const bool attribute = H5Iget_type(object[0]) == H5I_ATTR;
+    const enum value_kind kind = value_kind_of(v->type[0]), other = value_kind_of(v->type[1]);
+    if (attribute &&
+        (kind != other || v->elements != results_elements(v->r[1], rank[1], length[1])))
+        *differs = "types";
+    else if (attribute)
+        return v->elements < BLOCK; /* they are read at once */
+    else if (rank[0] != rank[1] ||
+             memcmp(length[0], length[1], (size_t)rank[0] * sizeof length[0][0]) != 0)
         *differs = "shapes";
-    else if (value_kind_of(v->type[0]) == VALUE_OTHER)
+    else if (kind == VALUE_OTHER)
         *differs = "types that stance does not write";
-    else if (!text && H5Tequal(v->type[0], v->type[1]) <= 0)
+    else if (!(kind == VALUE_TEXT && other == VALUE_TEXT) && H5Tequal(v->type[0], v->type[1]) <= 0)
         *differs = "types";
     return true;
 }
@@ -329,13 +446,12 @@ static bool compare_variable(struct comparison *comparison, const struct results
                              const hid_t object[2], const char *name, const uint64_t *list,
                              size_t list_count, stance_message *message)
 {
-    struct variable v = {.name = name, .r = r, .type = {-1, -1}};
+    struct compared v = {.name = name, .r = r, .type = {-1, -1}};
     const char *differs = NULL;
     bool good = open_variable(&v, object, &differs) || unreadable(r[0], name, message);
     if (good && differs) {
         good = add_difference(comparison, name, differs) || no_memory(message);
     } else if (good) {
-        v.elements = results_elements(r[0], v.rank, v.length);
         good = v.elements > 0 || unreadable(r[0], name, message);
         if (good) {
             find_rows(&v, list, list_count);
@@ -349,45 +465,17 @@ static bool compare_variable(struct comparison *comparison, const struct results
 
 /* ---- attributes --------------------------------------------------------------------------- */
 
-static bool open_attribute(hid_t object, const char *name, hid_t *attribute, hid_t *type,
-                           size_t *count)
-{
-    *attribute = H5Aopen(object, name, H5P_DEFAULT);
-    *type = H5Aget_type(*attribute);
-    hid_t space = H5Aget_space(*attribute);
-    hssize_t points = H5Sget_simple_extent_npoints(space);
-    *count = points > 0 && points < BLOCK ? (size_t)points : 0;
-    hdf_close(space);
-    return *attribute >= 0 && *type >= 0 && points >= 0 && points < BLOCK;
-}
-
 static bool compare_attribute(struct comparison *comparison, const struct results *const r[2],
                               const hid_t object[2], const char *owner, const char *attribute_name,
                               stance_message *message)
 {
-    hid_t attribute[2] = {-1, -1}, type[2] = {-1, -1};
-    struct values values[2] = {{.kind = VALUE_OTHER}, {.kind = VALUE_OTHER}};
-    size_t count[2] = {0}, last = 0;
+    const hid_t attribute[2] = {H5Aopen(object[0], attribute_name, H5P_DEFAULT),
+                                H5Aopen(object[1], attribute_name, H5P_DEFAULT)};
     char name[192];
-    struct variable v = {.name = name, .r = r};
-    struct compare_difference *difference = NULL;
-    bool good = true;
-
     snprintf(name, sizeof name, "attribute %.80s%s%.80s", owner, owner[0] ? ":" : "",
              attribute_name);
-    for (int f = 0; f < 2 && good; f++) {
-        good = (open_attribute(object[f], attribute_name, &attribute[f], &type[f], &count[f]) &&
-                values_read(attribute[f], 0, type[f], count[f], &values[f])) ||
-               unreadable(r[f], name, message);
-    }
-    v.elements = count[0];
-    good = good && ((count[0] != count[1] || values[0].kind != values[1].kind
-                         ? add_difference(comparison, name, "types") != NULL
-                         : compare_block(comparison, &v, 0, values, &difference, &last)) ||
-                    no_memory(message));
-    for (int f = 0; f < 2; f++)
-        values_free(&values[f]);
-    hdf_close(type[0], type[1], attribute[0], attribute[1]);
+    const bool good = compare_variable(comparison, r, attribute, name, NULL, 0, message);
+    hdf_close(attribute[0], attribute[1]);
     return good;
 }
 
@@ -488,7 +576,8 @@ bool compare_results(struct comparison *comparison, const struct results *first,
     *comparison = (struct comparison){.tolerances = tolerances};
     bool good = results_recorded(first, &list, &list_count, message);
     for (int f = 0; f < 2 && good; f++)
-        good = list_objects(r[f], &names) || unreadable(r[f], "its variables", message);
+        good = H5Lvisit(roots[f], H5_INDEX_NAME, H5_ITER_INC, add_link, &names) >= 0 ||
+               unreadable(r[f], "its variables", message);
     good = good && (!names.failed || no_memory(message));
     names_unite(&names);
     good = good && (tolerances || compare_attributes(comparison, r, roots, "", message));

@@ -174,9 +174,15 @@ int hdf_whole(hid_t object, const char *name, int fallback)
 
 /* ---- elements ----------------------------------------------------------------------------- */
 
-int hdf_shape(hid_t dataset, hsize_t length[H5S_MAX_RANK])
+hid_t hdf_type_of(hid_t object)
 {
-    hid_t space = H5Dget_space(dataset);
+    return H5Iget_type(object) == H5I_ATTR ? H5Aget_type(object) : H5Dget_type(object);
+}
+
+int hdf_shape(hid_t object, hsize_t length[H5S_MAX_RANK])
+{
+    const bool attribute = H5Iget_type(object) == H5I_ATTR;
+    hid_t space = attribute ? H5Aget_space(object) : H5Dget_space(object);
     const int rank = space < 0 ? -1 : H5Sget_simple_extent_dims(space, length, NULL);
     hdf_close(space);
     return rank;
@@ -262,8 +268,7 @@ bool hdf_move(hid_t object, hid_t type, hsize_t at, hsize_t n, enum hdf_directio
 
 char **hdf_words(hid_t object, hsize_t at, size_t n)
 {
-    const bool attribute = H5Iget_type(object) == H5I_ATTR;
-    hid_t type = attribute ? H5Aget_type(object) : H5Dget_type(object);
+    hid_t type = hdf_type_of(object);
     const bool text = type >= 0 && H5Tget_class(type) == H5T_STRING;
     const bool variable = text && H5Tis_variable_str(type) > 0;
     const size_t size = variable ? sizeof(char *) : text ? H5Tget_size(type) : 0;

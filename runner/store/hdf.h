@@ -49,8 +49,10 @@ bool hdf_number(hid_t object, const char *name, hid_t type, void *value);
 /* A positive whole number, or where there is none the fallback. */
 int hdf_whole(hid_t object, const char *name, int fallback);
 
-/* Lengths of a dataset's dimensions; returns how many. */
-int hdf_shape(hid_t dataset, hsize_t length[H5S_MAX_RANK]);
+/* Lengths of the dimensions of a dataset or an attribute; returns how many. */
+int hdf_shape(hid_t object, hsize_t length[H5S_MAX_RANK]);
+/* Type of its elements, to be closed. */
+hid_t hdf_type_of(hid_t object);
 /* Number of elements; 0 when a damaged header claims more than the file can hold. (Variables of
  * ours are contiguous.) */
 size_t hdf_elements(hid_t dataset);

@@ -2,6 +2,7 @@
 #include "merge.h"
 
 #include "runner/base/message.h"
+#include "runner/base/words.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -31,11 +32,6 @@ static void close_part(struct opened *part)
     free(part);
 }
 
-static bool is_single(const struct scenario *s, const struct store_counts *counts)
-{
-    return counts->cases != s->cases;
-}
-
 /* NULL: one line in *message. */
 static struct opened *open_part(const struct merge_part *part, stance_message *message)
 {
@@ -48,7 +44,7 @@ static struct opened *open_part(const struct merge_part *part, stance_message *m
     }
     bool good = merge_read_part(part, &opened->scenario, message) &&
                 store_count(part->file, &counts, message);
-    if (good && is_single(&opened->scenario, &counts)) {
+    if (good && counts.cases != opened->scenario.cases) {
         good = complain(message, "%.100s: holds one case of a sweep (run --only), not the sweep",
                         part->file);
     }
@@ -259,10 +255,8 @@ static bool annotate(const struct merge *m, struct store *store, stance_message 
                                  m->designs_differ ? designs_note : ""};
     char note[800] = "";
     char *text = history(m);
-    for (size_t i = 0, used = 0; i < sizeof notes / sizeof notes[0]; i++) {
-        used += (size_t)snprintf(note + used, sizeof note - used, "%s%s",
-                                 used > 0 && notes[i][0] ? " " : "", notes[i]);
-    }
+    for (size_t i = 0; i < sizeof notes / sizeof notes[0]; i++)
+        words_add(note, sizeof note, "%s%s", note[0] && notes[i][0] ? " " : "", notes[i]);
     bool good = (text || no_memory(message)) &&
                 store_annotate(store, "merged_from", text, message) &&
                 (!note[0] || store_annotate(store, "merge_note", note, message));
@@ -271,18 +265,6 @@ static bool annotate(const struct merge *m, struct store *store, stance_message 
 }
 
 /* ---- all of it ---------------------------------------------------------------------------- */
-
-static bool fill(struct merge *m, const struct plan *plan, const char *file, bool *usage,
-                 stance_message *message)
-{
-    struct store *store = NULL;
-    if (!store_open(&store, file, plan, 1, message) || !copy_parts(m, store, usage, message) ||
-        !annotate(m, store, message)) {
-        store_abandon(store);
-        return false;
-    }
-    return store_close(store, message);
-}
 
 bool merge_write(struct merge *m, const char *file, bool *usage, stance_message *message)
 {
@@ -300,9 +282,16 @@ bool merge_write(struct merge *m, const char *file, bool *usage, stance_message 
     const char *hosts = m->part[0].origin.hosts ? m->part[0].origin.hosts : "";
     bool good = collect_designs(m, &plan, usage, message) &&
                 store_create(file, &plan, ranks, hosts, message);
-    if (good && !fill(m, &plan, file, usage, message)) {
-        unlink(file);
-        good = false;
+    if (good) {
+        struct store *store = NULL;
+        good = store_open(&store, file, &plan, 1, message) &&
+               copy_parts(m, store, usage, message) && annotate(m, store, message);
+        if (good)
+            good = store_close(store, message);
+        else
+            store_abandon(store);
+        if (!good)
+            unlink(file);
     }
     plan_free(&plan);
     return good;

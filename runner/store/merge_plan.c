@@ -3,6 +3,7 @@
 
 #include "runner/base/message.h"
 #include "runner/base/numbers.h"
+#include "runner/base/words.h"
 #include "runner/scenario/field.h"
 #include "runner/scenario/tree.h"
 
@@ -97,10 +98,8 @@ static bool misfit(const struct merge *m, const struct differences *found, size_
                    stance_message *message)
 {
     char list[84] = "";
-    for (size_t i = 0, used = 0; i < found->count && used + 41 < sizeof list; i++) {
-        used += (size_t)snprintf(list + used, sizeof list - used, "%s%.38s", i ? ", " : "",
-                                 found->path[i]);
-    }
+    for (size_t i = 0; i < found->count && strlen(list) + 41 < sizeof list; i++)
+        words_add(list, sizeof list, "%s%.38s", i ? ", " : "", found->path[i]);
     return complain(
         message,
         "%.32s: differs from %.32s in %.70s: parts may differ along one axis or in one value "
@@ -202,17 +201,6 @@ static bool add_point(struct points *points, const char *text, double number, si
     return point->text != NULL;
 }
 
-/* Text of a point of an axis: "0.1", or "[0.1, 2]" for several paths. */
-static void axis_text(const struct scenario_axis *axis, size_t i, char *text, size_t size)
-{
-    size_t used = 0;
-    for (int k = 0; k < axis->paths && used < size; k++) {
-        char value[128];
-        scenario_axis_text(axis, i, k, value, sizeof value);
-        used += (size_t)snprintf(text + used, size - used, "%s%s", k ? ", " : "", value);
-    }
-}
-
 static bool same_paths(const struct scenario_axis *a, const char paths[][96], int count)
 {
     bool same = a->paths == count;
@@ -245,7 +233,12 @@ static bool collect_axis(struct merge *m, struct points *points, stance_message 
         m->part[p].points = axis->count;
         for (size_t i = 0; good && i < axis->count; i++) {
             const bool number = !axis->words && axis->paths == 1;
-            axis_text(axis, i, text, sizeof text);
+            text[0] = '\0'; /* as YAML: "0.1", or "0.1, 2" for several paths */
+            for (int k = 0; k < axis->paths; k++) {
+                char value[128];
+                scenario_axis_text(axis, i, k, value, sizeof value);
+                words_add(text, sizeof text, "%s%s", k ? ", " : "", value);
+            }
             good = add_point(points, text, number ? scenario_axis_value(axis, i, 0) : NAN, p, i) ||
                    no_memory(message);
         }
@@ -404,18 +397,6 @@ struct recorded {
     size_t count;
 };
 
-static bool add_recorded(struct recorded *list, const struct merge *m, size_t p,
-                         const struct scenario *s)
-{
-    uint64_t *larger = realloc(list->row, (list->count + s->record_count + 1) * sizeof *larger);
-    if (!larger)
-        return false;
-    list->row = larger;
-    for (size_t i = 0; i < s->record_count; i++)
-        list->row[list->count++] = merge_row(m, &m->part[p], s->record_list[i]);
-    return true;
-}
-
 /* The cases that any part lists; those of a part that records all of them need no list, but then
  * all parts have to. */
 static bool collect_recorded(const struct merge *m, bool all, struct recorded *list,
@@ -429,7 +410,12 @@ static bool collect_recorded(const struct merge *m, bool all, struct recorded *l
             good = complain(message, "%.60s: record.cases is `all` in some of the files only",
                             m->part[p].file);
         } else if (good) {
-            good = add_recorded(list, m, p, s) || no_memory(message);
+            uint64_t *larger =
+                realloc(list->row, (list->count + s->record_count + 1) * sizeof *larger);
+            list->row = larger ? larger : list->row;
+            for (size_t i = 0; larger && i < s->record_count; i++)
+                larger[list->count++] = merge_row(m, &m->part[p], s->record_list[i]);
+            good = larger || no_memory(message);
         }
         scenario_free(s);
     }
@@ -544,19 +530,6 @@ bool merge_read_part(const struct merge_part *part, struct scenario *scenario,
     return good;
 }
 
-/* Of the values of keys that cases of several scenarios have, a file tells those of the last one.
- */
-static bool have_one_scenario(const struct merge *m, stance_message *message)
-{
-    for (size_t p = 0; p < m->parts; p++) {
-        if (m->part[p].origin.ancestors > 0) {
-            return complain(message, "%.120s: was made from several scenarios: it cannot be merged",
-                            m->part[p].file);
-        }
-    }
-    return true;
-}
-
 static bool open_parts(struct merge *m, const char *const *files, size_t count,
                        stance_message *message)
 {
@@ -598,8 +571,13 @@ bool merge_plan(struct merge *m, const char *const *files, size_t count, bool *u
         good = read_tree(&trees[p], &m->part[p], message);
     if (good) {
         *usage = true;
-        good = have_one_scenario(m, message) && classify(m, trees, message) &&
-               make_scenario(m, trees, message);
+        /* Of the values of keys that cases of several scenarios have, a file tells those of the
+         * last one. */
+        for (size_t p = 0; good && p < count; p++)
+            good = m->part[p].origin.ancestors == 0 ||
+                   complain(message, "%.120s: was made from several scenarios: it cannot be merged",
+                            m->part[p].file);
+        good = good && classify(m, trees, message) && make_scenario(m, trees, message);
     }
     for (size_t p = 0; good && p < count; p++)
         good = store_same_points(m->part[p].file, &m->part[p].origin, &m->scenario, message);

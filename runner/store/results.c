@@ -63,37 +63,6 @@ void results_copy_attribute(hid_t object, const char *name, char *buffer, size_t
 
 /* ---- datasets ----------------------------------------------------------------------------- */
 
-/* Opens a dataset and its shape; -1 when it does not exist or is none. */
-hid_t results_dataset(const struct results *r, const char *path, int *rank,
-                      hsize_t length[H5S_MAX_RANK])
-{
-    if (!hdf_exists(r->id, path))
-        return -1;
-    hid_t dataset = H5Dopen2(r->id, path, H5P_DEFAULT);
-    *rank = hdf_shape(dataset, length);
-    if (*rank < 0) {
-        hdf_close(dataset);
-        dataset = -1;
-    }
-    return dataset;
-}
-
-H5T_class_t results_class(hid_t dataset)
-{
-    hid_t type = H5Dget_type(dataset);
-    H5T_class_t class = type < 0 ? H5T_NO_CLASS : H5Tget_class(type);
-    if (class != H5T_STRING && H5Tget_size(type) > sizeof(double))
-        class = H5T_NO_CLASS;
-    hdf_close(type);
-    return class;
-}
-
-bool results_is_number(hid_t dataset)
-{
-    H5T_class_t class = results_class(dataset);
-    return class == H5T_INTEGER || class == H5T_FLOAT;
-}
-
 /* Product of lengths, 0 when it overflows. A damaged header must not make us ask for terabytes:
  * no array of ours has more elements than its file has bytes. */
 size_t results_elements(const struct results *r, int rank, const hsize_t *length)
@@ -109,26 +78,35 @@ size_t results_elements(const struct results *r, int rank, const hsize_t *length
     return (size_t)product;
 }
 
-static bool has_case_shape(const struct results *r, int rank, const hsize_t *length)
+struct results_variable results_variable(const struct results *r, const char *path)
 {
-    bool same = rank == r->axes;
-    for (int d = 0; same && d < rank; d++)
-        same = length[d] == r->axis[d].count;
-    return same;
+    struct results_variable v = {.id = -1};
+    if (!hdf_exists(r->id, path))
+        return v;
+    v.id = H5Dopen2(r->id, path, H5P_DEFAULT);
+    v.rank = hdf_shape(v.id, v.length);
+    if (v.rank < 0) {
+        hdf_close(v.id);
+        v.id = -1;
+        return v;
+    }
+    const hid_t type = H5Dget_type(v.id);
+    v.class = type < 0 ? H5T_NO_CLASS : H5Tget_class(type);
+    if (v.class != H5T_STRING && H5Tget_size(type) > sizeof(double))
+        v.class = H5T_NO_CLASS;
+    hdf_close(type);
+    v.number = v.class == H5T_INTEGER || v.class == H5T_FLOAT;
+    v.elements = results_elements(r, v.rank, v.length);
+    return v;
 }
 
 size_t results_numbers(const struct results *r, const char *path, double *values, size_t room)
 {
-    hsize_t length[H5S_MAX_RANK];
-    int rank;
-    hid_t dataset = results_dataset(r, path, &rank, length);
-    if (dataset < 0)
-        return 0;
-    size_t n = results_elements(r, rank, length);
-    if (n > room || !results_is_number(dataset) || (n && !hdf_read(dataset, KIND_double, values)))
-        n = 0;
-    hdf_close(dataset);
-    return n;
+    const struct results_variable v = results_variable(r, path);
+    const bool good = v.id >= 0 && v.elements > 0 && v.elements <= room && v.number &&
+                      hdf_read(v.id, KIND_double, values);
+    hdf_close(v.id);
+    return good ? v.elements : 0;
 }
 
 /* Words of a dataset, fit to be shown. */
@@ -143,14 +121,10 @@ static char **read_words(hid_t dataset, size_t n)
 size_t results_words(const struct results *r, const char *path, char word[][SCENARIO_NAME],
                      size_t room)
 {
-    hsize_t length[H5S_MAX_RANK];
-    int rank;
-    hid_t dataset = results_dataset(r, path, &rank, length);
-    if (dataset < 0)
-        return 0;
-    size_t n = rank == 1 ? results_elements(r, rank, length) : 0;
-    char **words = n && n <= room ? read_words(dataset, n) : NULL;
-    hdf_close(dataset);
+    const struct results_variable v = results_variable(r, path);
+    const size_t n = v.rank == 1 ? v.elements : 0;
+    char **words = n && n <= room ? read_words(v.id, n) : NULL;
+    hdf_close(v.id);
     for (size_t i = 0; words && i < n; i++)
         snprintf(word[i], SCENARIO_NAME, "%s", words[i]);
     hdf_free_words(words, n);
@@ -179,19 +153,19 @@ static bool list_values(struct results_axis *axis)
     return good;
 }
 
-static bool read_axis_values(const struct results *r, hid_t dataset, struct results_axis *axis,
-                             stance_message *message)
+static bool read_axis_values(const struct results *r, const struct results_variable *v,
+                             struct results_axis *axis, stance_message *message)
 {
     axis->value = malloc(axis->count * sizeof *axis->value);
     if (!axis->value)
         return results_no_memory(r, message);
-    if (results_class(dataset) == H5T_STRING) {
-        axis->word = read_words(dataset, axis->count);
+    if (v->class == H5T_STRING) {
+        axis->word = read_words(v->id, axis->count);
         for (size_t i = 0; i < axis->count; i++)
             axis->value[i] = (double)i;
         return axis->word || results_failed(r, axis->name, message);
     }
-    if (!results_is_number(dataset) || !hdf_read(dataset, KIND_double, axis->value))
+    if (!v->number || !hdf_read(v->id, KIND_double, axis->value))
         return results_failed(r, axis->name, message);
     bool finite = true;
     for (size_t i = 0; i < axis->count; i++) {
@@ -215,19 +189,16 @@ void results_describe(hid_t dataset, const char *name, struct results_axis *axis
 static bool read_axis(struct results *r, const char *name, stance_message *message)
 {
     struct results_axis *axis = &r->axis[r->axes];
-    hsize_t length[H5S_MAX_RANK];
-    int rank;
-
-    hid_t dataset = results_dataset(r, name, &rank, length);
-    if (dataset < 0)
+    const struct results_variable v = results_variable(r, name);
+    if (v.id < 0)
         return results_failed(r, name, message);
     r->axes++;
-    axis->count = rank == 1 ? results_elements(r, rank, length) : 0;
+    axis->count = v.rank == 1 ? v.elements : 0;
     axis->offset = strncmp(name, "initial.offset.", strlen("initial.offset.")) == 0;
-    results_describe(dataset, name, axis);
-    bool good = axis->count > 0 ? read_axis_values(r, dataset, axis, message)
+    results_describe(v.id, name, axis);
+    bool good = axis->count > 0 ? read_axis_values(r, &v, axis, message)
                                 : results_damaged(r, "an axis has no values", message);
-    hdf_close(dataset);
+    hdf_close(v.id);
     return good;
 }
 
@@ -266,24 +237,22 @@ void results_no_counts(double *values, size_t n)
 static bool read_cases(const struct results *r, const char *name, enum store_kind kind,
                        void **values, stance_message *message)
 {
-    hsize_t length[H5S_MAX_RANK];
-    int rank;
     *values = NULL;
     if (!hdf_exists((hid_t)r->id, name))
         return true;
-    hid_t dataset = results_dataset(r, name, &rank, length);
-    if (dataset < 0)
+    const struct results_variable v = results_variable(r, name);
+    if (v.id < 0)
         return results_failed(r, name, message);
-    const H5T_class_t class = results_class(dataset);
-    bool good = false;
-    if (!has_case_shape(r, rank, length) ||
-        (class != H5T_INTEGER && (class != H5T_FLOAT || kind != KIND_double)))
+    bool good = false, shaped = v.rank == r->axes;
+    for (int d = 0; shaped && d < v.rank; d++)
+        shaped = v.length[d] == r->axis[d].count;
+    if (!shaped || (v.class != H5T_INTEGER && (v.class != H5T_FLOAT || kind != KIND_double)))
         results_damaged(r, "a variable is not as its axes say", message);
     else if (!(*values = malloc(r->cases * (kind == KIND_double ? sizeof(double) : 1))))
         results_no_memory(r, message);
     else
-        good = hdf_read(dataset, kind, *values) || results_failed(r, name, message);
-    hdf_close(dataset);
+        good = hdf_read(v.id, kind, *values) || results_failed(r, name, message);
+    hdf_close(v.id);
     if (!good) {
         free(*values);
         *values = NULL;
@@ -379,6 +348,22 @@ bool results_answer(const struct results *r, const char *name, double **values,
     return good;
 }
 
+bool ancestry_read(const struct results *r, struct ancestry *ancestry, stance_message *message)
+{
+    double *number = NULL;
+    *ancestry = (struct ancestry){0};
+    const size_t before = results_words(r, "history/date", ancestry->date, STORE_MOST_ANCESTORS);
+    ancestry->scenarios = before + 1;
+    snprintf(ancestry->date[before], sizeof ancestry->date[before], "%.31s", r->date);
+    if (before > 0 && !results_answer(r, "scenario_number", &number, message))
+        return false;
+    for (uint64_t i = 0; number && i < r->cases; i++)
+        if (number[i] >= 0 && number[i] <= (double)before) /* NAN: not done */
+            ancestry->done[(size_t)number[i]]++;
+    free(number);
+    return true;
+}
+
 bool results_timing(const struct results *r, double *longest, double *total, double *cases,
                     size_t *ranks)
 {
@@ -423,19 +408,16 @@ static bool read_provenance(struct results *r, stance_message *message)
     return true;
 }
 
-/* What the file says of itself is as its checksums say, where it has any. */
-static bool verify(const struct results *r, stance_message *message)
-{
-    char *hash = hdf_text((hid_t)r->id, "scenario_sha256");
-    bool good = file_checksums_verify(r->id, r->file, r->scenario, hash, false, message);
-    free(hash);
-    return good;
-}
-
 static bool read_all(struct results *r, stance_message *message)
 {
     r->id = hdf_open_to_read(r->file, message);
-    return r->id >= 0 && read_provenance(r, message) && verify(r, message) && read_axes(r, message);
+    if (r->id < 0 || !read_provenance(r, message))
+        return false;
+    char *hash = hdf_text((hid_t)r->id, "scenario_sha256");
+    /* What the file says of itself is as its checksums say, where it has any. */
+    const bool good = file_checksums_verify(r->id, r->file, r->scenario, hash, false, message);
+    free(hash);
+    return good && read_axes(r, message);
 }
 
 bool results_open(struct results *r, const char *file, stance_message *message)

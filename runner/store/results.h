@@ -89,6 +89,17 @@ void results_warn(const struct results *r);
 bool results_answer(const struct results *r, const char *name, double **values,
                     stance_message *message);
 
+/* The scenarios that the file was made from, where a run went on with another one than it was begun
+ * with (runner/store/changed_scenario.h). */
+struct ancestry {
+    size_t scenarios;                                   /* 1: as usual */
+    char date[STORE_MOST_ANCESTORS + 1][SCENARIO_NAME]; /* of each: when it was first run */
+    uint64_t done[STORE_MOST_ANCESTORS + 1]; /* cases done with it; where scenarios > 1 */
+};
+
+/* false: the file's numbers cannot be read. */
+bool ancestry_read(const struct results *r, struct ancestry *ancestry, stance_message *message);
+
 /* A variable of at most `room` numbers, whatever its shape: `final_state` of a file of one case,
  * `timing/wall_time`, a design that no axis changes. Returns how many were read, 0 when it does not
  * exist, is larger or cannot be read. */

@@ -8,9 +8,16 @@
 #include "hdf.h"
 #include "results.h"
 
-/* Opens a dataset and its shape; -1 when it does not exist or is none. */
-hid_t results_dataset(const struct results *r, const char *path, int *rank,
-                      hsize_t length[H5S_MAX_RANK]);
+/* A variable, open: -1 when it does not exist or is none. */
+struct results_variable {
+    hid_t id;
+    int rank;
+    hsize_t length[H5S_MAX_RANK];
+    size_t elements;   /* 0 where it claims more than its file can hold */
+    H5T_class_t class; /* H5T_NO_CLASS: numbers that are too wide */
+    bool number;
+};
+struct results_variable results_variable(const struct results *r, const char *path);
 /* Product of lengths, 0 when it overflows. A damaged header must not make us ask for terabytes:
  * no array of ours has more elements than its file has bytes. */
 size_t results_elements(const struct results *r, int rank, const hsize_t *length);
@@ -19,8 +26,6 @@ bool results_damaged(const struct results *r, const char *what, stance_message *
 bool results_no_memory(const struct results *r, stance_message *message);
 /* Name, unit and text of what an axis or a sampled variable holds. */
 void results_describe(hid_t dataset, const char *name, struct results_axis *axis);
-bool results_is_number(hid_t dataset);
-H5T_class_t results_class(hid_t dataset);
 /* Counts that there are none of become NAN. */
 void results_no_counts(double *values, size_t n);
 void results_copy_attribute(hid_t object, const char *name, char *buffer, size_t size);

@@ -9,24 +9,22 @@
 bool results_column_open(const struct results *r, const char *name, struct results_column *column,
                          stance_message *message)
 {
-    hsize_t length[H5S_MAX_RANK] = {0};
     *column = (struct results_column){.id = -1};
     snprintf(column->name, sizeof column->name, "%s", name);
-    int rank;
-    const hid_t dataset = results_dataset(r, name, &rank, length);
-    if (dataset < 0)
+    const struct results_variable v = results_variable(r, name);
+    if (v.id < 0)
         return !hdf_exists((hid_t)r->id, name) || results_failed(r, name, message);
-    bool good = (rank == r->axes || rank == r->axes + 1) && results_is_number(dataset);
+    bool good = (v.rank == r->axes || v.rank == r->axes + 1) && v.number;
     for (int a = 0; good && a < r->axes; a++)
-        good = length[a] == r->axis[a].count;
-    column->width = good && rank > r->axes ? (size_t)length[rank - 1] : 1;
+        good = v.length[a] == r->axis[a].count;
+    column->width = good && v.rank > r->axes ? (size_t)v.length[v.rank - 1] : 1;
     good = good && column->width <= SCENARIO_MAX_STATES;
-    column->id = dataset;
+    column->id = v.id;
     if (!good) {
         results_column_close(column);
         return results_failed(r, name, message);
     }
-    column->words = hdf_text(dataset, "flag_meanings");
+    column->words = hdf_text(v.id, "flag_meanings");
     if (column->words)
         results_clean(column->words);
     return true;

@@ -28,13 +28,13 @@ static bool read_words(const struct results *r, hid_t dataset, struct results_va
     return v->word || results_no_memory(r, message);
 }
 
-static bool read_values(const struct results *r, hid_t dataset, struct results_varied *v,
-                        stance_message *message)
+static bool read_values(const struct results *r, const struct results_variable *from,
+                        struct results_varied *v, stance_message *message)
 {
     v->of.value = malloc(v->of.count * sizeof *v->of.value);
     if (!v->of.value)
         return results_no_memory(r, message);
-    if (!results_is_number(dataset) || !hdf_read(dataset, KIND_double, v->of.value))
+    if (!from->number || !hdf_read(from->id, KIND_double, v->of.value))
         return results_failed(r, v->of.name, message);
     for (size_t i = 0; i < v->of.count; i++) { /* an absent limit is infinite */
         const double value = v->of.value[i];
@@ -47,34 +47,30 @@ static bool read_values(const struct results *r, hid_t dataset, struct results_v
 static bool read_varied(struct results *r, const char *path, int factor, stance_message *message)
 {
     struct results_varied *v = &r->vary[r->varied];
-    hsize_t length[H5S_MAX_RANK];
-    int rank;
-
-    hid_t dataset = results_dataset(r, path, &rank, length);
-    if (dataset < 0)
+    const struct results_variable from = results_variable(r, path);
+    if (from.id < 0)
         return results_failed(r, path, message);
     r->varied++;
     v->factor = factor;
     v->of.count = r->axis[r->sample].count;
-    results_describe(dataset, path, &v->of);
-    bool good = rank == 1 && length[0] == v->of.count
-                    ? read_words(r, dataset, v, message) && read_values(r, dataset, v, message)
+    results_describe(from.id, path, &v->of);
+    bool good = from.rank == 1 && from.length[0] == v->of.count
+                    ? read_words(r, from.id, v, message) && read_values(r, &from, v, message)
                     : results_damaged(r, "a variable is not as its axes say", message);
-    hdf_close(dataset);
+    hdf_close(from.id);
     return good;
 }
 
 bool results_read_sample(struct results *r, stance_message *message)
 {
     enum { MOST = 256 };
-    hsize_t length[H5S_MAX_RANK];
-    int rank, factor = 0;
+    int factor = 0;
     const int last = r->axes - 1;
 
     r->block = 1;
     if (last < 0 || strcmp(r->axis[last].name, "sample") != 0)
         return true;
-    hid_t dataset = results_dataset(r, "sample", &rank, length);
+    const hid_t dataset = results_variable(r, "sample").id;
     if (dataset < 0)
         return results_failed(r, "sample", message);
     char *paths = hdf_text(dataset, "paths"), *rest = paths;
@@ -113,12 +109,8 @@ bool results_read_sample(struct results *r, stance_message *message)
 static bool read_single(const struct results *r, const struct scenario_axis *axis, int k,
                         double *value)
 {
-    hsize_t length[H5S_MAX_RANK];
-    int rank, words = 1;
-    hid_t dataset = results_dataset(r, axis->path[k], &rank, length);
-    const bool good = dataset >= 0 && rank == 1 && length[0] == 1 && results_is_number(dataset) &&
-                      hdf_read(dataset, KIND_double, value);
-    hdf_close(dataset);
+    int words = 1;
+    const bool good = results_numbers(r, axis->path[k], value, 1) == 1;
     for (const char *c = axis->meaning[k].words; c && *c; c++)
         words += *c == ' ';
     return good && !isnan(*value) && (!axis->meaning[k].words || (*value >= 0 && *value < words));

@@ -98,20 +98,19 @@ void results_varied_text(const struct results_varied *v, size_t i, bool unit, ch
 
 void results_case_text(const struct results *r, uint64_t index, char *buffer, size_t size)
 {
-    size_t point[SCENARIO_MAX_AXES], used = 0;
+    size_t point[SCENARIO_MAX_AXES];
     char text[128];
 
     buffer[0] = '\0';
     results_point(r, index, point);
-    for (int a = 0; !r->single && a < r->axes && used < size; a++) {
+    for (int a = 0; !r->single && a < r->axes; a++) {
         results_value_text(&r->axis[a], point[a], true, text, sizeof text);
-        used += (size_t)snprintf(buffer + used, size - used, "%s%s = %s", a ? ", " : "",
-                                 r->axis[a].name, text);
+        words_add(buffer, size, "%s%s = %s", a ? ", " : "", r->axis[a].name, text);
     }
-    for (int k = 0; k < r->varied && used < size; k++) {
+    for (int k = 0; k < r->varied; k++) {
         results_varied_text(&r->vary[k], point[r->sample], true, text, sizeof text);
-        used += (size_t)snprintf(buffer + used, size - used, "%s%s = %s%s", k ? ", " : " (",
-                                 r->vary[k].of.name, text, k + 1 == r->varied ? ")" : "");
+        words_add(buffer, size, "%s%s = %s%s", k ? ", " : " (", r->vary[k].of.name, text,
+                  k + 1 == r->varied ? ")" : "");
     }
 }
 

@@ -10,20 +10,15 @@
 bool results_recorded(const struct results *r, uint64_t **list, size_t *count,
                       stance_message *message)
 {
-    hsize_t length[H5S_MAX_RANK];
-    int rank;
     *list = NULL;
     *count = 0;
     if (!hdf_exists((hid_t)r->id, "trajectory/case"))
         return true;
-    hid_t dataset = results_dataset(r, "trajectory/case", &rank, length);
-    if (dataset < 0)
-        return results_failed(r, "trajectory/case", message);
-    size_t n = rank == 1 ? results_elements(r, rank, length) : 0;
+    const struct results_variable v = results_variable(r, "trajectory/case");
+    const size_t n = v.rank == 1 ? v.elements : 0;
     *list = n ? malloc(n * sizeof **list) : NULL;
-    bool good =
-        *list && results_class(dataset) == H5T_INTEGER && hdf_read(dataset, KIND_uint64_t, *list);
-    hdf_close(dataset);
+    bool good = *list && v.class == H5T_INTEGER && hdf_read(v.id, KIND_uint64_t, *list);
+    hdf_close(v.id);
     if (!good) {
         free(*list);
         *list = NULL;
@@ -38,52 +33,32 @@ bool results_recorded(const struct results *r, uint64_t **list, size_t *count,
 static bool read_track(const struct results *r, const char *path, size_t place, size_t rows,
                        size_t width, double **values, stance_message *message)
 {
-    hsize_t length[H5S_MAX_RANK];
-    int rank;
     if (width == 0 || !hdf_exists((hid_t)r->id, path))
         return true;
-    hid_t dataset = results_dataset(r, path, &rank, length);
-    if (dataset < 0)
+    const struct results_variable v = results_variable(r, path);
+    if (v.id < 0)
         return results_failed(r, path, message);
-    size_t n =
-        rank >= 3 && length[1] == rows && place < length[0] ? results_elements(r, rank, length) : 0;
-    const bool fits =
-        rows > 0 && n > 0 && n / length[0] == rows * width && results_is_number(dataset);
+    const bool fits = rows > 0 && v.rank >= 3 && v.length[1] == rows && place < v.length[0] &&
+                      v.elements > 0 && v.elements / v.length[0] == rows * width && v.number;
     *values = fits ? malloc(rows * width * sizeof **values) : NULL;
-    const bool good = *values && hdf_move(dataset, hdf_type(KIND_double), place * rows * width,
+    const bool good = *values && hdf_move(v.id, hdf_type(KIND_double), place * rows * width,
                                           rows * width, HDF_READ, *values);
-    hdf_close(dataset);
+    hdf_close(v.id);
     return !fits ? results_damaged(r, "a trajectory is not as its dimensions say", message)
                  : good || results_failed(r, path, message);
-}
-
-static size_t count_instants(const struct results *r)
-{
-    hsize_t length[H5S_MAX_RANK];
-    int rank;
-    hid_t dataset = results_dataset(r, "trajectory/time", &rank, length);
-    if (dataset < 0)
-        return 0;
-    hdf_close(dataset);
-    return rank == 1 ? results_elements(r, rank, length) : 0;
-}
-
-static bool is_finite(const double *values, size_t n)
-{
-    for (size_t i = 0; values && i < n; i++)
-        if (!isfinite(values[i]))
-            return false;
-    return true;
 }
 
 /* Rows before the first that is not a number: a case ends there. */
 static size_t count_rows(const struct results_trajectory *t, size_t rows)
 {
-    size_t k = 0;
-    while (k < rows && isfinite(t->time[k]) &&
-           is_finite(t->position + k * t->coordinates, t->coordinates))
-        k++;
-    return k;
+    for (size_t k = 0; k < rows; k++) {
+        bool finite = isfinite(t->time[k]);
+        for (size_t i = 0; i < t->coordinates; i++)
+            finite = finite && isfinite(t->position[k * t->coordinates + i]);
+        if (!finite)
+            return k;
+    }
+    return rows;
 }
 
 /* A trajectory of `rows` instants is as its checksum says, where it has one. */
@@ -111,7 +86,9 @@ bool results_trajectory(const struct results *r, size_t place, uint64_t index,
                         struct results_trajectory *t, stance_message *message)
 {
     *t = (struct results_trajectory){.index = index};
-    size_t rows = count_instants(r);
+    const struct results_variable instants = results_variable(r, "trajectory/time");
+    const size_t rows = instants.rank == 1 ? instants.elements : 0;
+    hdf_close(instants.id);
     t->coordinates =
         results_words(r, "trajectory/coordinate", t->coordinate, STANCE_MAX_COORDINATES);
     t->actuators = results_words(r, "trajectory/actuator", t->actuator, STANCE_MAX_ACTUATORS);

@@ -53,9 +53,43 @@ static const struct {
 #undef DIMENSION
 };
 
-static char *const *words_of(const struct search_file *f, int d)
+static char ***words_of(const struct search_file *f, int d)
 {
-    return *(char **const *)(const void *)((const char *)f + dimensions[d].words);
+    return (char ***)(void *)((char *)(uintptr_t)f + dimensions[d].words);
+}
+
+/* Attributes: texts, and numbers with the type of the file and of memory. */
+static const struct {
+    const char *name;
+    size_t offset;
+    enum store_kind kind;
+    bool text;
+} attributes[] = {
+#define TEXT(name, member)                                                                         \
+    {                                                                                              \
+        name, offsetof(struct search_file, member), KIND_uint8_t, true                             \
+    }
+#define NUMBER(name, type, member)                                                                 \
+    {                                                                                              \
+        name, offsetof(struct search_file, member), KIND_##type, false                             \
+    }
+    TEXT("git_revision", revision),
+    TEXT("date", date),
+    TEXT("scenario", scenario),
+    TEXT("first_scenario", first_scenario),
+    TEXT("note", note),
+    NUMBER("chosen", int64_t, chosen),
+    NUMBER("most_generations", int64_t, most_generations),
+    NUMBER("most_cases", double, most_cases),
+    NUMBER("finished", int32_t, finished),
+    NUMBER("linear_limit", double, linear_limit),
+    NUMBER("wall_time", double, seconds),
+};
+enum { ATTRIBUTES = sizeof attributes / sizeof *attributes };
+
+static void *attribute_of(const struct search_file *f, int i)
+{
+    return (char *)(uintptr_t)f + attributes[i].offset;
 }
 
 /* ---- room ----------------------------------------------------------------------------------- */
@@ -80,32 +114,37 @@ bool search_file_room(struct search_file *f)
         *place_of(f, &table[i]) = calloc(elements_of(f, &table[i]) + 1, table[i].size);
         good = *place_of(f, &table[i]) != NULL;
     }
+    for (int d = 0; d < SEARCH_DIMENSION_COUNT && good; d++)
+        if (dimensions[d].words && !*words_of(f, d))
+            good = (*words_of(f, d) = calloc(f->length[d] + 1, sizeof(char *))) != NULL;
     return good;
+}
+
+void search_file_copy(struct search_file *f, const struct search_file *from,
+                      enum search_dimension first)
+{
+    for (int i = 0; i < ENTRIES; i++)
+        if (table[i].over[0] == (int)first)
+            memcpy(*place_of(f, &table[i]),
+                   *place_of((struct search_file *)(uintptr_t)from, &table[i]),
+                   elements_of(from, &table[i]) * table[i].size);
 }
 
 void search_file_free(struct search_file *f)
 {
     for (int d = 0; d < SEARCH_DIMENSION_COUNT; d++)
         if (dimensions[d].words && d != SEARCH_OTHER)
-            hdf_free_words((char **)words_of(f, d), f->length[d]);
+            hdf_free_words(*words_of(f, d), f->length[d]);
     for (int i = 0; i < ENTRIES; i++)
         free(*place_of(f, &table[i]));
     free(f->title);
-    free(f->scenario);
-    free(f->first_scenario);
-    free(f->revision);
-    free(f->date);
-    free(f->note);
+    for (int i = 0; i < ATTRIBUTES; i++)
+        if (attributes[i].text)
+            free(*(char **)attribute_of(f, i));
     *f = (struct search_file){0};
 }
 
 /* ---- writing -------------------------------------------------------------------------------- */
-
-static double own_number(const void *context, uint64_t i)
-{
-    (void)context;
-    return (double)i;
-}
 
 static bool put_dimension(hid_t file, const struct search_file *f, int d, int *count,
                           struct dimension *dimension)
@@ -117,9 +156,9 @@ static bool put_dimension(hid_t file, const struct search_file *f, int d, int *c
         [SEARCH_START] = "number of the fresh start"};
     const struct variable variable = {dimensions[d].name, KIND_double, "1", text[d], .flags = NULL};
     if (dimensions[d].words)
-        return make_words(count, file, dimensions[d].name, (const char *const *)words_of(f, d),
+        return make_words(count, file, dimensions[d].name, (const char *const *)*words_of(f, d),
                           f->length[d], dimension);
-    return make_numbers(count, file, &variable, f->length[d], own_number, NULL, dimension);
+    return make_numbers(count, file, &variable, f->length[d], NULL, NULL, dimension);
 }
 
 static bool put_variables(hid_t file, const struct search_file *f)
@@ -140,27 +179,22 @@ static bool put_variables(hid_t file, const struct search_file *f)
             rank++;
         }
         const struct variable variable = {e->name, e->kind, e->unit, e->text, .flags = NULL};
-        const hid_t dataset = make_variable(file, &variable, list, rank);
-        good = dataset >= 0 && hdf_write(dataset, e->kind, *place_of((struct search_file *)f, e));
-        hdf_close(dataset);
+        good = put_variable(file, &variable, list, rank, *place_of((struct search_file *)f, e));
     }
     return good;
 }
 
 static bool put_attributes(hid_t file, const struct search_file *f)
 {
-    return put_text(file, "Conventions", "CF-1.8") && put_text(file, "title", f->title) &&
-           put_int(file, "search_version", VERSION) &&
-           put_text(file, "git_revision", f->revision) && put_text(file, "date", f->date) &&
-           put_text(file, "scenario", f->scenario) &&
-           put_text(file, "first_scenario", f->first_scenario) &&
-           put_text(file, "note", f->note ? f->note : "") &&
-           put_number(file, "chosen", KIND_int64_t, &f->chosen) &&
-           put_number(file, "most_generations", KIND_int64_t, &f->most_generations) &&
-           put_number(file, "most_cases", KIND_double, &f->most_cases) &&
-           put_int(file, "finished", f->finished) &&
-           put_number(file, "linear_limit", KIND_double, &f->linear_limit) &&
-           put_number(file, "wall_time", KIND_double, &f->seconds);
+    bool good = put_text(file, "Conventions", "CF-1.8") && put_text(file, "title", f->title) &&
+                put_int(file, "search_version", VERSION);
+    for (int i = 0; good && i < ATTRIBUTES; i++) {
+        void *const value = attribute_of(f, i);
+        char *const text = attributes[i].text ? *(char **)value : NULL;
+        good = attributes[i].text ? put_text(file, attributes[i].name, text ? text : "")
+                                  : put_number(file, attributes[i].name, attributes[i].kind, value);
+    }
+    return good;
 }
 
 /* So that the name never stands for less than what has come to the disk. */
@@ -215,19 +249,10 @@ static bool read_length(hid_t file, struct search_file *f, int d)
         dataset >= 0 && hdf_shape(dataset, length) == 1 && hdf_elements(dataset) == length[0];
     f->length[d] = good ? (size_t)length[0] : 0;
     if (good && dimensions[d].words && d != SEARCH_OTHER)
-        *(char ***)(void *)((char *)f + dimensions[d].words) = hdf_words(dataset, 0, f->length[d]);
-    const bool has_words = !dimensions[d].words || words_of(f, d);
+        *words_of(f, d) = hdf_words(dataset, 0, f->length[d]);
+    const bool has_words = !dimensions[d].words || *words_of(f, d);
     hdf_close(dataset);
     return good && has_words;
-}
-
-/* What an older file lacks. */
-static bool leave_out(struct search_file *f, const struct entry *e)
-{
-    double *const number = *place_of(f, e);
-    for (size_t i = 0; e->kind == KIND_double && i < elements_of(f, e); i++)
-        number[i] = NAN;
-    return true;
 }
 
 static bool read_variable(hid_t file, struct search_file *f, const struct entry *e)
@@ -235,8 +260,12 @@ static bool read_variable(hid_t file, struct search_file *f, const struct entry 
     hsize_t length[H5S_MAX_RANK];
     if (elements_of(f, e) == 0)
         return true;
-    if (e >= table + ENTRIES_AT_FIRST && !hdf_exists(file, e->name))
-        return leave_out(f, e);
+    if (e >= table + ENTRIES_AT_FIRST && !hdf_exists(file, e->name)) { /* an older file lacks it */
+        double *const number = *place_of(f, e);
+        for (size_t i = 0; e->kind == KIND_double && i < elements_of(f, e); i++)
+            number[i] = NAN;
+        return true;
+    }
     const hid_t dataset = H5Dopen2(file, e->name, H5P_DEFAULT);
     int rank = 0;
     while (rank < MOST_OVER && e->over[rank] != SEARCH_NO)
@@ -252,23 +281,14 @@ static bool read_variable(hid_t file, struct search_file *f, const struct entry 
 
 static bool read_attributes(hid_t file, struct search_file *f)
 {
-    f->title = hdf_text(file, "title");
-    f->scenario = hdf_text(file, "scenario");
-    f->first_scenario = hdf_text(file, "first_scenario");
-    f->revision = hdf_text(file, "git_revision");
-    f->date = hdf_text(file, "date");
-    f->note = hdf_text(file, "note");
-    int32_t finished = 0;
-    const bool numbers =
-        hdf_number(file, "chosen", H5T_NATIVE_INT64, &f->chosen) &&
-        hdf_number(file, "most_generations", H5T_NATIVE_INT64, &f->most_generations) &&
-        hdf_number(file, "most_cases", H5T_NATIVE_DOUBLE, &f->most_cases) &&
-        hdf_number(file, "finished", H5T_NATIVE_INT32, &finished) &&
-        hdf_number(file, "linear_limit", H5T_NATIVE_DOUBLE, &f->linear_limit) &&
-        hdf_number(file, "wall_time", H5T_NATIVE_DOUBLE, &f->seconds);
-    f->finished = finished;
-    return numbers && f->title && f->scenario && f->first_scenario && f->revision && f->date &&
-           f->note;
+    bool good = (f->title = hdf_text(file, "title")) != NULL;
+    for (int i = 0; good && i < ATTRIBUTES; i++) {
+        void *const value = attribute_of(f, i);
+        good = attributes[i].text
+                   ? (*(char **)value = hdf_text(file, attributes[i].name)) != NULL
+                   : hdf_number(file, attributes[i].name, hdf_type(attributes[i].kind), value);
+    }
+    return good;
 }
 
 /* Numbers that others use as places. */

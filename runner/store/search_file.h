@@ -104,9 +104,12 @@ struct search_file {
     double linear_limit, seconds; /* s, of all ranks' wall time, over all parts of the search */
 };
 
-/* Room for the lengths that *f has, all zeros; what is written later has at most these. false: no
- * memory. */
+/* Room for the lengths that *f has, all zeros, and for words; what is written later has at most
+ * these. false: no memory. */
 bool search_file_room(struct search_file *f);
+/* Variables over candidates or generations, of a file that has as many of all else. */
+void search_file_copy(struct search_file *f, const struct search_file *from,
+                      enum search_dimension first);
 void search_file_free(struct search_file *f);
 
 /* Whether a file is one of a search, as far as can be seen; no message. */

@@ -17,22 +17,26 @@
 
 /* ---- tables ------------------------------------------------------------------------------- */
 
-const struct store_column store_columns[COLUMNS] = {
-#define FILL_uint8_t 0, false /* every number of a code is one of its words */
-#define FILL_int64_t (double)STANCE_NO_COUNT, true
-#define FILL_double NAN, true
+const struct variable store_columns[COLUMNS] = {
+#define FILL_uint8_t false, 0 /* every number of a code is one of its words */
+#define FILL_int64_t true, (double)STANCE_NO_COUNT
+#define FILL_double true, NAN
+#define COLUMN(name, type, unit, text, ...)                                                        \
+    {                                                                                              \
+        name, KIND_##type, unit, text, __VA_ARGS__, NULL, sizeof(type)                             \
+    }
 #define STORE_COLUMN(name, type, how, told, unit, text)                                            \
-    [STANCE_ANSWER_##name] = {#name, KIND_##type, sizeof(type), FILL_##type, unit, text},
+    [STANCE_ANSWER_##name] = COLUMN(#name, type, unit, text, FILL_##type),
     STANCE_ANSWERS(STORE_COLUMN)[COLUMN_FINAL_STATE] =
-        {"final_state", KIND_double, sizeof(double), NAN, true, NULL,
-         "coordinates and their rates when the simulation stopped"},
-    [COLUMN_SCENARIO_NUMBER] = {"scenario_number", KIND_uint8_t, sizeof(uint8_t), 0, false, "1",
-                                "scenario that the case was computed with: places of the group "
-                                "history, then the file's own"},
-    [COLUMN_CHECKSUM] = {"checksum", KIND_uint32_t, sizeof(uint32_t), 0, false, "1",
-                         "CRC-32C over the answers of the case"},
-    [COLUMN_STATUS] = {"status", KIND_uint8_t, sizeof(uint8_t), 0, false, "1",
-                       "whether the case was computed"},
+        COLUMN("final_state", double, NULL,
+               "coordinates and their rates when the simulation stopped", FILL_double),
+    [COLUMN_SCENARIO_NUMBER] = COLUMN("scenario_number", uint8_t, NULL,
+                                      "scenario that the case was computed with: places of the "
+                                      "group history, then the file's own",
+                                      false, 0),
+    [COLUMN_CHECKSUM] =
+        COLUMN("checksum", uint32_t, "1", "CRC-32C over the answers of the case", false, 0),
+    [COLUMN_STATUS] = COLUMN("status", uint8_t, "1", "whether the case was computed", false, 0),
 };
 
 #define TRACK(member, unit, text, over, parts)                                                     \
@@ -317,31 +321,6 @@ bool store_close(struct store *store, stance_message *message)
 
 /* ---- rows --------------------------------------------------------------------------------- */
 
-/* Moves n elements of a variable between memory and a selection of it. */
-static bool move_elements(struct store *store, int c, hid_t space, hsize_t n,
-                          enum hdf_direction way, void *data, stance_message *message)
-{
-    const hid_t dataset = store->column[c], type = hdf_type(store_columns[c].kind);
-    const hid_t memory = H5Screate_simple(1, &n, NULL);
-    const herr_t status = memory < 0 ? -1
-                          : way == HDF_WRITE
-                              ? H5Dwrite(dataset, type, memory, space, H5P_DEFAULT, data)
-                              : H5Dread(dataset, type, memory, space, H5P_DEFAULT, data);
-    const bool good =
-        status >= 0 || store_failed(message, store->file,
-                                    way == HDF_WRITE ? "write the results" : "read the results");
-    hdf_close(memory);
-    return good;
-}
-
-/* Moves n rows of one column, from `slot` of the block on, between the block and the file. */
-static bool move_column(struct store *store, int c, struct store_block *block, size_t slot,
-                        hid_t space, size_t n, enum hdf_direction way, stance_message *message)
-{
-    char *data = (char *)block->column[c] + slot * store->width[c] * store_columns[c].size;
-    return move_elements(store, c, space, n * store->width[c], way, data, message);
-}
-
 /* All columns, in order: the checksum and then the status are the last ones. */
 bool store_move_rows(struct store *store, struct store_block *block, size_t slot,
                      const struct rows *rows, enum hdf_direction way, stance_message *message)
@@ -352,10 +331,18 @@ bool store_move_rows(struct store *store, struct store_block *block, size_t slot
     bool good = (narrow >= 0 && wide >= 0) ||
                 store_failed(message, store->file, "select rows of the results");
     for (int c = 0; good && c < COLUMNS; c++) {
-        if (store->column[c] >= 0) {
-            good = move_column(store, c, block, slot, store->width[c] > 1 ? wide : narrow,
-                               (size_t)rows->count, way, message);
-        }
+        if (store->column[c] < 0)
+            continue;
+        const hsize_t width = store->width[c], n = rows->count * width;
+        char *data = (char *)block->column[c] + slot * width * store_columns[c].size;
+        const hid_t dataset = store->column[c], type = hdf_type(store_columns[c].kind),
+                    space = width > 1 ? wide : narrow, memory = H5Screate_simple(1, &n, NULL);
+        good = memory >= 0 &&
+               (way == HDF_WRITE ? H5Dwrite(dataset, type, memory, space, H5P_DEFAULT, data)
+                                 : H5Dread(dataset, type, memory, space, H5P_DEFAULT, data)) >= 0;
+        good = good || store_failed(message, store->file,
+                                    way == HDF_WRITE ? "write the results" : "read the results");
+        hdf_close(memory);
     }
     hdf_close(narrow, wide);
     return good;
@@ -455,29 +442,20 @@ static uint64_t span_of(const struct rows *rows, uint64_t place)
 
 /* Writes rows of the block, from `slot` on, and what lies between them as it is. */
 static bool write_span(struct store *store, const struct store_block *block, size_t slot,
-                       const struct rows *rows, char *between, stance_message *message)
+                       const struct rows *rows, struct store_block *between,
+                       stance_message *message)
 {
     const uint64_t first = rows_at(rows, 0);
     const struct rows span = {.first = first, .count = rows_at(rows, rows->count - 1) - first + 1};
-    const size_t state = 2 * (size_t)store->plan->scenario->scene->coordinates;
-    hid_t narrow = hdf_select_rows(store->rank, store->length, 1, &span);
-    hid_t wide = hdf_select_rows(store->rank, store->length, state, &span);
-    bool good = (narrow >= 0 && wide >= 0) ||
-                store_failed(message, store->file, "select rows of the results");
-    for (int c = 0; good && c < COLUMNS; c++) {
-        if (store->column[c] < 0)
-            continue;
-        const size_t width = store->width[c], size = width * store_columns[c].size;
-        const hid_t space = width > 1 ? wide : narrow;
-        const char *const own = (const char *)block->column[c] + slot * size;
-        good = move_elements(store, c, space, span.count * width, HDF_READ, between, message);
-        for (uint64_t k = 0; good && k < rows->count; k++)
-            memcpy(between + (rows_at(rows, k) - first) * size, own + k * size, size);
-        good =
-            good && move_elements(store, c, space, span.count * width, HDF_WRITE, between, message);
+    if (!store_move_rows(store, between, 0, &span, HDF_READ, message))
+        return false;
+    for (int c = 0; c < COLUMNS; c++) {
+        const size_t size = store->width[c] * store_columns[c].size;
+        for (uint64_t k = 0; store->column[c] >= 0 && k < rows->count; k++)
+            memcpy((char *)between->column[c] + (rows_at(rows, k) - first) * size,
+                   (const char *)block->column[c] + (slot + k) * size, size);
     }
-    hdf_close(narrow, wide);
-    return good;
+    return store_move_rows(store, between, 0, &span, HDF_WRITE, message);
 }
 
 void store_set_spans(struct store *store, bool spans)
@@ -490,11 +468,7 @@ bool store_write(struct store *store, struct store_block *block, size_t slot,
 {
     if (!store->spans || !rows->row || rows->count < 2)
         return store_move_rows(store, block, slot, rows, HDF_WRITE, message);
-    size_t widest = 0;
-    for (int c = 0; c < COLUMNS; c++)
-        if (store->column[c] >= 0 && store->width[c] * store_columns[c].size > widest)
-            widest = store->width[c] * store_columns[c].size;
-    char *const between = malloc(SPAN_ROWS * widest);
+    struct store_block *const between = store_block_make(store, SPAN_ROWS);
     bool good = between != NULL || no_memory(message);
     for (uint64_t at = 0, n; good && at < rows->count; at += n) {
         n = span_of(rows, at);
@@ -503,7 +477,7 @@ bool store_write(struct store *store, struct store_block *block, size_t slot,
                    ? store_move_rows(store, block, slot + at, &part, HDF_WRITE, message)
                    : write_span(store, block, slot + at, &part, between, message);
     }
-    free(between);
+    store_block_free(between);
     return good;
 }
 

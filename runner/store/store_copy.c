@@ -7,12 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static bool is_finished(const struct store_block *block, size_t slot)
-{
-    const uint8_t status = ((const uint8_t *)block->column[COLUMN_STATUS])[slot];
-    return status == STANCE_DONE || status == STANCE_FAILED;
-}
-
 /* What earlier versions wrote where there was no count is one, too: such a row tells by its end,
  * which a case that was inferred from its neighbours does not have. */
 static bool has_counts(const struct store_block *block, size_t slot)
@@ -90,10 +84,11 @@ static void choose_rows(struct store *from, struct store *to, const uint64_t *ta
                         const bool *whole, const bool *there, bool *wanted,
                         struct store_copied *copied)
 {
+    const uint8_t *const status = from->checked->column[COLUMN_STATUS];
     for (size_t i = 0; i < count; i++) {
         wanted[i] = whole[i] && !there[i];
         if (!whole[i]) {
-            copied->damaged += is_finished(from->checked, i);
+            copied->damaged += status[i] == STANCE_DONE || status[i] == STANCE_FAILED;
         } else if (!there[i]) {
             copied->copied++;
         } else if (same_row(from->checked, to->checked, i)) {

@@ -59,18 +59,14 @@ static bool put_texts(hid_t group, int k, const struct store_origin *origin)
     for (size_t i = 0; i < origin->ancestors; i++)
         word[i] = *text_of(&origin->ancestor[i], k);
     word[origin->ancestors] = *text_of(&own, k);
-    const hid_t type = word_type(), dataset = make_dataset(group, text_names[k], type, 1, &n);
-    const bool good = dataset >= 0 && write_words(dataset, type, word);
-    hdf_close(dataset, type);
-    return good;
+    const hid_t dataset = put_words(group, text_names[k], word, n);
+    hdf_close(dataset);
+    return dataset >= 0;
 }
 
 /* The variable over the cases. */
 static bool put_numbers(hid_t file, const struct plan *plan)
 {
-    const struct store_column *column = &store_columns[COLUMN_SCENARIO_NUMBER];
-    const struct variable variable = {column->name, column->kind, NULL, column->text,
-                                      .flags = NULL};
     struct dimension axis[SCENARIO_MAX_AXES];
     const struct dimension *over[SCENARIO_MAX_AXES];
     hsize_t length[SCENARIO_MAX_AXES];
@@ -81,11 +77,10 @@ static bool put_numbers(hid_t file, const struct plan *plan)
         axis[d] = (struct dimension){H5Dopen2(file, name, H5P_DEFAULT), length[d]};
         over[d] = &axis[d];
     }
-    const hid_t dataset = make_variable(file, &variable, over, rank);
+    const bool good = put_variable(file, &store_columns[COLUMN_SCENARIO_NUMBER], over, rank, NULL);
     for (int d = 0; d < rank; d++)
         hdf_close(axis[d].id);
-    hdf_close(dataset);
-    return dataset >= 0;
+    return good;
 }
 
 bool store_add_history(const char *file, const struct plan *plan, const struct store_origin *origin,

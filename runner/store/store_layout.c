@@ -11,6 +11,7 @@
 #include "runner/base/checksum.h"
 #include "runner/base/command.h"
 #include "runner/base/problem.h"
+#include "runner/base/words.h"
 #include "runner/plan/kernels.h"
 
 #include <errno.h>
@@ -63,24 +64,27 @@ static bool has_words(const struct scenario_axis *axis, int path)
     return axis->words && axis->enumeration[path];
 }
 
-static hid_t axis_type(const struct scenario_axis *axis, int path)
-{
-    return has_words(axis, path) ? word_type()
-           : axis->integer[path] ? H5Tcopy(hdf_type(KIND_int32_t))
-                                 : H5Tcopy(hdf_type(KIND_double));
-}
-
-static bool write_axis_words(hid_t dataset, hid_t type, const struct axis_values *values, hsize_t n)
+/* A variable of the values of one path; open, or -1. */
+static hid_t put_axis_values(hid_t file, const char *name, const struct axis_values *values,
+                             hsize_t n)
 {
     const struct scenario_axis *axis = values->axis;
-    const char **words = malloc(n * sizeof *words);
-    for (hsize_t i = 0; words && i < n; i++) {
-        size_t point = values->single ? values->point : (size_t)i;
-        words[i] = axis->word[point * (size_t)axis->paths + (size_t)values->path];
+    if (has_words(axis, values->path)) {
+        const char **words = malloc(n * sizeof *words);
+        for (hsize_t i = 0; words && i < n; i++) {
+            size_t point = values->single ? values->point : (size_t)i;
+            words[i] = axis->word[point * (size_t)axis->paths + (size_t)values->path];
+        }
+        const hid_t dataset = words ? put_words(file, name, words, n) : -1;
+        free(words);
+        return dataset;
     }
-    bool good = words && write_words(dataset, type, words);
-    free(words);
-    return good;
+    const enum store_kind kind = axis->integer[values->path] ? KIND_int32_t : KIND_double;
+    const hid_t dataset = make_dataset(file, name, hdf_type(kind), 1, &n);
+    if (dataset >= 0 && write_values(dataset, n, axis_value, values))
+        return dataset;
+    hdf_close(dataset);
+    return -1;
 }
 
 /* The values of one path of an axis, as the axis's own dimension or as a variable `over` one. */
@@ -90,30 +94,20 @@ static bool put_path(struct layout *layout, const struct axis_values *values,
     const struct scenario_axis *axis = values->axis;
     hsize_t n = over ? over->length : axis->count;
     const char *name = values->path == 0 ? axis->name : axis->path[values->path];
-    hid_t type = axis_type(axis, values->path);
-    hid_t dataset = type < 0 ? -1 : make_dataset(layout->file, name, type, 1, &n);
-    bool good = dataset >= 0 &&
-                (has_words(axis, values->path) ? write_axis_words(dataset, type, values, n)
-                                               : write_values(dataset, n, axis_value, values)) &&
-                (values->path > 0 ||
-                 put_meaning(dataset, has_words(axis, 0) ? NULL : axis->unit, axis->text));
+    hid_t dataset = put_axis_values(layout->file, name, values, n);
+    bool good =
+        dataset >= 0 && (values->path > 0 ||
+                         put_meaning(dataset, has_words(axis, 0) ? NULL : axis->unit, axis->text));
     if (over) {
         good = good && attach(dataset, &over, 1);
         hdf_close(dataset);
     } else {
         good = good && make_scale(&layout->dimensions, dataset, name, n, dimension);
     }
-    hdf_close(type);
     return good;
 }
 
 /* ---- the sample --------------------------------------------------------------------------- */
-
-static double own_number(const void *context, uint64_t i)
-{
-    (void)context;
-    return (double)i;
-}
 
 /* Names of the paths that a sample varies, with such signs between those of a factor and between
  * factors; freed by the caller, NULL: no memory. */
@@ -143,7 +137,7 @@ static bool make_sample(struct layout *layout, const struct scenario_axis *axis,
         make_numbers(
             &layout->dimensions, layout->file,
             &(struct variable){axis->name, KIND_int64_t, axis->unit, axis->text, .flags = NULL},
-            axis->count, own_number, NULL, dimension) &&
+            axis->count, NULL, NULL, dimension) &&
         put_text(dimension->id, "method", doe_words[design->method]) &&
         (!generator[0] || put_text(dimension->id, "generator", generator)) &&
         put_number(dimension->id, "count", KIND_uint64_t, &design->count) &&
@@ -273,17 +267,11 @@ static bool put_answers(struct layout *layout)
         !make_state_names(layout, layout->file, "state", false, &state))
         return false;
     for (int c = 0; c < COLUMNS; c++) {
-        const struct store_column *column = &store_columns[c];
+        char flags[FLAGS];
+        struct variable variable = store_columns[c];
         if (!store_has_column(s, c))
             continue;
-        char flags[FLAGS];
-        const struct variable variable = {column->name,
-                                          column->kind,
-                                          column->unit,
-                                          column->text,
-                                          column->filled,
-                                          column->fill,
-                                          flags_of(s->scene, c, flags)};
+        variable.flags = flags_of(s->scene, c, flags);
         hid_t dataset =
             make_variable(layout->file, &variable, over, layout->rank + (c == COLUMN_FINAL_STATE));
         bool good = dataset >= 0 && put_coordinates(layout, dataset);
@@ -327,7 +315,7 @@ static bool put_design_columns(struct layout *layout, hid_t group, const struct 
         for (int i = 0; i < columns[k].dimensions; i++)
             over[rank + i] = &inner[columns[k].over[i]];
         const struct variable variable = {
-            columns[k].name, KIND_double, columns[k].unit, columns[k].text, true, NAN, NULL};
+            columns[k].name, KIND_double, columns[k].unit, columns[k].text, true, NAN, NULL, 0};
         hid_t dataset = make_variable(group, &variable, over, rank + columns[k].dimensions);
         bool good = dataset >= 0 && store_move_design(layout->plan, NULL, &columns[k], dataset);
         hdf_close(dataset);
@@ -359,9 +347,7 @@ static bool put_designs(struct layout *layout)
         char flags[FLAGS];
         const struct variable variable = {"status", KIND_uint8_t, NULL, "whether the design exists",
                                           .flags = flags_of(s->scene, COLUMN_STATUS, flags)};
-        hid_t status = make_variable(group, &variable, over, rank);
-        good = status >= 0 && hdf_write(status, KIND_uint8_t, plan->design_status);
-        hdf_close(status);
+        good = put_variable(group, &variable, over, rank, plan->design_status);
     }
     hdf_close(group);
     return good;
@@ -378,14 +364,6 @@ static double recorded_time(const void *context, uint64_t i)
 {
     const struct plan *plan = context;
     return (double)i * plan->record_interval;
-}
-
-static bool put_variable(hid_t group, const struct variable *variable,
-                         const struct dimension *const *over, int rank)
-{
-    const hid_t dataset = make_variable(group, variable, over, rank);
-    hdf_close(dataset);
-    return dataset >= 0;
 }
 
 static bool put_trajectories(struct layout *layout)
@@ -416,30 +394,22 @@ static bool put_trajectories(struct layout *layout)
     for (int v = 0; good && v < TRAJECTORIES; v++) {
         const struct store_trajectory *t = &store_trajectories[v];
         const struct dimension *over[] = {&number, &time, last[t->over], &component};
-        const struct variable variable = {t->name, KIND_double, t->unit, t->text, true, NAN, NULL};
+        const struct variable variable = {t->name, KIND_double, t->unit, t->text,
+                                          true,    NAN,         NULL,    0};
         good = store_trajectory_width(scene, v) == 0 ||
-               put_variable(group, &variable, over, t->parts > 1 ? 4 : 3);
+               put_variable(group, &variable, over, t->parts > 1 ? 4 : 3, NULL);
     }
     if (good) {
         const struct dimension *over[] = {&number};
-        const struct store_column *column = &store_columns[COLUMN_CHECKSUM];
-        good = put_variable(group,
-                            &(struct variable){column->name, column->kind, column->unit,
-                                               "CRC-32C over the trajectory of the case",
-                                               .flags = NULL},
-                            over, 1);
+        struct variable checksum = store_columns[COLUMN_CHECKSUM];
+        checksum.text = "CRC-32C over the trajectory of the case";
+        good = put_variable(group, &checksum, over, 1, NULL);
     }
     hdf_close(group);
     return good;
 }
 
 /* ---- timing and provenance ---------------------------------------------------------------- */
-
-static double no_time(const void *context, uint64_t i)
-{
-    (void)context, (void)i;
-    return 0;
-}
 
 static bool put_timing(struct layout *layout)
 {
@@ -459,11 +429,11 @@ static bool put_timing(struct layout *layout)
                                               "wall time of computing", .flags = NULL},
                                  computed = {"cases", KIND_int64_t, "1", "cases computed",
                                              .flags = NULL};
-    hid_t wall = make_variable(group, &wall_time, over, 1),
-          cases = make_variable(group, &computed, over, 1);
-    bool good = wall >= 0 && cases >= 0 && write_values(wall, n, no_time, NULL) &&
-                write_values(cases, n, no_time, NULL);
-    hdf_close(wall, cases, group);
+    void *const none = calloc(n, sizeof(double)); /* zeros, of numbers of either type */
+    const bool good = none && put_variable(group, &wall_time, over, 1, none) &&
+                      put_variable(group, &computed, over, 1, none);
+    free(none);
+    hdf_close(group);
     return good;
 }
 
@@ -475,12 +445,11 @@ static bool put_provenance(struct layout *layout)
     char libraries[BUILD_LIBRARIES_SIZE], shard[SHARD_TEXT], isas[INSTRUCTION_SETS_SIZE];
     time_t now = time(NULL);
     struct tm utc;
-    size_t used = 0;
 
-    for (int a = 0; !plan->single && a < s->axes; a++) {
-        used += (size_t)snprintf(axes + used, sizeof axes - used, "%s%s", a ? "," : "",
-                                 s->axis[a].name);
-    }
+    if (!plan->single && s->axes > 0)
+        axes[0] = '\0';
+    for (int a = 0; !plan->single && a < s->axes; a++)
+        words_add(axes, sizeof axes, "%s%s", a ? "," : "", s->axis[a].name);
     snprintf(compiler, sizeof compiler, "%s; %s", build_compiler(), build_flags());
     strftime(date, sizeof date, "%Y-%m-%dT%H:%M:%SZ", gmtime_r(&now, &utc));
     build_libraries(libraries);
@@ -556,19 +525,6 @@ static uint64_t holes(const struct plan *plan)
 uint64_t store_size(const struct plan *plan, int ranks)
 {
     return whole_size(plan, ranks) - holes(plan);
-}
-
-hid_t store_create_hdf(const char *file)
-{
-    hid_t access = store_serial_access(), properties = H5Pcreate(H5P_FILE_CREATE), id = -1;
-    if (access >= 0 && H5Pset_obj_track_times(properties, false) >= 0 &&
-        H5Pset_link_creation_order(properties, H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED) >=
-            0 &&
-        /* Lets long texts be attributes. */
-        H5Pset_attr_creation_order(properties, H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED) >= 0)
-        id = H5Fcreate(file, H5F_ACC_EXCL, properties, access);
-    hdf_close(access, properties);
-    return id;
 }
 
 /* Under another name until it is whole, so that a killed creation leaves no file to be resumed. */

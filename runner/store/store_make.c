@@ -68,23 +68,37 @@ static bool put_fill(hid_t object, enum store_kind kind, double fill)
 
 /* ---- groups and datasets ------------------------------------------------------------------ */
 
-/* Like datasets, see make_dataset: without its checksum a flipped bit makes variables vanish. */
+/* What is in it has the order of its making, which is netCDF's, and attributes may be long. No
+ * times are kept, so that equal runs give equal bytes. The header that this takes has a checksum of
+ * HDF5's own: without it a flipped bit makes variables vanish. */
+static bool keep_order(hid_t properties, bool links)
+{
+    const unsigned order = H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED;
+    return H5Pset_obj_track_times(properties, false) >= 0 &&
+           H5Pset_attr_creation_order(properties, order) >= 0 &&
+           (!links || H5Pset_link_creation_order(properties, order) >= 0);
+}
+
+hid_t store_create_hdf(const char *file)
+{
+    hid_t access = store_serial_access(), properties = H5Pcreate(H5P_FILE_CREATE), id = -1;
+    if (access >= 0 && keep_order(properties, true))
+        id = H5Fcreate(file, H5F_ACC_EXCL, properties, access);
+    hdf_close(access, properties);
+    return id;
+}
+
 hid_t make_group(hid_t parent, const char *name)
 {
     hid_t properties = H5Pcreate(H5P_GROUP_CREATE), group = -1;
-    if (H5Pset_link_creation_order(properties, H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED) >=
-            0 &&
-        H5Pset_attr_creation_order(properties, H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED) >=
-            0 &&
-        H5Pset_obj_track_times(properties, false) >= 0)
+    if (keep_order(properties, true))
         group = H5Gcreate2(parent, name, H5P_DEFAULT, properties, H5P_DEFAULT);
     hdf_close(properties);
     return group;
 }
 
 /* Contiguous, its place in the file given at once; nothing is written, so that large files start
- * fast. No times are kept, so that equal runs give equal bytes. Attributes in the order of their
- * making are netCDF's, and the header that this takes has a checksum of HDF5's own. */
+ * fast. */
 hid_t make_dataset(hid_t parent, const char *name, hid_t type, int rank, const hsize_t *length)
 {
     hid_t properties = H5Pcreate(H5P_DATASET_CREATE), dataset = -1;
@@ -93,9 +107,7 @@ hid_t make_dataset(hid_t parent, const char *name, hid_t type, int rank, const h
     if (space >= 0 && H5Pset_layout(properties, H5D_CONTIGUOUS) >= 0 &&
         H5Pset_alloc_time(properties, H5D_ALLOC_TIME_EARLY) >= 0 &&
         H5Pset_fill_time(properties, string ? H5D_FILL_TIME_ALLOC : H5D_FILL_TIME_NEVER) >= 0 &&
-        H5Pset_attr_creation_order(properties, H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED) >=
-            0 &&
-        H5Pset_obj_track_times(properties, false) >= 0)
+        keep_order(properties, false))
         dataset = H5Dcreate2(parent, name, type, space, H5P_DEFAULT, properties, H5P_DEFAULT);
     hdf_close(space, properties);
     return dataset;
@@ -126,6 +138,15 @@ hid_t make_variable(hid_t parent, const struct variable *v,
     return dataset;
 }
 
+bool put_variable(hid_t parent, const struct variable *v, const struct dimension *const *dimension,
+                  int rank, const void *values)
+{
+    const hid_t dataset = make_variable(parent, v, dimension, rank);
+    const bool good = dataset >= 0 && (!values || hdf_write(dataset, v->kind, values));
+    hdf_close(dataset);
+    return good;
+}
+
 /* Turns a one-dimensional dataset into a dimension. `label` is what netCDF looks at. */
 bool make_scale(int *dimensions, hid_t dataset, const char *label, hsize_t length,
                 struct dimension *dimension)
@@ -136,30 +157,25 @@ bool make_scale(int *dimensions, hid_t dataset, const char *label, hsize_t lengt
            put_int(dataset, "_Netcdf4Dimid", (*dimensions)++);
 }
 
-hid_t word_type(void)
+hid_t put_words(hid_t parent, const char *name, const char *const *words, hsize_t n)
 {
-    hid_t type = H5Tcopy(H5T_C_S1);
-    if (H5Tset_size(type, H5T_VARIABLE) < 0 || H5Tset_cset(type, H5T_CSET_UTF8) < 0) {
-        hdf_close(type);
-        return -1;
+    const hid_t type = H5Tcopy(H5T_C_S1);
+    hid_t dataset = -1;
+    if (H5Tset_size(type, H5T_VARIABLE) >= 0 && H5Tset_cset(type, H5T_CSET_UTF8) >= 0)
+        dataset = make_dataset(parent, name, type, 1, &n);
+    if (dataset >= 0 && H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, words) < 0) {
+        hdf_close(dataset);
+        dataset = -1;
     }
-    return type;
-}
-
-bool write_words(hid_t dataset, hid_t type, const char *const *words)
-{
-    return H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, words) >= 0;
+    hdf_close(type);
+    return dataset;
 }
 
 /* A dimension whose points are words. */
 bool make_words(int *dimensions, hid_t parent, const char *name, const char *const *words,
                 hsize_t n, struct dimension *dimension)
 {
-    hid_t type = word_type(), dataset = make_dataset(parent, name, type, 1, &n);
-    bool good = dataset >= 0 && write_words(dataset, type, words) &&
-                make_scale(dimensions, dataset, name, n, dimension);
-    hdf_close(type);
-    return good;
+    return make_scale(dimensions, put_words(parent, name, words, n), name, n, dimension);
 }
 
 bool write_values(hid_t dataset, hsize_t n, value_function value, const void *context)
@@ -169,7 +185,7 @@ bool write_values(hid_t dataset, hsize_t n, value_function value, const void *co
     for (hsize_t at = 0, count; good && at < n; at += count) {
         count = n - at < PIECE ? n - at : PIECE;
         for (hsize_t i = 0; i < count; i++)
-            buffer[i] = value(context, at + i);
+            buffer[i] = value ? value(context, at + i) : (double)(at + i);
         good = hdf_move(dataset, H5T_NATIVE_DOUBLE, at, count, HDF_WRITE, buffer);
     }
     free(buffer);

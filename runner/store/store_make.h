@@ -27,29 +27,23 @@ hid_t make_group(hid_t parent, const char *name);
 /* A variable of `rank` lengths; 0: a number. */
 hid_t make_dataset(hid_t parent, const char *name, hid_t type, int rank, const hsize_t *length);
 bool attach(hid_t dataset, const struct dimension *const *dimension, int rank);
-/* A variable over dimensions, and what it says of itself. */
-struct variable {
-    const char *name;
-    enum store_kind kind;
-    const char *unit, *text; /* may be NULL */
-    bool filled;
-    double fill;       /* where `filled`: `_FillValue`, in the variable's own type */
-    const char *flags; /* see put_flags; NULL: none */
-};
+/* A variable over dimensions. */
 hid_t make_variable(hid_t parent, const struct variable *variable,
                     const struct dimension *const *dimension, int rank);
+/* The same with its values, unless NULL, in its own type. */
+bool put_variable(hid_t parent, const struct variable *variable,
+                  const struct dimension *const *dimension, int rank, const void *values);
 /* Turns a one-dimensional dataset into a dimension. `label` is what netCDF looks at; `dimensions`
  * counts those of the file. */
 bool make_scale(int *dimensions, hid_t dataset, const char *label, hsize_t length,
                 struct dimension *dimension);
-/* The type of words of any length; to be closed. */
-hid_t word_type(void);
-bool write_words(hid_t dataset, hid_t type, const char *const *words);
+/* A variable of one dimension, of words of any length; open, or -1. */
+hid_t put_words(hid_t parent, const char *name, const char *const *words, hsize_t n);
 /* A dimension whose points are words. */
 bool make_words(int *dimensions, hid_t parent, const char *name, const char *const *words,
                 hsize_t n, struct dimension *dimension);
 
-/* Value i of a coordinate. */
+/* Value i of a coordinate; NULL: i. */
 typedef double (*value_function)(const void *context, uint64_t i);
 bool write_values(hid_t dataset, hsize_t n, value_function value, const void *context);
 /* A dimension whose points are numbers. */

@@ -21,15 +21,17 @@ enum {
     COLUMNS,
 };
 
-struct store_column {
+/* A variable, and what it says of itself. */
+struct variable {
     const char *name;
     enum store_kind kind;
-    size_t size; /* of one element */
-    double fill; /* value of `_FillValue` */
-    bool filled; /* has that attribute */
-    const char *unit, *text;
+    const char *unit, *text; /* may be NULL */
+    bool filled;
+    double fill;       /* where `filled`: `_FillValue`, in the variable's own type */
+    const char *flags; /* see put_flags; NULL: none */
+    size_t size;       /* of one element of a column */
 };
-extern const struct store_column store_columns[COLUMNS];
+extern const struct variable store_columns[COLUMNS];
 
 /* The variables of a trajectory: (case, time, what it is over, parts). */
 enum { TRAJECTORIES = 5 };
