@@ -54,8 +54,7 @@ static bool fail(struct optimise *o, enum exit_code code)
 static void stage_options(struct run *run)
 {
     run->options.time_limit = INFINITY;
-    run_take_options(
-        run, claim_options(&run->parallel, &command_optimise, run->argc, run->argv, &run->options));
+    run_take_options(run, &command_optimise);
 }
 
 /* ---- the scenario --------------------------------------------------------------------------- */
@@ -119,13 +118,10 @@ static void stage_scenario(struct run *run)
     if (!o->asked || !run->scenario)
         abort(); /* the others wait in the broadcast: MPI ends the job */
     const bool read = run->parallel.rank == 0 && read_scenario(o);
-    if (claim_scenario(&run->parallel, run->scenario, run->options.asked.file, read,
-                       &run->message)) {
+    if (run_share_scenario(run, read)) {
         search_numbers_keep(run->scenario);
         if (run->scenario->search.axis.paths == 0 && run->parallel.rank == 0)
             say_place(o, none, none);
-    } else if (run->message.text[0]) {
-        fail(o, EXIT_IO);
     }
 }
 
@@ -322,7 +318,7 @@ static void stage_search(struct run *run)
         snprintf(what, sizeof what, "stopped after %zu of at most %zu generations",
                  o->search.record.length[SEARCH_GENERATION], o->search.generations);
         run->failure.code = EXIT_INTERRUPTED;
-        claim_say_stopped(&run->parallel, run->argc, run->argv, "--resume", what);
+        run_say_stopped(run, what);
     }
 }
 

@@ -1,10 +1,12 @@
-/* claim.c - see claim.h. */
-#include "claim.h"
-#include "work.h"
+/* claim.c - what commands that write a file on many ranks have in common (run.h): ranks, options,
+ * the scenario on every rank, the file for this job alone, stages, and how to go on. */
+#include "run.h"
 
-#include "runner/base/message.h"
+#include "runner/base/sandbox.h"
+#include "runner/plan/instruction_set.h"
 #include "runner/ranks/crash.h"
 #include "runner/ranks/deadline.h"
+#include "runner/store/build_info.h"
 
 #include <errno.h>
 #include <stdio.h>
@@ -12,73 +14,122 @@
 #include <string.h>
 #include <sys/stat.h>
 
-bool claim_ranks(const char *who, struct parallel *parallel)
+bool run_fail_io(struct run *run)
 {
-    bool first;
-    if (parallel_misses_launcher(&first)) {
-        if (first)
-            fprintf(stderr,
-                    "stance %s: srun started several of these without an MPI that joins them: use "
-                    "mpirun, or srun --mpi=pmix\n",
-                    who);
-        return false;
-    }
-    store_prepare();
-    *parallel = parallel_start();
-    if (parallel->size > 1)
-        deadline_prepare(parallel->rank);
-    crash_watch(parallel->rank);
-    work_catch_signals();
-    return true;
+    return run_fail(run, EXIT_IO, "stance %s: %s", run->argv[0], run->message.text);
 }
 
-int claim_options(const struct parallel *parallel, const struct command *command, int argc,
-                  char **argv, void *options)
+bool run_take_options(struct run *run, const struct command *command)
 {
-    int code = parallel->rank == 0 ? command_begin(command, argc, argv, options) : EXIT_DONE;
+    const struct parallel *parallel = &run->parallel;
+    struct options *o = &run->options;
+    /* Rank 0 first, which says what is wrong; the others need not. */
+    int code =
+        parallel->rank == 0 ? command_begin(command, run->argc, run->argv, o) : COMMAND_GOES_ON;
     parallel_broadcast(parallel, &code, sizeof code);
-    return code == COMMAND_GOES_ON && parallel->rank != 0
-               ? command_begin(command, argc, argv, options)
-               : code;
+    if (code == COMMAND_GOES_ON && parallel->rank != 0)
+        code = command_begin(command, run->argc, run->argv, o);
+    run->over = code == EXIT_DONE; /* help */
+    if (code > 0)
+        run->failure.code = code; /* it has been said why */
+    deadline_limit(o->time_limit - (clock_seconds() - run->start));
+    if (code == COMMAND_GOES_ON && !instruction_set_check(&run->message))
+        run_fail(run, EXIT_USAGE, "stance %s: %s", run->argv[0], run->message.text);
+    return code == COMMAND_GOES_ON;
 }
 
-bool claim_scenario(const struct parallel *parallel, struct scenario *s, const char *file,
-                    bool read, stance_message *message)
+bool run_share_scenario(struct run *run, bool read)
 {
+    const struct parallel *parallel = &run->parallel;
+    struct scenario *s = run->scenario;
     uint64_t length = parallel->rank == 0 && read ? strlen(s->text) + 1 : 0;
 
-    message->text[0] = '\0';
+    run->message.text[0] = '\0';
     parallel_broadcast(parallel, &length, sizeof length);
-    if (length == 0)
-        return false;
-    char *const text = parallel->rank == 0 ? s->text : malloc(length);
-    if (!text)
-        abort(); /* the others wait in the broadcast: MPI ends the job */
-    parallel_broadcast(parallel, text, length);
-    if (parallel->rank == 0)
-        return true;
-    const bool good = s && scenario_read(s, file, text, NULL, 0, NULL);
-    free(text);
-    return good || complain(message, "a rank cannot read the scenario that rank 0 reads");
+    bool good = length > 0;
+    if (good) {
+        char *const text = parallel->rank == 0 ? s->text : malloc(length);
+        if (!text)
+            abort(); /* the others wait in the broadcast: MPI ends the job */
+        parallel_broadcast(parallel, text, length);
+        if (parallel->rank == 0)
+            return true;
+        good = s && scenario_read(s, run->options.asked.file, text, NULL, 0, NULL);
+        free(text);
+        if (!good)
+            complain(&run->message, "a rank cannot read the scenario that rank 0 reads");
+    }
+    if (!good) {
+        free(run->scenario);
+        run->scenario = NULL;
+    }
+    return good || (run->message.text[0] ? run_fail_io(run) : false);
 }
 
-bool claim_file(const char *file, bool force, bool resume, bool own, struct lock *lock,
-                bool *exists, stance_message *message)
+struct check {
+    const struct run *run;
+    bool (*check)(const char *file, stance_message *message);
+    const char *file;
+};
+
+static int check_alone(void *context)
 {
+    const struct check *check = context;
+    stance_message message = {""};
+    sandbox_limit(true);
+    bool good = check->check(check->file, &message);
+    sandbox_limit(false);
+    if (!good)
+        fprintf(stderr, "stance %s: %s\n", check->run->argv[0], message.text);
+    return good ? EXIT_DONE : EXIT_IO;
+}
+
+int run_check_file(const struct run *run, bool (*check)(const char *, stance_message *),
+                   const char *file)
+{
+    struct check context = {run, check, file};
+    return sandbox(check_alone, &context, file);
+}
+
+bool run_check_results(const char *file, stance_message *message)
+{
+    return store_check(file, true, message);
+}
+
+void run_warn_of_revision(const struct run *run, const char *file, const char *revision)
+{
+    if (strcmp(revision, build_revision()) != 0) {
+        fprintf(stderr,
+                "stance %s: warning: %s was begun by revision %s, this is %s: results may "
+                "differ\n",
+                run->argv[0], file, revision, build_revision());
+    }
+}
+
+bool run_claim_file(struct run *run, bool *exists)
+{
+    const struct options *o = &run->options;
+    const char *const file = run->file;
+    stance_message *const message = &run->message;
     struct stat information;
 
     *exists = lstat(file, &information) == 0;
-    if (*exists && !force && !resume)
-        return complain(message, "%.150s exists; --force replaces it, --resume goes on with it",
-                        file);
-    if (*exists && !S_ISREG(information.st_mode) && !S_ISLNK(information.st_mode))
-        return complain(message, "%.200s: not a regular file", file);
-    if (own && mkdir("results", 0777) != 0 && errno != EEXIST)
-        return complain(message, "cannot make the directory results: %s", strerror(errno));
+    bool good =
+        !*exists || o->force || o->resume ||
+        complain(message, "%.150s exists; --force replaces it, --resume goes on with it", file);
+    if (good && *exists && !S_ISREG(information.st_mode) && !S_ISLNK(information.st_mode))
+        good = complain(message, "%.200s: not a regular file", file);
+    if (good && !o->output && mkdir("results", 0777) != 0 && errno != EEXIST)
+        good = complain(message, "cannot make the directory results: %s", strerror(errno));
     /* A link that is replaced is a file of its own; through others the file they name is written.
      */
-    return (force ? lock_take : lock_take_through)(lock, file, message);
+    if (!good || !(o->force ? lock_take : lock_take_through)(&run->lock, file, message))
+        return run_fail_io(run);
+    return heartbeat_begin(&run->heartbeat, &run->lock, &run->parallel, "starting") ||
+           run_fail(run, EXIT_IO, "stance %s: not enough memory", run->argv[0]);
 }
+
+/* ---- how to go on --------------------------------------------------------------------------- */
 
 static void print_word(FILE *to, const char *word)
 {
@@ -94,23 +145,93 @@ static void print_word(FILE *to, const char *word)
     fputc('\'', to);
 }
 
-void claim_say_stopped(const struct parallel *parallel, int argc, char **argv, const char *again,
-                       const char *what)
+void run_say_stopped(const struct run *run, const char *what)
 {
     char *line = NULL; /* in one piece: a launcher mixes what ranks write in pieces */
     size_t size = 0;
-    FILE *to = parallel->rank == 0 ? open_memstream(&line, &size) : NULL;
+    FILE *to = run->parallel.rank == 0 ? open_memstream(&line, &size) : NULL;
     if (!to)
         return;
-    fprintf(to, "stance %s: %s; go on with:", argv[0], what);
-    if (parallel->size > 1)
-        fprintf(to, " mpirun -n %d", parallel->size);
+    fprintf(to, "stance %s: %s; go on with:", run->argv[0], what);
+    if (run->parallel.size > 1)
+        fprintf(to, " mpirun -n %d", run->parallel.size);
     print_word(to, program_invocation_name);
-    for (int i = 0; i < argc; i++)
-        if (strcmp(argv[i], "--force") != 0 && strcmp(argv[i], "--resume") != 0)
-            print_word(to, argv[i]);
-    fprintf(to, " %s\n", again);
+    for (int i = 0; i < run->argc; i++)
+        if (strcmp(run->argv[i], "--force") != 0 && strcmp(run->argv[i], "--resume") != 0)
+            print_word(to, run->argv[i]);
+    fprintf(to, " %s\n", run->options.single ? "--force" : "--resume");
     if (fclose(to) == 0)
         fputs(line, stderr);
     free(line);
+}
+
+/* ---- the whole ------------------------------------------------------------------------------ */
+
+/* The ranks of the job, which from now on attend to signals and say where they crash. false: a
+ * launcher started several processes that are no ranks of each other; the first one says so. */
+static bool take_ranks(struct run *run)
+{
+    bool first;
+    if (parallel_misses_launcher(&first)) {
+        if (first)
+            fprintf(stderr,
+                    "stance %s: srun started several of these without an MPI that joins them: use "
+                    "mpirun, or srun --mpi=pmix\n",
+                    run->argv[0]);
+        return false;
+    }
+    store_prepare();
+    run->parallel = parallel_start();
+    if (run->parallel.size > 1)
+        deadline_prepare(run->parallel.rank);
+    crash_watch(run->parallel.rank);
+    work_catch_signals();
+    return true;
+}
+
+/* Goes through the stages; stops where one failed on any rank. */
+static int go_through(struct run *run, const struct stage *stage, int (*conclude)(struct run *))
+{
+    for (; stage->go; stage++) {
+        crash_stage(stage->doing);
+        run->heartbeat.doing = stage->doing;
+        run->heartbeat.due = 0;
+        run->progress = progress_begin(run->options.quiet);
+        stage->go(run);
+        progress_end(&run->progress);
+        if (!parallel_agree(&run->parallel, run->failure.code == EXIT_DONE, (char *)&run->failure,
+                            sizeof run->failure)) {
+            if (run->parallel.rank == 0 && run->failure.text[0])
+                fprintf(stderr, "%s\n", run->failure.text);
+            return run->failure.code;
+        }
+        if (run->over)
+            return EXIT_DONE;
+    }
+    return conclude(run);
+}
+
+int run_through(struct run *run, int argc, char **argv, const struct stage *stages,
+                int (*conclude)(struct run *))
+{
+    if (!run) {
+        fprintf(stderr, "stance %s: not enough memory\n", argv[0]);
+        return EXIT_IO;
+    }
+    run->argc = argc;
+    run->argv = argv;
+    run->start = clock_seconds();
+    run->lock.descriptor = -1;
+    run->parallel = parallel_alone();
+    return take_ranks(run) ? go_through(run, stages, conclude) : EXIT_USAGE;
+}
+
+void run_end(struct run *run)
+{
+    if (run->scenario)
+        scenario_free(run->scenario);
+    free(run->scenario);
+    lock_release(&run->lock);
+    heartbeat_end(&run->heartbeat);
+    parallel_finish(&run->parallel);
 }

@@ -8,13 +8,8 @@
 
 #include "runner/base/command.h"
 #include "runner/base/message.h"
-#include "runner/base/sandbox.h"
 #include "runner/base/units.h"
-#include "runner/plan/instruction_set.h"
 #include "runner/plan/warnings.h"
-#include "runner/ranks/crash.h"
-#include "runner/ranks/deadline.h"
-#include "runner/store/build_info.h"
 #include "runner/store/changed_scenario.h"
 
 #include <errno.h>
@@ -27,11 +22,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-bool run_fail_io(struct run *run)
-{
-    return run_fail(run, EXIT_IO, "stance %s: %s", run->argv[0], run->message.text);
-}
-
 /* An error of the scenario, with its place in the text. */
 static void fail_scenario(struct run *run, const struct plan_error *error)
 {
@@ -39,29 +29,6 @@ static void fail_scenario(struct run *run, const struct plan_error *error)
     if (error->line > 0)
         snprintf(place, sizeof place, ":%d:%d", error->line, error->column);
     run_fail(run, EXIT_USAGE, "%.300s%s: %s", run->scenario->file, place, error->message.text);
-}
-
-/* ---- options ------------------------------------------------------------------------------ */
-
-void run_take_options(struct run *run, int code)
-{
-    struct options *o = &run->options;
-    run->over = code == EXIT_DONE; /* help */
-    if (code > 0)
-        run->failure.code = code; /* it has been said why */
-    deadline_limit(o->time_limit - (clock_seconds() - run->start));
-    if (code == COMMAND_GOES_ON && !instruction_set_check(&run->message))
-        run_fail(run, EXIT_USAGE, "stance %s: %s", run->argv[0], run->message.text);
-}
-
-static void stage_options(struct run *run)
-{
-    struct options *o = &run->options;
-    const int code = run_read_options(o, &run->parallel, run->argc, run->argv);
-    run_take_options(run, code);
-    if (code < 0 && run->parallel.rank == 0 && !run_read_shard(o, run->argc, run->argv))
-        run->failure.code = EXIT_USAGE; /* it has been said why */
-    parallel_broadcast(&run->parallel, &o->shard, sizeof o->shard);
 }
 
 /* ---- the scenario ------------------------------------------------------------------------- */
@@ -96,12 +63,7 @@ static void stage_scenario(struct run *run)
         if (!read && run->failure.code == EXIT_DONE) /* the reader has printed why */
             run->failure.code = access(o->asked.file, R_OK) == 0 ? EXIT_USAGE : EXIT_IO;
     }
-    if (!claim_scenario(&run->parallel, run->scenario, o->asked.file, read, &run->message)) {
-        free(run->scenario);
-        run->scenario = NULL;
-        if (run->message.text[0])
-            run_fail_io(run);
-    }
+    run_share_scenario(run, read);
     if (run->scenario && o->single && o->single_case >= run->scenario->cases) {
         run_fail(run, EXIT_USAGE,
                  "stance run: --only %" PRIu64 ": the scenario's cases are 0 ... %" PRIu64,
@@ -159,46 +121,6 @@ bool run_same_scenario(struct run *run, const char *file, const char *old)
     return false;
 }
 
-struct check {
-    const struct run *run;
-    bool (*check)(const char *file, stance_message *message);
-    const char *file;
-};
-
-static int check_alone(void *context)
-{
-    const struct check *check = context;
-    stance_message message = {""};
-    sandbox_limit(true);
-    bool good = check->check(check->file, &message);
-    sandbox_limit(false);
-    if (!good)
-        fprintf(stderr, "stance %s: %s\n", check->run->argv[0], message.text);
-    return good ? EXIT_DONE : EXIT_IO;
-}
-
-int run_check_file(const struct run *run, bool (*check)(const char *, stance_message *),
-                   const char *file)
-{
-    struct check context = {run, check, file};
-    return sandbox(check_alone, &context, file);
-}
-
-bool run_check_results(const char *file, stance_message *message)
-{
-    return store_check(file, true, message);
-}
-
-void run_warn_of_revision(const struct run *run, const char *file, const char *revision)
-{
-    if (strcmp(revision, build_revision()) != 0) {
-        fprintf(stderr,
-                "stance %s: warning: %s was begun by revision %s, this is %s: results may "
-                "differ\n",
-                run->argv[0], file, revision, build_revision());
-    }
-}
-
 /* A file keeps to the shard that it was made for, or to all cases. */
 static bool same_shard(struct run *run)
 {
@@ -245,15 +167,6 @@ static void look_into_file(struct run *run)
     for (int a = 0; a < run->scenario->axes; a++)
         if (!store_read_axis(run->file, &run->scenario->axis[a], &run->message))
             run_fail_io(run);
-}
-
-bool run_claim_file(struct run *run, bool *exists)
-{
-    const struct options *o = &run->options;
-    if (!claim_file(run->file, o->force, o->resume, !o->output, &run->lock, exists, &run->message))
-        return run_fail_io(run);
-    return heartbeat_begin(&run->heartbeat, &run->lock, &run->parallel, "starting") ||
-           run_fail(run, EXIT_IO, "stance %s: not enough memory", run->argv[0]);
 }
 
 /* Rank 0: where the results go, whether they may, and nobody else writes there. */
@@ -389,6 +302,7 @@ static void stage_designs(struct run *run)
 static void stage_kernels(struct run *run)
 {
     stance_message message;
+    run->progress.quiet = true; /* a compiler has a word of its own */
     if (run->options.dry_run || run->kernels.count > 0)
         return;
     if (run->resume && !run->store) /* later: they are tried on cases, whose designs are there */
@@ -537,58 +451,10 @@ static void stage_close(struct run *run)
 
 /* ---- the whole ----------------------------------------------------------------------------- */
 
-/* Goes through the stages; stops where one failed on any rank. */
-static int go_through(struct run *run, const struct stage *stage, int (*conclude)(struct run *))
-{
-    for (; stage->go; stage++) {
-        crash_stage(stage->doing);
-        run->heartbeat.doing = stage->doing;
-        run->heartbeat.due = 0;
-        /* A compiler has a word of its own. */
-        run->progress = progress_begin(run->options.quiet || stage->go == stage_kernels);
-        stage->go(run);
-        progress_end(&run->progress);
-        if (!parallel_agree(&run->parallel, run->failure.code == EXIT_DONE, (char *)&run->failure,
-                            sizeof run->failure)) {
-            if (run->parallel.rank == 0 && run->failure.text[0])
-                fprintf(stderr, "%s\n", run->failure.text);
-            return run->failure.code;
-        }
-        if (run->over)
-            return EXIT_DONE;
-    }
-    return conclude(run);
-}
-
-int run_through(struct run *run, int argc, char **argv, const struct stage *stages,
-                int (*conclude)(struct run *))
-{
-    if (!run) {
-        fprintf(stderr, "stance %s: not enough memory\n", argv[0]);
-        return EXIT_IO;
-    }
-    run->argc = argc;
-    run->argv = argv;
-    run->start = clock_seconds();
-    run->lock.descriptor = -1;
-    run->parallel = parallel_alone();
-    return claim_ranks(argv[0], &run->parallel) ? go_through(run, stages, conclude) : EXIT_USAGE;
-}
-
-void run_end(struct run *run)
-{
-    if (run->scenario)
-        scenario_free(run->scenario);
-    free(run->scenario);
-    lock_release(&run->lock);
-    heartbeat_end(&run->heartbeat);
-    parallel_finish(&run->parallel);
-}
-
 int run_run(int argc, char **argv)
 {
     static const struct stage stages[] = {
-        {stage_options, "reading its options"},
+        {run_stage_options, "reading its options"},
         {stage_scenario, "reading the scenario"},
         {stage_claim, "looking into the results file"},
         {stage_plan, "making the plan"},

@@ -1,11 +1,12 @@
 /* run.h - what the parts of `stance run` share: run.c (the stages), run_options.c, run_extend.c
- * (rows of a smaller design) and run_end.c (what is said at the end). */
+ * (rows of a smaller design), run_end.c (what is said at the end), and claim.c, whose functions
+ * `stance optimise` shares, too. */
 #ifndef STANCE_RUN_RUN_H
 #define STANCE_RUN_RUN_H
 
-#include "claim.h"
 #include "work.h"
 
+#include "runner/base/command.h"
 #include "runner/base/message.h"
 #include "runner/base/units.h"
 #include "runner/plan/asked.h"
@@ -57,10 +58,8 @@ struct run {
     double start, look_at;  /* of clock_seconds(): the beginning, the next look at the counters */
 };
 
-/* run_options.c. Collective, as claim_options(). */
-int run_read_options(struct options *o, const struct parallel *parallel, int argc, char **argv);
-/* On rank 0, whose environment may tell: --shard, in whose place argv then has its number. */
-bool run_read_shard(struct options *o, int argc, char **argv);
+/* run_options.c: a stage. */
+void run_stage_options(struct run *run);
 
 /* What ends the run, in a line (run, code, format, ...). Returns false. */
 #define run_fail(run, exit_code, ...)                                                              \
@@ -78,9 +77,9 @@ void run_warn_of_revision(const struct run *run, const char *file, const char *r
 
 /* ---- what `stance optimise`, which is such a command, too, shares --------------------------- */
 
-/* A command goes through its stages, {NULL, NULL} is the last, and ends with what is said at the
- * end, unless one failed or it is over. Before that begins, *run is all 0. Returns the exit code.
- * `run` NULL: no memory. */
+/* A command goes through its stages, one without `go` is the last, and ends with what is said at
+ * the end, unless one failed or it is over. Before that begins, *run is all 0. Returns the exit
+ * code. `run` NULL: no memory. */
 struct stage {
     void (*go)(struct run *);
     const char *doing;
@@ -88,9 +87,14 @@ struct stage {
 int run_through(struct run *run, int argc, char **argv, const struct stage *stages,
                 int (*conclude)(struct run *));
 void run_end(struct run *run);
-/* What command_begin returned. */
-void run_take_options(struct run *run, int code);
-/* Rank 0: the file is for this job alone, and it gives signs of life. */
+/* Collective: command_begin(). Whether the command goes on. */
+bool run_take_options(struct run *run, const struct command *command);
+/* Collective: rank 0's scenario, which it has read (`read`), is read from its text by the others.
+ * false: it has not, or this rank cannot, and fails; then there is none. */
+bool run_share_scenario(struct run *run, bool read);
+/* Rank 0: the file may be written, --force replaces one that exists, --resume goes on with it, and
+ * nobody else writes it: the lock is taken, signs of life are given. Without -o its directory is
+ * `results`, which is made. */
 bool run_claim_file(struct run *run, bool *exists);
 
 /* run_extend.c. Whether the scenario can be extended; fails where not. */

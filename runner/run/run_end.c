@@ -13,12 +13,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-void run_say_stopped(const struct run *run, const char *what)
-{
-    claim_say_stopped(&run->parallel, run->argc, run->argv,
-                      run->options.single ? "--force" : "--resume", what);
-}
-
 /* What came out, over all ranks. */
 struct sums {
     uint64_t outcome[STANCE_OUTCOME_COUNT], failed, finished, computed, inferred, damaged;

@@ -45,7 +45,8 @@ static bool shard_of_slurm(struct options *o)
     return shard_parse(&o->shard, o->shard_name) || usage("--shard slurm: there is no such shard");
 }
 
-bool run_read_shard(struct options *o, int argc, char **argv)
+/* On rank 0, whose environment may tell: --shard, in whose place argv then has its number. */
+static bool read_shard_option(struct options *o, int argc, char **argv)
 {
     if (!o->shard_word || shard_parse(&o->shard, o->shard_word))
         return true;
@@ -72,17 +73,21 @@ static bool read_output(const char *text, void *output)
     return true;
 }
 
-int run_read_options(struct options *o, const struct parallel *parallel, int argc, char **argv)
+void run_stage_options(struct run *run)
 {
+    struct options *o = &run->options;
     *o = (struct options){.single_case = OPTION_NONE, .time_limit = INFINITY};
-    const int code = claim_options(parallel, &command_run, argc, argv, o);
-    o->single = o->single_case != OPTION_NONE;
-    if (code == COMMAND_GOES_ON && o->extend_count > 0) {
-        snprintf(o->extend_set, sizeof o->extend_set, "sweep.sample.count=%" PRIu64,
-                 o->extend_count);
-        o->asked.sets.text[o->asked.sets.count++] = o->extend_set;
+    if (run_take_options(run, &command_run)) {
+        o->single = o->single_case != OPTION_NONE;
+        if (o->extend_count > 0) {
+            snprintf(o->extend_set, sizeof o->extend_set, "sweep.sample.count=%" PRIu64,
+                     o->extend_count);
+            o->asked.sets.text[o->asked.sets.count++] = o->extend_set;
+        }
+        if (run->parallel.rank == 0 && !read_shard_option(o, run->argc, run->argv))
+            run->failure.code = EXIT_USAGE; /* it has been said why */
     }
-    return code;
+    parallel_broadcast(&run->parallel, &o->shard, sizeof o->shard);
 }
 
 #define TO(member) OPTION_TO(struct options, member)

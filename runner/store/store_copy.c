@@ -151,6 +151,7 @@ bool store_copy(struct store *from, struct store *to,
         const uint64_t to_row = target(context, r);
         if (!good || to_row == STORE_NOWHERE || status[r % PIECE] == STANCE_PENDING)
             continue;
+        /* Targets ascend within a call: rows may come in another order than they go to. */
         if (rows.count == STORE_ROWS || (rows.count > 0 && to_row <= aim[rows.count - 1])) {
             good = copy_some(from, &rows, to, aim, copied, message);
             rows.count = 0;
