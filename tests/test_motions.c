@@ -587,8 +587,7 @@ static void pushed_rate(double t, const double *x, double *rate)
     const double px = 0.3 * cos(x[2]) - 0.2 * sin(x[2]), pz = 0.3 * sin(x[2]) + 0.2 * cos(x[2]);
     memcpy(rate, x + 3, sizeof(double[3]));
     const double swing = swinging > 0 ? sin(2 * M_PI * swinging * (t - 0.104)) : 1;
-    rate[3] = swing * pushing[0] / 1.5;
-    rate[4] = swing * pushing[1] / 1.5 - G;
+    rate[3] = swing * pushing[0] / 1.5, rate[4] = swing * pushing[1] / 1.5 - G;
     rate[5] = swing * (px * pushing[1] - pz * pushing[0]) / 0.1;
 }
 static struct robot pushed(const char *text, double from, double to, double T, double *x)
@@ -614,7 +613,6 @@ static void push(void **state)
     arrives("push from step to step", &r, 0.008, 0.4, x, 0);
     stance_scene_free(r.scene);
 }
-/* One that swings, and ends. */
 static void swing(void **state)
 {
     (void)state;
@@ -622,8 +620,8 @@ static void swing(void **state)
     swinging = 3.7;
     struct robot r = pushed(PUSHED "0.104 0.256 3.7\n", 0.104, 0.256, 0.4, x);
     arrives("push that swings", &r, 0.008, 0.4, x, 20);
-    swinging = 0;
     stance_scene_free(r.scene);
+    swinging = 0;
 }
 /* Ends inside steps: what is given is exact; where it acts is known to order 2 by methods whose
  * steps are all of one length, and to their own by the others. */

@@ -80,7 +80,7 @@ static size_t list_methods(const struct plan *plan, const struct kernels_choice 
                 .method = stance_methods()[m],
                 .isa = isa[i],
                 .reference = runs_here(isa[i])
-                                 ? stance_kernel_find(s->scene, stance_methods()[m], NULL)
+                                 ? stance_kernel_find(s->scene, stance_methods()[m], isa[i])
                                  : NULL,
             };
         }

@@ -63,7 +63,7 @@ static void look_at_friction(const struct design_report *r, uint64_t index, stru
     double by_state[STANCE_MAX_CONTACTS * 2 * DESIGN_STATES];
     double by_torque[STANCE_MAX_CONTACTS * 2 * DESIGN_INPUTS];
     if (scene->contact_force(scene, r->model, &r->equilibrium, &force[0][0], by_state, by_torque) !=
-            STANCE_OK)
+        STANCE_OK)
         return;
     for (int c = 0, k = 0; c < scene->contacts; c++) {
         if (!(r->equilibrium.supports >> c & 1))
