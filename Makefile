@@ -85,7 +85,7 @@ isa_flags_avx512 = -DSTANCE_LANES=8 -mavx512f -mavx512dq -mavx512vl -mfma
 # Methods that take one case at a time run on every processor.
 scalar_method_flags = -DSTANCE_LANES=1
 # Loops over contacts are unrolled before gcc knows which of them a set leaves out.
-kernel_warnings = -Wno-maybe-uninitialized
+kernel_warnings = -Wno-maybe-uninitialized -Wno-array-bounds
 
 # Ahead for the fastest, which the others are held to be equal to; `make ISAS=all` for all.
 ahead_isas     := $(if $(filter $(words $(every_isa)),$(words $(ISAS))),$(ISAS),$(or $(filter $(own_isa),$(ISAS)),$(lastword $(ISAS))))

@@ -164,8 +164,7 @@ int scenario_poles(const struct scenario_values *values, double re[SCENARIO_MAX_
 static bool misfits(struct reader *r, const char *path, const struct tree_node *node, size_t items,
                     const char *what)
 {
-    const stance_carried *const carried = r->s->scene->mechanism->carried;
-    if ((carried && carried->numbered) || node->kind != TREE_LIST || node->count == items ||
+    if (scenario_numbers_feet(r->s->scene) || node->kind != TREE_LIST || node->count == items ||
         r->misfits == sizeof r->misfit / sizeof r->misfit[0])
         return false;
     struct misfit *const misfit = &r->misfit[r->misfits++];
@@ -606,12 +605,16 @@ bool scenario_same_scene(const struct scenario *a, const struct scenario *b)
                                     mechanism_same(a->scene->mechanism, b->scene->mechanism));
 }
 
+bool scenario_numbers_feet(const stance_scene *scene)
+{
+    return scene->mechanism->carried && scene->mechanism->carried->numbered;
+}
+
 uint32_t scenario_supports(const stance_scene *scene, const struct scenario_values *values)
 {
-    return !(scene->mechanism->carried && scene->mechanism->carried->numbered)
-               ? (uint32_t)values->support
-           : values->support_foot > 0 ? UINT32_C(1) << (values->support_foot - 1)
-                                      : 1;
+    return !scenario_numbers_feet(scene) ? (uint32_t)values->support
+           : values->support_foot > 0    ? UINT32_C(1) << (values->support_foot - 1)
+                                         : 1;
 }
 
 /* ---- laws ------------------------------------------------------------------------------------ */

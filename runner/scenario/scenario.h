@@ -266,6 +266,9 @@ bool scenario_is_start(const char *path);
 /* Whether two scenarios have the same scene, but for the numbers of a mechanism. */
 bool scenario_same_scene(const struct scenario *a, const struct scenario *b);
 
+/* Have its feet numbers, as initial.support_foot has them, and branches of its equilibria words? */
+bool scenario_numbers_feet(const stance_scene *scene);
+
 /* The contacts that the robot stands on, a bit each; 0: none has to carry it. */
 uint32_t scenario_supports(const stance_scene *scene, const struct scenario_values *values);
 

@@ -204,12 +204,6 @@ static bool has_equilibrium(struct reader *r, const char *path)
     return there;
 }
 
-/* Are its feet numbers of initial.support_foot? */
-static bool is_numbered(const stance_scene *scene)
-{
-    return scene->mechanism->carried && scene->mechanism->carried->numbered;
-}
-
 /* What a mechanism stands on: a state in which it stands has no translation of its own. */
 static void check_standing(struct reader *r, const struct situation *is)
 {
@@ -217,7 +211,7 @@ static void check_standing(struct reader *r, const struct situation *is)
                                               "initial.state.vx", "initial.state.vz"};
     const stance_scene *const scene = r->s->scene;
     const struct seen *const support = reader_seen(r, "initial.support");
-    if (is_numbered(scene))
+    if (scenario_numbers_feet(scene))
         return;
     r->s->base.support_foot = 0;
     if (support->node && scene->mechanism->body[0].joint != STANCE_FREE) {
@@ -381,7 +375,7 @@ static void check_steps(struct reader *r)
 static void check_support(struct reader *r, const struct situation *is)
 {
     const struct scenario *s = r->s;
-    if (!is->from_equilibrium || !is_numbered(s->scene) || r->axes_bad ||
+    if (!is->from_equilibrium || !scenario_numbers_feet(s->scene) || r->axes_bad ||
         reader_seen(r, "ground.contacts")->bad || reader_seen(r, "initial.support_foot")->bad)
         return;
     for (int foot = 1; foot <= s->scene->contacts; foot++) {

@@ -203,11 +203,6 @@ static const char *describe_tolerance(char *text, size_t size)
     return text;
 }
 
-static bool has_numbered_feet(const stance_scene *scene)
-{
-    return scene->mechanism->carried && scene->mechanism->carried->numbered;
-}
-
 /* Rows that stay one field, whose words or sizes are the scene's. */
 static bool add_single(struct schema *schema, const struct row *row)
 {
@@ -248,7 +243,7 @@ static bool add_single(struct schema *schema, const struct row *row)
         field->low = 1;
         field->high = scene->contacts;
         field->fallback = NAN;
-    } else if (row->family == FAMILY_BRANCH && !has_numbered_feet(scene)) {
+    } else if (row->family == FAMILY_BRANCH && !scenario_numbers_feet(scene)) {
         field->type = FIELD_INTEGER;
         field->words = NULL;
         field->word_count = 0;
@@ -257,7 +252,7 @@ static bool add_single(struct schema *schema, const struct row *row)
                  "which of several solutions, those with the centre of mass higher up first");
     } else if (row->family == FAMILY_POLES) {
         field->items = 2 * postures;
-        field->fewer = !has_numbered_feet(scene) && field->type == FIELD_POLES;
+        field->fewer = !scenario_numbers_feet(scene) && field->type == FIELD_POLES;
     } else if (row->family == FAMILY_ACTUATORS) {
         field->items = actuators;
     } else if (row->family == FAMILY_MATRIX) {
@@ -271,7 +266,7 @@ static bool add_single(struct schema *schema, const struct row *row)
 static bool scene_has(const stance_scene *scene, const char *path)
 {
     const bool acts = scene->actuators > 0, touches = scene->mechanism->elements > 0;
-    const bool numbered = has_numbered_feet(scene);
+    const bool numbered = scenario_numbers_feet(scene);
     /* On rails that nothing else moves, nothing can stand. */
     const bool stands =
         !(scene->mechanism->carried && scene->mechanism->body[0].joint == STANCE_SLIDE);
