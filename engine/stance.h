@@ -118,7 +118,7 @@ struct stance_scene {
         *coordinate;                 /* [coordinates] name, unit, text; ranges of initial values */
     const char *const *contact_name; /* [contacts] */
     /* [contacts] The contact whose tangential impulse holds it, too: its own index, the first end
-     * of a sole for both ends, -1 for a stop, which has none. NULL: each its own. */
+     * of a sole for both ends, -1 for a stop, which has none. */
     const int *grip;
     const char *const *actuator_name; /* [actuators] */
     const int *posture;               /* [postures] indices into the coordinates */

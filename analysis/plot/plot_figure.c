@@ -8,7 +8,7 @@
 int plot_case_grounded(const stance_scene *scene)
 {
     int count = 0;
-    while (count < scene->contacts && !(scene->grip && scene->grip[count] < 0))
+    while (count < scene->contacts && scene->grip[count] >= 0)
         count++;
     return count;
 }

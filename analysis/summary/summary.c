@@ -131,7 +131,7 @@ static void collect_touching(struct summary *summary, const struct results *r,
         scenario_case_values(s, r->index, &values);
     scene->gaps(scene, values.robot, state, gap);
     for (int c = 0; c < scene->contacts; c++) {
-        const bool stop = scene->grip && scene->grip[c] < 0;
+        const bool stop = scene->grip[c] < 0;
         if (gap[c] <= SUMMARY_TOUCHES && (stop || values.contacts >> c & 1))
             summary->touching |= 1u << c;
         snprintf(summary->contact[c], STANCE_NAME, "%s", scene->contact_name[c]);

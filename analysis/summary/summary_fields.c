@@ -53,7 +53,7 @@ static void add_contacts(struct summary *summary, const stance_scene *scene, con
     char text[sizeof summary->field->text];
     size_t count = 0;
     for (int i = 0; i < scene->contacts; i++)
-        if ((contacts >> i & 1) && !(scene->grip && scene->grip[i] < 0))
+        if ((contacts >> i & 1) && scene->grip[i] >= 0)
             names[count++] = scene->contact_name[i];
     if (count > 0)
         add_field(summary, path, words_join(text, sizeof text, " ", names, count));

@@ -410,7 +410,7 @@ static bool check_start(const stance_scene *scene, const struct scenario_values 
                             "1e4 rad",
                             scene->contact_name[c]);
         }
-        const bool stop = scene->grip && scene->grip[c] < 0;
+        const bool stop = scene->grip[c] < 0;
         if (stop && gap[c] < -DEEPEST_START)
             return beyond_stop(scene, values, out, c, message);
         if ((out->contacts >> c & 1) && gap[c] < -DEEPEST_START &&

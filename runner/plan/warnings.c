@@ -146,7 +146,7 @@ static void look_at_ground(const stance_scene *scene, const stance_case *c, uint
     double gap[STANCE_MAX_CONTACTS];
     scene->gaps(scene, c->robot, c->position, gap);
     for (int k = 0; k < scene->contacts; k++) {
-        if (c->contacts >> k & 1 || (scene->grip && scene->grip[k] < 0) || !(gap[k] < -INSIDE))
+        if (c->contacts >> k & 1 || scene->grip[k] < 0 || !(gap[k] < -INSIDE))
             continue;
         if (first_of(t, BURIED, index))
             snprintf(t->what[BURIED], sizeof t->what[BURIED],

@@ -150,10 +150,10 @@ void *parallel_gather(const struct parallel *parallel, const void *data, size_t 
     void *const all = parallel->rank == 0 ? malloc((size_t)parallel->size * size) : NULL;
     if (parallel->rank == 0 && !all)
         abort(); /* the others wait in the gather: MPI ends the job */
-    if (parallel->size == 1)
-        memcpy(all, data, size);
-    else
+    if (parallel->size > 1)
         MPI_Gather(data, (int)size, MPI_BYTE, all, (int)size, MPI_BYTE, 0, MPI_COMM_WORLD);
+    else if (all)
+        memcpy(all, data, size);
     return all;
 }
 

@@ -182,7 +182,7 @@ static void add_bodies(struct text *text, const stance_scene *scene)
         text_add(text, ",\"unit\":\"%s\"}", turns ? "N m" : "N");
     }
     text_add(text, "],\"contacts\":[");
-    for (int c = 0; c < scene->contacts && !(scene->grip && scene->grip[c] < 0); c++) {
+    for (int c = 0; c < scene->contacts && scene->grip[c] >= 0; c++) {
         text_add(text, "%s", c ? "," : "");
         text_string(text, scene->contact_name[c]);
     }
