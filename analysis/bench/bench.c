@@ -29,13 +29,14 @@ static bool balance(const stance_scene *scene, const stance_equilibrium_choice *
     enum { STATES = 2 * STANCE_MAX_POSTURE };
     const int n = 2 * scene->postures, m = scene->actuators;
     stance_equilibrium equilibrium;
+    stance_message ignored;
     double A[STATES * STATES], B[STATES * STANCE_MAX_ACTUATORS];
     double re[STATES], im[STATES] = {0}, K[STANCE_MAX_ACTUATORS * STATES];
     for (int i = 0; i < n; i++)
         re[i] = -3 - 0.3 * i;
     if (scene->equilibrium(scene, c->robot, choice, &equilibrium, NULL) != STANCE_OK ||
         scene->linearise(scene, c->robot, &equilibrium, A, B) != STANCE_OK ||
-        stance_place(n, m, A, B, re, im, K, NULL, NULL, NULL) != STANCE_OK)
+        stance_place(n, m, A, B, re, im, K, NULL, NULL, &ignored) != STANCE_OK)
         return false;
     memcpy(c->position, equilibrium.position, sizeof c->position);
     memcpy(c->near.feedforward, equilibrium.torque, sizeof c->near.feedforward);
