@@ -124,14 +124,14 @@ ADDITIONS = {
         ("engine/stance.h", r"^    X\(UNDECIDED, undecided,.*$",
          " \\\n    X(FLEW, flew, 5, \"left the ground for good\")"),
         ("engine/core/loop/judge.h", r"^    v\.fell = .*$",
-         "\n    v.flew = live & mask_less(lanes_of(3), b->now.s[1]);"),
+         "\n    v.flew = live & mask_less(lanes_of(2.9), b->now.gap[0]);"),
         ("analysis/draw/style.gp", r"^colour_fell = .*$", "\ncolour_flew = 0x123456"),
     ],
     "answer": [
         ("engine/stance.h", r"^    X\(peak_torque, .*\\$",
          "\n    X(highest, double, MAX, own, \"m\", \"largest height\") \\"),
         ("engine/core/loop/judge.h", r"^    account_told\(b, all, ok, TOLD_each, report\);$",
-         "\n    account_largest(all, ok, b->now.s[1], &b->answer.highest);"),
+         "\n    account_largest(all, ok, b->now.gap[0] + 0.1, &b->answer.highest);"),
     ],
     "method": [
         ("engine/methods/middle.c", None, None),

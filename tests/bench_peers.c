@@ -92,7 +92,11 @@ static const char *unspeakable(void)
                  c->friction == as_first.friction && c->restitution == as_first.restitution &&
                  c->contacts == as_first.contacts && c->torque_limit == as_first.torque_limit &&
                  c->sample_every == as_first.sample_every;
-        linear &= !c->decouples && !c->switches && !c->bends && !c->tree && !c->lands_ahead &&
+        /* Descriptions, slopes, other gravity are not told. */
+        linear &= c->scene == stance_scene_find(c->scene->name) &&
+                  c->robot[STANCE_ROBOT_SLOPE] == 0 &&
+                  c->robot[STANCE_ROBOT_GRAVITY] == STANCE_GRAVITY;
+        linear &= !c->decouples && !c->switches && !c->bends && !c->lands_ahead &&
                   !(c->angle_noise > 0 || c->rate_noise > 0 || c->noise > 0 || c->lag > 0) &&
                   c->delay == 0 && !(c->torque_rate > 0 && isfinite(c->torque_rate));
     }
