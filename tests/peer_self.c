@@ -49,8 +49,8 @@ static stance_case make_case(const double *state)
     const struct peer_request *const r = engine.request;
     stance_case c = {.friction = r->friction, .restitution = r->restitution};
     stance_robot_fallback(stance_scene_find("biped"), c.robot);
-    c.scene = stance_scene_find("biped");
     memcpy(c.robot, r->robot, sizeof(double) * (size_t)r->robots);
+    stance_case_robot(stance_scene_find("biped"), &c);
     memcpy(c.position, state, 5 * sizeof(double));
     memcpy(c.velocity, state + 5, 5 * sizeof(double));
     for (int i = 0; i < 2; i++) {
