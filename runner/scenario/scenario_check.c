@@ -420,10 +420,12 @@ static void check_lands(struct reader *r)
                       feet == 1 ? "is" : "are", feet);
 }
 
-/* Where a run begins at a state and no controller is designed no design depends on anything. */
+/* Where nothing acts and a run begins at a state no design depends on anything. Of described robots
+ * files have had one for each point that makes another robot. */
 static void check_designs(struct reader *r, const struct situation *is)
 {
-    const bool none = is->start_known && is->from_state && is->law_known && !is->law->designed;
+    const bool none = is->start_known && is->from_state && r->s->scene->actuators == 0 &&
+                      r->s->scene->mechanism->carried;
     for (int a = 0; a < r->s->axes && none; a++)
         r->s->axis[a].design = false;
 }
