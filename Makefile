@@ -125,7 +125,7 @@ BUILD_INFO = -DSTANCE_REVISION='"$(REVISION)"' \
              -DSTANCE_COMPILER='"$(shell $(CC) --version | head -n 1)"' \
              -DSTANCE_CFLAGS='"$(KERNEL_CFLAGS) $(STRICT)"'
 
-.PHONY: all help packages demo golden golden-neon golden-web web web-page test check check-programs check-scripts check-long test-scripts test-neon test-web test-long test-kills hunt test-slurm test-hosts fuzz fuzz-programs bench bench-run truths bench-peers bench-peers-run bench-web bench-schedule profile lint sanitize install uninstall clean FORCE
+.PHONY: all help packages demo golden golden-neon golden-web web web-page test check check-programs check-scripts check-length test-scripts test-length mutations test-neon test-web test-long test-kills hunt test-slurm test-hosts fuzz fuzz-programs bench bench-run truths bench-peers bench-peers-run bench-web bench-schedule profile lint sanitize install uninstall clean FORCE
 all: $(PROGRAM)
 
 $(PROGRAM): $(program_objects) $(archives)
@@ -358,24 +358,31 @@ TEST_ENVIRONMENT = $(MPI_ENVIRONMENT) BUILD=$(BUILD) PYTHON=$(PYTHON) STANCE=$(a
 # kernels that are quicker to compile.
 test-neon: packages-neon
 	$(MAKE) golden
-	@$(TEST_ENVIRONMENT) NEON_CFLAGS=-O3 bash tests/whole_machines.sh
+	@$(TEST_ENVIRONMENT) NEON_CFLAGS=-O3 bash tests/run.sh whole_machines
 # The same cases in WebAssembly, many of them.
 test-web: packages-pages
 	$(MAKE) golden
-	@$(TEST_ENVIRONMENT) GOLDEN_CASES=$(or $(GOLDEN_CASES),500) bash tests/whole_machines.sh
+	@$(TEST_ENVIRONMENT) GOLDEN_CASES=$(or $(GOLDEN_CASES),500) bash tests/run.sh whole_machines
 
-# A share of every test; every script (also those with a line "# long") for every instruction set; everything at
-# length. Pages are tested where they can be made: not without npm's registry.
+# A share of every test; every script (also those with a line "# long") for every instruction set; the same at
+# length. Pages are tested where they can be made: not without npm's registry. test-long: this and more, whose verdicts
+# are kept (tests/long.sh).
 test: packages-test
 	$(MAKE) check
 check-programs: $(PROGRAM) $(test_programs) $(other_programs)
 check: check-programs
 	@$(TEST_ENVIRONMENT) bash tests/run.sh
-test-scripts test-long: test-%: packages-test
+test-scripts test-length: test-%: packages-test
 	+@$(MAKE) packages-pages && $(MAKE) web-page || echo 'test-$*: pages cannot be made here: their tests are skipped' >&2
 	$(MAKE) ISAS=all check-$*
-check-scripts check-long: check-%: check-programs $(BUILD)/tests/bench_peers $(peer_programs) fuzz-programs
-	@$(TEST_ENVIRONMENT) STANCE_TEST_$(if $(filter long,$*),LONG,SCRIPTS)=1 bash tests/run.sh
+test-long:
+	@bash tests/long.sh $(STAGES)
+# How many deliberate faults the tests find: tests/mutations.py. An hour or two. ROWS: some of them.
+MUTATIONS ?= /tmp/stance-mutations
+mutations: packages-test
+	@$(MPI_ENVIRONMENT) $(PYTHON) tests/mutations.py $(MUTATIONS) $(ROWS)
+check-scripts check-length: check-%: check-programs $(BUILD)/tests/bench_peers $(peer_programs) fuzz-programs
+	@$(TEST_ENVIRONMENT) STANCE_TEST_$(if $(filter length,$*),LONG,SCRIPTS)=1 bash tests/run.sh
 
 # Numbers that depend on the neighbours: HUNT_CASES of each kind for every method of the biped, a core
 # each, for an hour or so; a share is in `test`.
@@ -515,7 +522,8 @@ help:
 	@echo 'make web        the same with pages for the browser: studies to click through, in results/gallery'
 	@echo 'make test       install what is missing, build, run a share of every test'
 	@echo 'make test-scripts  ... every script, for every instruction set: pages, fuzzing, other machines, too'
-	@echo 'make test-long  ... and every test at length'
+	@echo 'make test-long  ... and what takes hours: everything at length, sanitizers, kills, other machines (STAGES=)'
+	@echo 'make mutations  how many deliberate faults the tests find (ROWS=)'
 	@echo 'make hunt       look for numbers that depend on the neighbours (HUNT_CASES= SEED=)'
 	@echo 'make test-kills kill runs at random, damage files at random (KILLS= FLIPS= TRUNCATIONS= SEED=)'
 	@echo 'make test-neon  install a cross compiler and an emulator, run the kernels for ARM, compare'

@@ -5,10 +5,11 @@
 # A test that has passed is not run again before something changes that its outcome may depend on: a program
 # itself; of a script the rooms (rooms.sh) that its line "# about:" names, and what they use, of others
 # every source; and for all of them scenarios and what they share in tests. Scripts with a line "# long" run
-# with STANCE_TEST_SCRIPTS, or STANCE_TEST_LONG, with which every test runs at length.
+# with STANCE_TEST_SCRIPTS, or STANCE_TEST_LONG, with which every test runs at length. STANCE_TEST_FIRST: none is
+# begun when one has failed.
 set -u
 cd "$(dirname "$0")/.."
-build=${BUILD:-build} pattern=${1:-} passed=0 failed=0 unchanged=0
+build=${BUILD:-build} pattern=${1:-} passed=0 failed=0 unchanged=0 stopped=
 # Not what the user's settings and files make of it: kernels that tests compile are theirs, too.
 unset CDPATH STANCE_ISA STANCE_SCRIPTS "${!SLURM_@}"
 STANCE_CACHE=$(realpath -m "$build")/cache && export STANCE_CACHE
@@ -49,6 +50,7 @@ run() {
 
 report() { # name
     local name=$1 log="$scratch/$1" status=1 seconds=0 ok bad
+    [ -n "$stopped" ] && [ ! -e "$log.end" ] && return
     if [ -e "$log.before" ]; then
         read -r _ _ ok <"$log.before"
         unchanged=$((unchanged + ok)) passed=$((passed + ok))
@@ -80,9 +82,9 @@ names() {
     done
 }
 
-# One more at a time than there are cores, as some wait for others; those that take longest first.
+# One more at a time than there are cores, as some wait for others; first what sees most, then what takes longest.
 tests=$(
-    for name in whole_program whole_robust whole_view whole_adding whole_runner whole_ranges whole_objects whole_install test_stepping test_balance test_rest test_lanes; do
+    for name in whole_corpus whole_program whole_robust whole_view whole_adding whole_runner whole_ranges whole_objects whole_install test_stepping test_balance test_rest test_lanes; do
         names tests/$name.*
     done
     names tests/whole_*.sh tests/test_*.c
@@ -96,6 +98,10 @@ for name in $tests; do
     fi
     rm -f "$build/passed/$name"
     while (($(jobs -rp | wc -l) > $(nproc))); do wait -n; done
+    if [ -n "${STANCE_TEST_FIRST:-}" ] && { grep -qs '^not ok' "$scratch"/*_* || grep -qsv '^0 ' "$scratch"/*.end; }; then
+        stopped=1
+        break
+    fi
     if [[ $name == whole_* ]]; then
         run "$name" env ASAN_OPTIONS="$mpi_options" bash "tests/$name.sh" &
     else

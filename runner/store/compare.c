@@ -427,17 +427,15 @@ static bool open_variable(struct compared *v, const hid_t object[2], const char 
     v->elements = results_elements(v->r[0], rank[0], length[0]);
     const bool attribute = H5Iget_type(object[0]) == H5I_ATTR;
     const enum value_kind kind = value_kind_of(v->type[0]), other = value_kind_of(v->type[1]);
-    if (attribute &&
-        (kind != other || v->elements != results_elements(v->r[1], rank[1], length[1])))
-        *differs = "types";
-    else if (attribute)
+    const bool texts = kind == VALUE_TEXT && other == VALUE_TEXT;
+    if (attribute && kind == other && v->elements == results_elements(v->r[1], rank[1], length[1]))
         return v->elements < BLOCK; /* they are read at once */
-    else if (rank[0] != rank[1] ||
-             memcmp(length[0], length[1], (size_t)rank[0] * sizeof length[0][0]) != 0)
+    if (!attribute && (rank[0] != rank[1] ||
+                       memcmp(length[0], length[1], (size_t)rank[0] * sizeof length[0][0]) != 0))
         *differs = "shapes";
-    else if (kind == VALUE_OTHER)
+    else if (!attribute && kind == VALUE_OTHER)
         *differs = "types that stance does not write";
-    else if (!(kind == VALUE_TEXT && other == VALUE_TEXT) && H5Tequal(v->type[0], v->type[1]) <= 0)
+    else if (attribute || (!texts && H5Tequal(v->type[0], v->type[1]) <= 0))
         *differs = "types";
     return true;
 }
