@@ -73,4 +73,8 @@ check "the picture is in the help" says "NAME-ends: how many cases have ended" .
 check "the picture is drawn" says '^ball-ends.png$' ./stance plot ball.h5
 check "it shows its labels" grep -q '<text>How many have ended by each time</text>' ball-ends.svg
 check "the table has both" says "flew" ./stance table ball.h5
+check "the page colours the outcome as pictures do" "$python" -c "
+import re, subprocess
+subprocess.run(['./stance', 'view', 'ball.h5'], check=True)
+assert re.search('\"name\":\"flew\",\"colour\":\"#[0-9a-f]{6}\"', open('ball.html').read())"
 echo "1..$count"

@@ -291,6 +291,16 @@ FILE *gnuplot_cells(struct gnuplot *g)
     return open_scratch(g, name);
 }
 
+void gnuplot_kind_colour(const char *kind, char colour[8])
+{
+    char name[80];
+    snprintf(name, sizeof name, "\ncolour_%s = 0x", kind);
+    const char *const at = strstr(style_gp, name);
+    colour[0] = '\0';
+    if (at)
+        snprintf(colour, 8, "#%.6s", at + strlen(name));
+}
+
 void gnuplot_colour(struct gnuplot *g, const char *colour, const char *name)
 {
     const char *value = look_colour(g->look, name);

@@ -78,6 +78,10 @@ static inline void gnuplot_legend(struct gnuplot *g, const char *colour, const c
 {
     gnuplot_legend_mark(g, colour, 0, 0, name, more);
 }
+/* The colour of a kind of case, as style.gp has it: "#rrggbb", or "" of one that it does not name.
+ */
+void gnuplot_kind_colour(const char *kind, char colour[8]);
+
 /* Gives a colour of style.gp the value that the look has for a name, if it has. */
 void gnuplot_colour(struct gnuplot *g, const char *colour, const char *name);
 void gnuplot_note(struct gnuplot *g, const char *text);

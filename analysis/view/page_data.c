@@ -1,6 +1,7 @@
 /* page_data.c - what a page holds of a results file. */
 #include "page_data.h"
 
+#include "analysis/draw/gnuplot.h"
 #include "analysis/statistics/statistics.h"
 #include "analysis/table/table.h"
 #include "runner/base/message.h"
@@ -26,12 +27,6 @@ struct page {
     json_t *head, *blocks, *left_out;
     double bytes; /* of answers so far */
     stance_message *message;
-};
-
-const char *const page_kind_colour[RESULTS_KIND_COUNT] = {
-    [RESULTS_STABILISED] = "#005a92", [RESULTS_RESTED] = "#56b4e9", [RESULTS_FELL] = "#f3bb4c",
-    [RESULTS_UNDECIDED] = "#a45288",  [RESULTS_DONE] = "#009e73",   [RESULTS_FAILED] = "#000000",
-    [RESULTS_PENDING] = "#e4e4e4",
 };
 
 static bool put_block(struct page *p, const char *name, const char *type, const void *numbers,
@@ -306,9 +301,12 @@ static bool put_provenance(struct page *p)
     uint64_t *recorded;
     size_t count;
     json_t *const kinds = json_array(), *const list = json_array();
-    for (int k = 0; k < RESULTS_KIND_COUNT; k++)
+    for (int k = 0; k < RESULTS_KIND_COUNT; k++) {
+        char colour[8];
+        gnuplot_kind_colour(results_kind_names[k], colour);
         json_array_append_new(kinds, TABLE_OBJECT({"name", as_text(results_kind_names[k])},
-                                                  {"colour", as_text(page_kind_colour[k])}));
+                                                  {"colour", as_text(colour)}));
+    }
     const bool good = results_recorded(r, &recorded, &count, p->message);
     for (size_t i = 0; good && i < count && i < MOST_LISTED; i++)
         table_append(list, as_whole(recorded[i]));

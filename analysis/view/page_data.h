@@ -42,9 +42,6 @@ void page_base64(FILE *out, const char *id, const uint8_t *bytes, size_t size);
 /* One of JSON, without '<' and '&'. */
 void page_json(FILE *out, const char *id, const json_t *json);
 
-/* Colours of kinds: those of analysis/draw/style.gp. */
-extern const char *const page_kind_colour[RESULTS_KIND_COUNT];
-
 /* page_charts.c: a list of what is better read off curves than off a map, new; NULL with one line
  * in *message. A chart is an object for charts.ts: {title, text, x, y, series}; x and y {label,
  * unit, log} and, where places have names, words; a series {name, x, y, low, high, lines}. */

@@ -5,6 +5,7 @@
  */
 #include "page_data.h"
 
+#include "analysis/draw/gnuplot.h"
 #include "analysis/statistics/statistics.h"
 #include "runner/store/search_file.h"
 
@@ -60,6 +61,7 @@ static void put_map(FILE *out, const struct results *r)
                          second >= 0 && second < first ? first : second};
     const size_t across = r->axis[axis[0]].count, up = axis[1] >= 0 ? r->axis[axis[1]].count : 1;
     const size_t columns = across < CELLS ? across : CELLS, rows = up < CELLS ? up : CELLS;
+    char colour[8];
     fprintf(out,
             "<svg viewBox=\"0 0 %zu %zu\" preserveAspectRatio=\"none\" role=\"img\" "
             "aria-label=\"map of outcomes\" shape-rendering=\"crispEdges\">",
@@ -71,8 +73,9 @@ static void put_map(FILE *out, const struct results *r)
             for (next = i + 1; next < columns; next++)
                 if (kind_at(r, axis, place(next, columns, across), y) != kind)
                     break;
+            gnuplot_kind_colour(results_kind_names[kind], colour);
             fprintf(out, "<path d=\"M%zu %zuh%zuv1h-%zuz\" fill=\"%s\"/>", i, j, next - i, next - i,
-                    page_kind_colour[kind]);
+                    colour);
         }
     fputs("</svg>", out);
 }
@@ -86,9 +89,11 @@ static void put_shares(FILE *out, const struct statistics_counts *counts, uint64
           out);
     for (int k = 0; k < RESULTS_KIND_COUNT; k++) {
         const double width = 100 * (double)counts->kind[k] / (double)cases;
+        char colour[8];
+        gnuplot_kind_colour(results_kind_names[k], colour);
         if (width > 0)
             fprintf(out, "<rect x=\"%.3f\" y=\"0\" width=\"%.3f\" height=\"72\" fill=\"%s\"/>",
-                    from, width, page_kind_colour[k]);
+                    from, width, colour);
         from += width;
     }
     fputs("</svg>", out);

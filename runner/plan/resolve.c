@@ -568,6 +568,7 @@ bool resolve_case(const stance_scene *scene, const struct scenario_values *value
         .seed = seed,
         .grid_index = index,
     };
+    /* friction and all else that a case has by the scenario's name: scenario.h */
 #define TAKE(name) out->name = values->name;
     SCENARIO_WHOLES(TAKE)
     SCENARIO_NUMBERS(TAKE)

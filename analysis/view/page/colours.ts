@@ -1,5 +1,5 @@
-// colours.ts - colours of outcomes, words and numbers: those of the pictures (analysis/draw/style.gp), after Okabe and
-// Ito (2008) and cividis (Nunez, Anderton, Renslow 2018).
+// colours.ts - colours of words and numbers: those of the pictures (analysis/draw/style.gp), after Okabe and Ito
+// (2008) and cividis (Nunez, Anderton, Renslow 2018). Those of outcomes come with the data.
 
 export const hues = ['#0072b2', '#d55e00', '#009e73', '#cc79a7', '#e69f00', '#56b4e9', '#7a7a7a'];
 const palette = [0x00224e, 0x434e6c, 0x7d7c78, 0xbcae6c, 0xfee838];

@@ -18,6 +18,9 @@
  * where a grip sticks, and x_T = 0, edge = -+mu where it slips. They are solved contact after
  * contact, by blocks of two rows or one.
  *
+ * Who solves them, how: solve.h tries direct.h (certain), pair.h (two points), lane.h (every mode
+ * of one lane) and crowd.h (one of many contacts), in this order.
+ *
  * D need not be symmetric (an exact Newton linearisation is not) nor positive (where a law answers
  * contact forces at once it is not).
  */
@@ -130,7 +133,7 @@ HOT mask contact_stands(lanes friction, lanes load, lanes tangential)
 
 /* An operator in the rows that take part, factored contact after contact. */
 struct contact_factors {
-    lanes inverse[CONTACTS][2][2];        /* of what those before leave of each, the sign turned */
+    lanes inverse[CONTACTS][2][2];        /* of each block less what earlier ones take, negated */
     lanes push[CONTACTS][CONTACTS][2][2]; /* c < k: impulse at c by that at k ... */
     lanes through[CONTACTS][CONTACTS][2][2]; /* ... and velocity at k by the impulse at c */
     mask regular;                            /* no pivot is small, nor negative */
@@ -163,11 +166,12 @@ HOT void contact_matrix(contact_set touching, const lanes (*D)[CONTACTS][2][2],
     }
 }
 
-/* What becomes of pivots that are roundings of zero: anything; contacts that depend on others do
- * nothing; one row of theirs does what is left to be done. */
+/* How pivots that are roundings of zero are treated: not at all; dependent contacts do nothing; one
+ * of their rows does what is left to be done. */
 enum contact_care { CONTACT_PLAIN, CONTACT_GUARDED, CONTACT_CAREFUL };
 
-/* Of a singular 2 by 2 block the larger diagonal does the work, unless it is nothing, too. */
+/* Inverts singular 2 by 2 blocks by their larger diagonal alone; by nothing, if that is zero, too.
+ */
 COLD void contact_invert_singular(mask singular, const lanes own[2], const lanes G[2][2],
                                   lanes inverse[2][2])
 {
@@ -340,7 +344,7 @@ HOT mask contact_rest(contact_set touching, enum contact_care care,
 /* What a contact problem is asked beside its operator. */
 struct contact_rule {
     lanes friction;
-    lanes prefer; /* of several solutions the one with the least kinetic energy: 1, most: -1 */
+    lanes prefer; /* of several solutions that with the least kinetic energy: 1; the most: -1 */
     /* NULL, or for each grip 0 or the sign of a slip that goes on whatever the impulse: for
      * accelerations, where D and uf are those of the contacts and r are forces. */
     const lanes *sliding;
@@ -374,7 +378,7 @@ struct contact_verdict {
     mask unranked;  /* too many contacts to know whether it is the one that is preferred */
 };
 
-/* That of *a where m holds, elsewhere that of *b. */
+/* Joins two verdicts: *a in the lanes of m, *b elsewhere. */
 HOT struct contact_verdict contact_verdicts(mask m, const struct contact_verdict *a,
                                             const struct contact_verdict *b)
 {

@@ -133,8 +133,8 @@ HOT void direct_velocities(const lanes (*D)[CONTACTS][2][2], const lanes (*uf)[2
         }
 }
 
-/* Of what is rare: compiled once. As contact_matrix and contact_factor, whose arguments they take;
- * ridge: share of their diagonal that is added to tangential rows. */
+/* contact_matrix, then contact_factor, with their arguments; not inlined, as it is rarely needed.
+ * ridge: share of their own diagonal that is added to tangential rows. */
 COLD void direct_factor(contact_set touching, enum contact_care care,
                         const lanes (*D)[CONTACTS][2][2], const mask (*rows)[2], const lanes *edge,
                         double ridge, lanes (*M)[CONTACTS][2][2], struct contact_factors *f)
@@ -156,7 +156,7 @@ HOT void direct_rest(contact_set touching, const mask (*rows)[2], const struct c
             part[c][a] = choose(rows[c][a], u[c][a], lanes_of(0));
     contact_back(touching, f, (const lanes(*)[2])part, x);
 }
-/* ... compiled once. */
+/* direct_rest, not inlined: for callers that are rare. */
 COLD void direct_back(contact_set touching, const mask (*rows)[2], const struct contact_factors *f,
                       const lanes (*u)[2], lanes (*x)[2])
 {

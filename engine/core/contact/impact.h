@@ -64,7 +64,7 @@ static inline struct impact_share impact_share_begin(struct impact_tried first)
                                  .end = first,
                                  .found = MASK_NONE};
 }
-/* Those of the lanes m that are not at the end of their search. */
+/* The lanes of m whose search has not ended. */
 static inline mask impact_share_open(const struct impact_share *s, mask m)
 {
     return m & mask_less(lanes_of(IMPACT_FINE), s->high - s->low) & mask_less(lanes_of(0), s->high);
@@ -98,7 +98,7 @@ static inline mask impact_share_dips(struct impact_share *s, mask m, lanes middl
            mask_less(at, lanes_of(1)) &
            mask_less_equal(low - slope * slope / (4 * bend), IMPACT_DIPS * (low + high));
 }
-/* In the lanes m the share that was next has been tried, which gains energy or not. Returns those
+/* Tells, for the lanes m, whether the share that was just tried gains energy. Returns the lanes
  * where it does not. */
 static inline mask impact_share_tell(struct impact_share *s, mask m, mask gains,
                                      const struct impact_tried *tried)

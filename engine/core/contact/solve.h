@@ -134,7 +134,7 @@ HOT void solve_contacts(const struct contact_rule *rule, const lanes (*D)[CONTAC
     unsure &= where;
     if (!mask_any(unsure))
         return;
-    /* With copies: what is passed on by address stays in memory. */
+    /* Copies, because what is passed by address has to stay in memory. */
     struct contact_rule own = *rule;
     lanes D1[CONTACTS][CONTACTS][2][2], uf1[CONTACTS][2], r1[CONTACTS][2];
     lanes sliding[CONTACTS], shift[CONTACTS][2], before[CONTACTS][2], last[CONTACTS][2];

@@ -188,7 +188,7 @@ HOT mask project_position(const struct setting *set, const struct motion *from, 
                               choose(mask_less(lanes_of(0), it->r[c][0]), wanted[c], lanes_of(0)) -
                                   it->gap[c],
                               lanes_of(0));
-            /* Of two dependent ones one may have to stay above. */
+            /* Two dependent contacts cannot both reach zero: one may stay above. */
             if (round > 2)
                 error[c] = lanes_max(error[c], lanes_of(0));
             todo |= mask_less(lanes_of(STEP_PROJECTION), lanes_abs(error[c]));
@@ -343,7 +343,7 @@ HOT void project_along(const struct setting *set, const lanes (*rebound)[2], con
     const mask off = project_wrong(rebound, touching, g, (const lanes(*)[2])u, wrong);
     if (!mask_any(off))
         return;
-    /* With copies: what is passed on by address stays in memory. */
+    /* Copies, because what is passed by address has to stay in memory. */
     lanes w[SCENE_COORDINATES], v[CONTACTS][2], same[CONTACTS][2][SCENE_COORDINATES];
     const struct grip factors = *g;
     const scene_trig trig = it->end;
@@ -403,8 +403,8 @@ static inline void project_slides(const struct setting *set, const struct iterat
     }
 }
 
-/* Lanes where a contact that does not carry lies on the ground and approaches it; where an end of a
- * grip carries; and where one that slides has come to slide the way its friction points. */
+/* Three tests, by lanes: a contact that does not carry lies on the ground and approaches it; an end
+ * of a grip carries; a sliding contact has come to slide the way its friction points. */
 HOT mask project_falls(const struct setting *set, mask run, const struct grip *g, int c,
                        const struct iterate *it, const lanes u[2])
 {

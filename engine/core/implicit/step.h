@@ -414,9 +414,8 @@ COLD mask step_once(const int *corner, const struct setting *set, const struct m
     return converged;
 }
 
-/* The same. Mending the position may bring contacts to the ground that no iterate saw there, and
- * to stop them is no mending but an impact: the step is taken once more with them, where there is
- * one. */
+/* step_once, repeated where mending the position brings contacts to the ground that no iterate saw
+ * there: to stop them is an impact, not mending, so the step is taken again with them. */
 COLD mask step_solve(const int *corner, const struct setting *set, const struct motion *from,
                      const lanes *torque, lanes h, mask run, bool coupled, int freeze_after,
                      struct motion *to, struct step_report *report)

@@ -238,7 +238,7 @@ static inline lanes lanes_of(double x)
 {
     return (lanes){x, x};
 }
-/* By their instructions: of GCC's own vectors gcc 12 makes selections that SSE2 has not. */
+/* Intrinsics, because of GCC's vectors gcc 12 makes selections that SSE2 lacks. */
 static inline mask mask_less(lanes a, lanes b)
 {
     return (mask)_mm_cmplt_pd(a, b);

@@ -70,7 +70,7 @@ static inline void linear_torque(const struct linear_law *law, const lanes *post
     }
 }
 
-/* Of the linear law. */
+/* Torques by the linear law `near`. */
 static inline void law_torque(const struct law *law, const lanes *s, const lanes *w, lanes *torque)
 {
     lanes posture[POSTURES], rate[POSTURES];
@@ -78,7 +78,7 @@ static inline void law_torque(const struct law *law, const lanes *s, const lanes
     scene_posture(w, rate);
     linear_torque(&law->near, posture, rate, torque);
 }
-/* ... at a sample, with its bend. */
+/* The same at a sample, with the law's bend. */
 static inline void law_sampled(const struct law *law, const lanes *s, const lanes *w, lanes *torque)
 {
     lanes posture[POSTURES], rate[POSTURES], beyond = lanes_of(-1);

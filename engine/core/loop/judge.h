@@ -18,7 +18,7 @@ HOT void account_sum(bool all, mask ok, lanes value, lanes *sum)
 #define ACCOUNT_STEPS(value, sum) account_sum(all, ok, value, sum)
 #define ACCOUNT_MAX(value, largest) account_largest(all, ok, value, largest)
 
-/* Those answers that such steps tell. */
+/* Adds to the answers those that steps of the kind `by` tell. */
 HOT void account_told(struct bundle *b, bool all, mask ok, enum told by,
                       const struct step_report *report)
 {
@@ -50,8 +50,8 @@ HOT void account_contacts(struct bundle *b, bool all, mask ok, contact_set touch
     }
 }
 
-/* By how much the energy has drifted, either way, in steps in which nothing but what does the
- * work that is counted acts: what contacts dissipate is theirs. */
+/* Sums the drift of the energy, up or down, over steps in which no contact carries, as contacts
+ * dissipate, and keeps its largest size. */
 HOT void account_drift(struct bundle *b, bool all, mask ok, contact_set touching,
                        const struct step_report *report, lanes excess)
 {
@@ -193,7 +193,7 @@ HOT struct verdict bundle_judge(struct bundle *b, mask live, contact_set touchin
     v.stabilised |= at_end & at_target;
     v.rested |= at_end & still;
     if (mask_any(v.rested | v.stabilised)) {
-        /* With copies: what is passed on by address stays in memory. */
+        /* Copies, because what is passed by address has to stay in memory. */
         mask rested = v.rested, stabilised = v.stabilised;
         rest_confirm(b, &rested, &stabilised);
         v.rested = rested, v.stabilised = stabilised;

@@ -10,7 +10,8 @@
 #define REST_NEAR 1e-5  /* m, rad: half the width of the differences */
 #define REST_HOLDS 4096 /* times settle.hold: how long it has to hold */
 #define REST_WHOLE 2048 /* s, at least */
-#define REST_GROWTH 1e9 /* of a disturbance in that time, SI units */
+#define REST_GROWTH                                                                                \
+    1e9 /* SI units: a disturbance that grows beyond this in that time does not hold */
 #define REST_EDGE 1e-6  /* of a cone: what it is wider here */
 #define REST_CREEP 1e-6 /* m/s: a contact this slow stands */
 #define REST_MARGIN 2   /* for what is not linear */

@@ -245,7 +245,7 @@ static inline void between_mode(const struct setting *set, const struct dynamics
         lanes scale = lanes_max(lanes_abs(e->free[c][0]), one);
         scale = lanes_max(lanes_abs(e->free[c][1]), scale);
         const lanes load = contact_load(c, (const lanes(*)[2])r);
-        /* contact_solve clips to the cone: on its edge the slip begins, against the force, unless
+        /* solve_contacts clips to the cone: on its edge the slip begins, against the force, unless
          * another contact prevents it. */
         const mask edge = mask_less_equal((1 - 1e-10) * (set->friction * load), lanes_abs(r[c][1]));
         const mask starts = (edge & mask_less(BETWEEN_START * scale, lanes_abs(u[c][1]))) |

@@ -261,7 +261,7 @@ struct inside_peaks {
     lanes x[3 * CONTACTS + 2 * ACTUATORS];
 };
 
-/* Of the way whose values at places are f, in the lanes of `where`. */
+/* Finds the peaks of a course with values f at places, in the lanes of `where`. */
 static inline void inside_peak(bool parabola, const lanes *f, lanes most, mask where, bool either,
                                struct inside_peaks *peaks)
 {
