@@ -185,6 +185,7 @@ $(BUILD)/kernels: FORCE
 $(BUILD)/revision: FORCE
 	@mkdir -p $(@D); echo '$(REVISION)' | cmp -s - $@ || echo '$(REVISION)' > $@
 
+%.d: ; # made with the objects
 -include $(shell find $(BUILD) -name '*.d' -type f 2>/dev/null)
 
 # ---- tests ---------------------------------------------------------------------------------------
@@ -201,10 +202,12 @@ peer_programs = $(BUILD)/tests/peer_self $(if $(MUJOCO),$(BUILD)/tests/peer_mujo
 # What whole-program tests call.
 other_programs = $(BUILD)/tests/bench_schedule $(BUILD)/tests/bench_truths $(BUILD)/tests/golden $(BUILD)/tests/mechanism_numbers
 
-$(BUILD)/tests/%: tests/%.c $(product)
+$(BUILD)/tests/%.o: tests/%.c $(BUILD)/flags $(BUILD)/kernels
 	@mkdir -p $(@D)
-	$(call QUIET,cc,$@)$(CC) $(TEST_CFLAGS) $(ALLFLAGS) $(kernel_warnings) $(PROGRAM_CFLAGS) $(isa_list) $(EXTRA) -MMD -MP -MF $@.d -o $@ $< $(test_objects) \
-	    $(product) $(test_ldflags) $(LDFLAGS) $(LIBS) -lcmocka
+	$(call QUIET,cc,$@)$(CC) $(TEST_CFLAGS) $(ALLFLAGS) $(kernel_warnings) $(PROGRAM_CFLAGS) $(isa_list) $(EXTRA) -MMD -MP -c -o $@ $<
+$(test_programs): $(BUILD)/tests/%: $(BUILD)/tests/%.o $(product)
+	$(call QUIET,link,$@)$(CC) $(TEST_CFLAGS) $(SANITIZE) -o $@ $< $(test_objects) $(product) $(test_ldflags) $(LDFLAGS) $(LIBS) -lcmocka
+.PRECIOUS: $(BUILD)/tests/%.o
 $(BUILD)/tests/build_info.o: runner/store/build_info.c $(BUILD)/flags
 	@mkdir -p $(@D)
 	$(call QUIET,cc,$@)$(CC) $(CFLAGS) $(ALLFLAGS) $(PROGRAM_CFLAGS) -MMD -MP -c -o $@ $<
