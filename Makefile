@@ -360,11 +360,11 @@ TEST_ENVIRONMENT = $(MPI_ENVIRONMENT) BUILD=$(BUILD) PYTHON=$(PYTHON) STANCE=$(a
 # ARM's kernels against this machine's, in an emulator. `check-scripts` does so where the packages are, with
 # kernels that are quicker to compile.
 test-neon: packages-neon
-	$(MAKE) golden
+	$(MAKE) ISAS=all golden
 	@$(TEST_ENVIRONMENT) NEON_CFLAGS=-O3 bash tests/run.sh whole_machines
 # The same cases in WebAssembly, many of them.
 test-web: packages-pages
-	$(MAKE) golden
+	$(MAKE) ISAS=all golden
 	@$(TEST_ENVIRONMENT) GOLDEN_CASES=$(or $(GOLDEN_CASES),500) bash tests/run.sh whole_machines
 
 # A share of every test; every script (also those with a line "# long") for every instruction set; the same at

@@ -237,7 +237,8 @@ COLD void rest_approach(struct rest *r, double *off)
     *off = 0;
     for (int i = 0; i < d + REST_INPUTS; i++) {
         b[i] = -(i < d ? a[i] : lane_get(&rate[i - d], r->lane));
-        *off = fmax(*off, b[i] == b[i] ? fabs(b[i]) : INFINITY);
+        if (!(fabs(b[i]) <= *off)) /* a NAN, too; no fmax: gcc 12 for ARM fails on it */
+            *off = b[i] == b[i] ? fabs(b[i]) : INFINITY;
     }
     if (*off <= REST_STILL)
         return;
