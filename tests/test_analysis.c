@@ -4,7 +4,6 @@
 
 #include "analysis/draw/gnuplot.h"
 #include "analysis/draw/plot.h"
-#include "analysis/summary/summary.h"
 #include "runner/base/command.h"
 #include "runner/store/compare.h"
 
@@ -312,34 +311,53 @@ static void test_extents(void **state)
     results_close(&r);
 }
 
+static json_t *summary_of(const char *name)
+{
+    json_error_t error;
+    assert_int_equal(run_command(&command_summary, sample(name), "--json", NULL, NULL), EXIT_DONE);
+    json_t *root = json_loads(output, 0, &error);
+    if (!root)
+        fail_msg("%s: line %d: %s", name, error.line, error.text);
+    return root;
+}
+
+static double number_at(const json_t *root, const char *a, const char *b, const char *c)
+{
+    const json_t *at = json_object_get(root, a);
+    at = b ? json_object_get(at, b) : at;
+    at = c ? json_object_get(at, c) : at;
+    assert_true(json_is_number(at));
+    return json_number_value(at);
+}
+
 static void test_parameter(void **state)
 {
     static const double scales[] = {100, 3, 2, 1, 1};
-    struct summary *summary = malloc(sizeof *summary);
-    struct results r;
-    stance_message message;
     (void)state;
-    assert_non_null(summary);
-    open_sample(&r, "friction");
-    assert_true(summary_make(summary, &r, &message));
-    assert_int_equal(summary->parameters, 1);
+    json_t *const root = summary_of("friction");
+    const json_t *const parameters = json_object_get(root, "parameters"),
+                        *const parameter = json_array_get(parameters, 0),
+                        *const values = json_object_get(parameter, "values");
+    assert_int_equal(json_array_size(parameters), 1); /* the other axes are offsets */
+    assert_int_equal(json_array_size(values), 5);
     for (size_t f = 0; f < 5; f++) {
-        uint64_t inside = 0, edge = 0;
+        double inside = 0, edge = 0;
         for (int i = 0; i < 21; i++)
             for (int j = 0; j < 11; j++) {
                 double l = level(-0.1 + 0.01 * i, -0.6 + 0.12 * j, scales[f]);
                 inside += l < 1 - 1e-9;
                 edge += fabs(l - 1) <= 1e-9;
             }
-        uint64_t found = summary->by_value[0][f].kind[RESULTS_STABILISED];
+        const json_t *const value = json_array_get(values, f);
+        const double found = number_at(value, "stabilised", NULL, NULL);
         assert_true(inside <= found && found <= inside + edge);
-        assert_int_equal(summary->by_value[0][f].done, 231);
+        assert_true(number_at(value, "done", NULL, NULL) == 231);
     }
-    assert_int_equal(summary->steepest[0], 2); /* from scale 2 to scale 1 */
-    assert_null(summary->by_value[1]);
-    summary_free(summary);
-    results_close(&r);
-    free(summary);
+    /* from scale 2 to scale 1 */
+    const json_t *const third = json_array_get(values, 2);
+    assert_true(number_at(parameter, "steepest", "from", NULL) ==
+                number_at(third, "value", NULL, NULL));
+    json_decref(root);
 }
 
 /* ---- the commands ------------------------------------------------------------------------- */
@@ -370,25 +388,6 @@ static void test_summary_text(void **state)
     assert_null(strstr(output, "stabilised,"));
     run_command(&command_summary, sample("unlucky"), NULL, NULL, NULL);
     assert_contains(output, "?                         ?\n");
-}
-
-static json_t *summary_of(const char *name)
-{
-    json_error_t error;
-    assert_int_equal(run_command(&command_summary, sample(name), "--json", NULL, NULL), EXIT_DONE);
-    json_t *root = json_loads(output, 0, &error);
-    if (!root)
-        fail_msg("%s: line %d: %s", name, error.line, error.text);
-    return root;
-}
-
-static double number_at(const json_t *root, const char *a, const char *b, const char *c)
-{
-    const json_t *at = json_object_get(root, a);
-    at = b ? json_object_get(at, b) : at;
-    at = c ? json_object_get(at, c) : at;
-    assert_true(json_is_number(at));
-    return json_number_value(at);
 }
 
 static void test_summary_json(void **state)

@@ -2,23 +2,136 @@
 #include "summary.h"
 
 #include "analysis/optimise/search_summary.h"
+#include "analysis/statistics/statistics.h"
 #include "analysis/table/report.h"
 
 #include <stdlib.h>
 
 extern const struct command command_summary; /* below */
 
+static const char head[] =
+    "{.name}\n{file}: [case:case {index}|{cases/total} case{cases/total#s}]"
+    "[.shard:, of which shard {number}/{count} has {rows}], stance {version} ({revision}), {date}, "
+    "{ranks} rank{ranks#s}\n"
+    "[scenarios:\nMade from {.scenarios} scenarios; what is said below of their keys is of the "
+    "last "
+    "one\n[scenarios*:  since {date%-22s}{done%12d} cases done\n]]"
+    "[axes:\nVaried\n[axes*:  {path%-*s}  {.range}\n[.varied*:  {path%-*s}  {range}\n]]]"
+    "[.fixed:\nFixed{.fixed}\n]";
+
+static const char outcomes[] =
+    "\nOutcomes of the {cases/done} case{cases/done#s} done[.sampled:, with 95 % intervals]\n"
+    "[.outcomes:{.outcomes}"
+    "[.shared:  (intervals, here and below: of the sample alone, whose points count however many "
+    "cases\n  each has)\n]"
+    "[.one:  (of the grid; one case is {.one%.2g} %)\n]"
+    "[cut:  {.judged} set cut by the box at {.cut}:\n  its share is the box's (stance basin has "
+    "what does not depend on it)\n"
+    "|[.uncut:  {.judged} set {.uncut} by the box: no start on its faces is in it\n]]"
+    "|  not stored in this file\n]"
+    "[.whole=domain:  the ranges end within the domain: stance ranges SCENARIO finds how far it "
+    "goes\n]"
+    "[.whole=none:  the ranges do not meet a domain: stance ranges SCENARIO finds where one is\n]"
+    "[.fallen*:  fell by {count%16d}  {share*%7.3f} %   {cause}\n]"
+    "[cases/inferred:  of these {cases/inferred%14d}  {.inferred*%7.3f} %   not simulated: "
+    "inferred "
+    "from neighbours that agree\n]"
+    "[cases/pending:  pending    {cases/pending%12d}  not computed yet[.shards>1:, or of other "
+    "shards]\n]"
+    "[.failures*:  failed     {count%12d}  {reason}: {text}\n]"
+    "[cases/failed:  the first is case {.first_failed}: `stance run SCENARIO --only "
+    "{.first_failed} "
+    "--trace`, and `stance summary` of that says\n  when it failed and what touched\n]";
+
+static const char sweep[] =
+    "[extents:\nExtent of the stabilised set through the equilibrium\n"
+    "[extents*:  {path}  [stabilised:{low}{.low} ... {high}{.high} {unit}"
+    "|[low_unknown:unknown|none]: the case nearest to the equilibrium ({.nearest}) "
+    "[outcome=pending:is not computed yet|[outcome=failed:failed|is not stabilised]]]"
+    "[.at:, at {.at}]\n]]"
+    "[parameters*:\n{.Judged} against {path}"
+    "[.same:: {.share*%.3f} % at each of its {.count} values\n"
+    "|[unit: ({unit})][.text:: {.text}]\n{.values}"
+    "[.extents:  (the last columns: extent of the stabilised set through the equilibrium; * where "
+    "it reaches\n  the end of the axis, ? where the next case is pending or failed)\n]"
+    "[.changes:  changes most between {steepest/.from} ({.share*%.3f} %) and {steepest/.to} "
+    "({.next*%.3f} %)\n]]]"
+    "[pairs:[.table:\n{.Judged} (%) against {.down} and, across, {.across}\n{.table}]]"
+    "[sample:[rays:\nWhere the stabilised set through the equilibrium ends along {path}\n"
+    "[points:  smallest {smallest}, median {median}, largest {largest} {.unit}[.unit: ]of {points} "
+    "points[reach_end:, of which {reach_end} reach[reach_end=1:es] the end of the axis]\n"
+    "  the smallest at point {nearest}:{.at}\n]"
+    "[none:  none at {none} points, where the case nearest to the equilibrium is not stabilised\n]"
+    "[unknown:  unknown at {unknown} points, where cases are pending or failed\n]]"
+    "\n{.Judged} against what the sample varies, in parts of equally many points\n{.parts}"
+    "[.dependent:  (intervals: cases of a point are not independent; what scatters are points)\n]]"
+    "[.changes:\nThe outcome changes\n"
+    "[.changes*:  between {.from} ({before}) and {.to} ({after})\n]"
+    "[.more:  and at {.more} more places\n]]"
+    "[.numbers:\n{.numbers}]";
+
+static const char one_case[] =
+    "[case:\nOutcome: [outcome=pending:not computed yet|{outcome}]\n"
+    "[.failures*:  {reason}: {text}\n][.step:  in the step from {.step} s\n]"
+    "[.touching:  touching     {.touching}\n]"
+    "[.done:[.times*:  {what%-12s} {time} s\n][.fallen*:  fell by      {cause}\n]"
+    "[.final_state:  final state  {.final_state}\n]"
+    "\nNumbers\n[.single*:  {answer%-18s} {is}[unit: {unit}]\n]]]";
+
+static const char tail[] =
+    "[through_ground:[cases:\nThrough the ground, with a contact that ground.contacts leaves out: "
+    "{cases} case{cases#s}, of which {judged} {.judged}\n]]"
+    "[.residuals:\nLargest residuals: [.residuals*, :{law} {largest%.3g}[unit: {unit}]]\n]"
+    "\nCost\n[cost:[.steps:  {steps%.6g} time steps"
+    "[iterations_per_step:, {iterations_per_step%.4g} Newton iterations per step]"
+    "[.evaluations:, {.evaluations%.4g} evaluations per step]\n]"
+    "[.counts*:  {text}: {sum%.6g}, in {cases} of the cases\n]"
+    "[.timed:  {wall_time%.4g} s of computing on {.ranks} rank{.ranks#s} ({total_time%.4g} s "
+    "together): {cases_per_second%.4g} cases/s\n|  no times are recorded\n]]";
+
+static bool collect(struct summary *summary, struct table *csv)
+{
+    const bool single = summary->r->single;
+    if (!summary_head(summary) || !summary_fields(summary) || !summary_outcomes(summary))
+        return false;
+    TABLE_FACTS(csv, {{.name = "parameter"}, as_nothing(NULL)},
+                {{.name = "value"}, as_nothing(NULL)});
+    summary_add_counts(csv, summary, &summary->counts, &summary->share);
+    table_end_row(csv);
+    return (single ? summary_case(summary) : summary_sweep(summary, csv)) &&
+           summary_numbers(summary) && summary_cost(summary);
+}
+
+static bool print(const struct summary *summary, const struct table *csv, enum table_form form)
+{
+    const bool single = summary->r->single;
+    if (form == TABLE_AS_CSV)
+        return table_write_csv(csv, stdout);
+    if (form == TABLE_AS_JSON)
+        return say_facts(json_incref(summary->facts), true, NULL, stdout);
+    return say(summary->facts, head, stdout) && (single || say(summary->facts, outcomes, stdout)) &&
+           say(summary->facts, single ? one_case : sweep, stdout) &&
+           say(summary->facts, tail, stdout);
+}
+
 static int summarise(struct report *report, const struct results *r, stance_message *message)
 {
-    struct summary *summary = calloc(1, sizeof *summary);
-    bool good = summary && summary_make(summary, r, message);
-    if (good) {
-        good = (report->form == TABLE_AS_JSON  ? summary_print_json
-                : report->form == TABLE_AS_CSV ? summary_print_csv
-                                               : summary_print_text)(summary, r);
-        summary_free(summary);
-    }
-    free(summary);
+    struct scenario s;
+    struct table csv = {0};
+    const bool readable = results_scenario(r, &s);
+    struct summary summary = {.r = r,
+                              .s = readable ? &s : NULL,
+                              .judged = readable ? summary_judged(&s) : RESULTS_STABILISED,
+                              .facts = json_object(),
+                              .message = message};
+    statistics_count(r, -1, 0, &summary.counts);
+    summary.known =
+        summary.counts.done == 0 || summary.counts.kind[RESULTS_DONE] < summary.counts.done;
+    const bool good = collect(&summary, &csv) && print(&summary, &csv, report->form);
+    table_free(&csv);
+    json_decref(summary.facts);
+    if (readable)
+        scenario_free(&s);
     return good ? EXIT_DONE : EXIT_IO;
 }
 

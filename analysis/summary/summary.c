@@ -1,329 +1,522 @@
-/* summary.c - collects what `stance summary` prints. */
+/* summary.c - what a results file is, what came out of its cases, with what numbers and effort. */
 #include "summary.h"
 
+#include "analysis/statistics/faces.h"
 #include "analysis/statistics/statistics.h"
+#include "runner/base/words.h"
 #include "runner/store/results_rows.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-double summary_share(const struct summary *summary, const struct statistics_counts *counts)
-{
-    return counts->done ? (double)counts->kind[summary->judged] / (double)counts->done : NAN;
-}
-
-bool summary_has_outcomes(const struct summary *summary)
-{
-    return summary->counts.done == 0 || summary->counts.kind[RESULTS_DONE] < summary->counts.done;
-}
-
-#define SUMMARY_TOUCHES 1e-9 /* m, rad */
-
-const char *summary_failure_name(int failure)
-{
-    return failure >= 0 && failure < STANCE_FAILURE_COUNT ? stance_failure_name[failure]
-                                                          : "unknown";
-}
-
-const char *summary_failure_text(int failure)
-{
-    return failure > 0 && failure < STANCE_FAILURE_COUNT ? stance_failure_text[failure]
-                                                         : "the file does not say why";
-}
-
-const char *summary_judged_word(const struct summary *summary)
-{
-    return summary->judged == RESULTS_RESTED ? "Rested" : "Stabilised";
-}
-
-size_t summary_final_state(const struct results *r, char name[][SCENARIO_NAME], double *state)
-{
-    const size_t n = results_words(r, "state", name, SCENARIO_MAX_STATES);
-    const bool done = r->kind[0] != RESULTS_PENDING && r->kind[0] != RESULTS_FAILED;
-    return done && results_numbers(r, "final_state", state, SCENARIO_MAX_STATES) == n ? n : 0;
-}
-
-/* ---- the answers -------------------------------------------------------------------------- */
-
-static bool collect_numbers(struct summary *summary, const struct results *r,
-                            stance_message *message)
-{
-    static const struct summary_numbers wanted[SUMMARY_NUMBER_COUNT] = {
-#define SUMMARY_NUMBER(name, kind, unit) [SUMMARY_##name] = {#name, unit, kind, false, {0}},
-        SUMMARY_NUMBERS(SUMMARY_NUMBER)
-#undef SUMMARY_NUMBER
-    };
-    for (int k = 0; k < SUMMARY_NUMBER_COUNT; k++) {
-        struct summary_numbers *numbers = &summary->numbers[k];
-        double *values;
-        *numbers = wanted[k];
-        numbers->of = numbers->of == RESULTS_STABILISED ? summary->judged : numbers->of;
-        if (!results_answer(r, numbers->name, &values, message))
-            return false;
-        if (!values)
-            continue;
-        for (uint64_t i = 0; k == SUMMARY_through_ground && i < r->cases; i++) {
-            const bool through = values[i] > SUMMARY_THROUGH; /* false for NAN, too */
-            summary->through += through;
-            summary->through_judged += through && r->kind[i] == summary->judged;
-        }
-        for (uint64_t i = 0; numbers->of != RESULTS_KIND_COUNT && i < r->cases; i++)
-            values[i] = r->kind[i] == numbers->of ? values[i] : NAN;
-        numbers->stored = true;
-        statistics_summarise(values, (size_t)r->cases, &numbers->numbers);
-        free(values);
-    }
-    return true;
-}
-
-static bool collect_counts(struct summary *summary, const struct results *r,
-                           stance_message *message)
-{
-    static const struct summary_count wanted[SUMMARY_COUNT_COUNT] = {
-#define SUMMARY_COUNT(name, cases, text) {#name, cases, text, false, 0, 0},
-        SUMMARY_COUNTS(SUMMARY_COUNT)
-#undef SUMMARY_COUNT
-    };
-    for (int k = 0; k < SUMMARY_COUNT_COUNT; k++) {
-        struct summary_count *count = &summary->count[k];
-        double *values;
-        *count = wanted[k];
-        if (!results_answer(r, count->name, &values, message))
-            return false;
-        for (uint64_t i = 0; values && i < r->cases; i++) {
-            if (values[i] > 0) { /* false for NAN, too */
-                count->sum += values[i];
-                count->cases++;
-            }
-        }
-        count->stored = values != NULL;
-        free(values);
-    }
-    return true;
-}
-
-static void collect_failures(struct summary *summary, const struct results *r)
-{
-    summary->first_failed = UINT64_MAX;
-    for (uint64_t i = 0; i < r->cases; i++) {
-        if (r->kind[i] == RESULTS_FAILED) {
-            int failure = r->failure ? r->failure[i] : 0;
-            summary->failures[failure < SUMMARY_FAILURES ? failure : 0]++;
-            summary->first_failed = i < summary->first_failed ? i : summary->first_failed;
-        }
-    }
-}
-
-/* Contacts on the ground, stops reached, where a file's one case failed. */
-static void collect_touching(struct summary *summary, const struct results *r,
-                             const struct scenario *s)
-{
-    const stance_scene *const scene = s->scene;
-    struct scenario_values values = s->base;
-    double state[SCENARIO_MAX_STATES], gap[STANCE_MAX_CONTACTS];
-    if (!r->single || r->kind[0] != RESULTS_FAILED || (s->axes > 0 && r->index >= s->cases) ||
-        results_numbers(r, "final_state", state, SCENARIO_MAX_STATES) !=
-            2 * (size_t)scene->coordinates)
-        return;
-    if (s->axes > 0)
-        scenario_case_values(s, r->index, &values);
-    scene->gaps(scene, values.robot, state, gap);
-    for (int c = 0; c < scene->contacts; c++) {
-        const bool stop = scene->grip[c] < 0;
-        if (gap[c] <= SUMMARY_TOUCHES && (stop || values.contacts >> c & 1))
-            summary->touching |= 1u << c;
-        snprintf(summary->contact[c], STANCE_NAME, "%s", scene->contact_name[c]);
-    }
-}
-
-static bool collect_causes(struct summary *summary, const struct results *r,
-                           stance_message *message)
-{
-    struct results_column column;
-    double *values = NULL;
-    if (!results_column_open(r, stance_answers[STANCE_ANSWER_fall_cause].name, &column, message))
-        return false;
-    char *rest = column.words;
-    for (int k = 0; rest && k < STANCE_MAX_WORDS; k++)
-        snprintf(summary->cause[k], sizeof summary->cause[k], "%s", strsep(&rest, " "));
-    const bool good = column.id < 0 || results_answer(r, column.name, &values, message);
-    for (uint64_t i = 0; values && i < r->cases; i++)
-        if (r->kind[i] == RESULTS_FELL && values[i] >= 0 && values[i] < STANCE_MAX_WORDS)
-            summary->fallen_by[(int)values[i]]++;
-    free(values);
-    results_column_close(&column);
-    return good;
-}
-
-enum { BINS = 4 };
-
-/* By the values of what a sample varies. */
-static bool collect_bins(struct summary *summary, const struct results *r, stance_message *message)
-{
-    summary->bins = r->sample < 0 ? NULL : calloc((size_t)r->varied, sizeof *summary->bins);
-    bool good = summary->bins || r->sample < 0 || statistics_no_memory(r, message);
-    for (int k = 0; good && summary->bins && k < r->varied; k++)
-        good = doe_bins_make(&summary->bins[k], r, k, BINS, message);
-    return good;
-}
-
-/* Along the rays that an axis of offsets makes of the points of a sample. */
-static bool collect_rays(struct summary *summary, const struct results *r, stance_message *message)
-{
-    int axis = -1;
-    for (int a = 0; a < r->axes; a++) {
-        if (a != r->sample && (axis >= 0 || !r->axis[a].offset))
-            return true;
-        axis = a != r->sample ? a : axis;
-    }
-    if (r->sample < 0 || axis < 0)
-        return true;
-    const size_t points = r->axis[r->sample].count;
-    double *end = malloc(points * sizeof *end), smallest = INFINITY;
-    summary->ray_axis = axis;
-    summary->rays = calloc(1, sizeof *summary->rays);
-    if (!end || !summary->rays) {
-        free(end);
-        return statistics_no_memory(r, message);
-    }
-    for (size_t i = 0; i < points; i++) {
-        size_t point[SCENARIO_MAX_AXES] = {0};
-        struct statistics_extent extent;
-        point[r->sample] = i;
-        end[i] = NAN;
-        const bool found = statistics_extent(r, axis, point, &extent);
-        if (found && !extent.any && !extent.low_unknown) {
-            summary->rays->none++;
-        } else if (!found || !extent.any || extent.high_unknown) {
-            summary->rays->unknown++;
-        } else {
-            end[i] = extent.high;
-            summary->rays->open += extent.high_open;
-            summary->rays->nearest = extent.high < smallest ? i : summary->rays->nearest;
-            smallest = fmin(smallest, extent.high);
-        }
-    }
-    statistics_summarise(end, points, &summary->rays->numbers);
-    const bool scaled = strcmp(r->axis[axis].name, "initial.offset.scale") == 0;
-    summary->rays->scale = scaled ? smallest : 1;
-    free(end);
-    return true;
-}
-
-double summary_nearest(const struct summary_rays *rays, const struct results *r, int k)
-{
-    const struct results_varied *v = &r->vary[k];
-    const bool offset = strncmp(v->of.name, "initial.offset.", strlen("initial.offset.")) == 0;
-    return v->of.value[rays->nearest] * (offset ? rays->scale : 1);
-}
-
-static bool collect_axes(struct summary *summary, const struct results *r, stance_message *message)
-{
-    const size_t origin[SCENARIO_MAX_AXES] = {0};
-    for (int a = 0; !r->single && a < r->axes; a++) {
-        if (!r->axis[a].offset && a != r->sample) {
-            summary->pair[summary->parameters < 2 ? summary->parameters : 1] = a;
-            summary->parameters++;
-        }
-    }
-    if (summary->parameters == 2) {
-        const int a = summary->pair[0], b = summary->pair[1];
-        summary->pair_counts =
-            malloc(r->axis[a].count * r->axis[b].count * sizeof *summary->pair_counts);
-        if (!summary->pair_counts)
-            return statistics_no_memory(r, message);
-        statistics_count_pair(r, a, b, summary->pair_counts);
-    }
-    for (int a = 0; !r->single && a < r->axes; a++) {
-        const struct results_axis *axis = &r->axis[a];
-        if (a == r->sample)
-            continue;
-        if (axis->offset) {
-            summary->has_extent[a] = summary->parameters == 0 && r->sample < 0 &&
-                                     statistics_extent(r, a, origin, &summary->extent[a]);
-            continue;
-        }
-        struct statistics_counts *counts = malloc(axis->count * sizeof *counts);
-        summary->interval[a] = malloc(axis->count * sizeof *summary->interval[a]);
-        if (!counts || !summary->interval[a] ||
-            !intervals_find(r, summary->judged, a, NULL, axis->count, summary->interval[a])) {
-            free(counts);
-            return statistics_no_memory(r, message);
-        }
-        summary->by_value[a] = counts;
-        statistics_count_axis(r, a, counts);
-        double largest = 0;
-        for (size_t i = 0; i + 1 < axis->count; i++) {
-            double change =
-                fabs(summary_share(summary, &counts[i + 1]) - summary_share(summary, &counts[i]));
-            if (change > largest) {
-                largest = change;
-                summary->steepest[a] = i;
-            }
-        }
-    }
-    return true;
-}
-
-static bool collect_intervals(struct summary *summary, const struct results *r,
-                              stance_message *message)
-{
-    bool good = true;
-    for (int kind = 0; good && kind < RESULTS_KIND_COUNT; kind++) {
-        summary->of_kind[kind] = (struct interval){NAN, NAN};
-        if (kind != RESULTS_PENDING && kind != RESULTS_FAILED && r->sample >= 0)
-            good = intervals_find(r, (enum results_kind)kind, -1, NULL, 1, &summary->of_kind[kind]);
-    }
-    return good || statistics_no_memory(r, message);
-}
-
-/* ---- all of it ---------------------------------------------------------------------------- */
+#define THROUGH 1e-9 /* m: less is rounding of what lies on the ground */
+#define TOUCHES 1e-9 /* m, rad */
 
 enum results_kind summary_judged(const struct scenario *s)
 {
     return scenario_law(&s->base)->designed ? RESULTS_STABILISED : RESULTS_RESTED;
 }
 
-bool summary_make(struct summary *summary, const struct results *r, stance_message *message)
+double summary_share(const struct summary *summary, const struct statistics_counts *counts)
 {
-    struct scenario s;
-    /* A scenario of another version cannot be read: the summary goes without. */
-    const bool readable = results_scenario(r, &s);
-    *summary = (struct summary){.judged = readable ? summary_judged(&s) : RESULTS_STABILISED};
-    statistics_count(r, -1, 0, &summary->counts);
-    faces_make(&summary->faces, r, NULL, 0);
-    summary->cut = faces_cut(&summary->faces, summary->judged);
-    collect_failures(summary, r);
-    bool good = collect_intervals(summary, r, message) && collect_numbers(summary, r, message) &&
-                collect_counts(summary, r, message) && collect_causes(summary, r, message) &&
-                statistics_inferred(r, &summary->inferred, NULL, message) &&
-                collect_axes(summary, r, message) && collect_bins(summary, r, message) &&
-                collect_rays(summary, r, message) && ancestry_read(r, &summary->ancestry, message);
-    if (good) {
-        summary->timed = results_timing(r, &summary->longest, &summary->total,
-                                        &summary->timed_cases, &summary->ranks);
-        if (readable) {
-            summary_collect_fields(summary, r, &s);
-            collect_touching(summary, r, &s);
-        }
-    } else {
-        summary_free(summary);
+    return counts->done ? (double)counts->kind[summary->judged] / (double)counts->done : NAN;
+}
+
+/* ---- the file ----------------------------------------------------------------------------- */
+
+static json_t *axis_facts(const struct results_axis *axis)
+{
+    return TABLE_OBJECT(
+        {"path", as_text(axis->name)}, {"unit", as_text(axis->unit[0] ? axis->unit : NULL)},
+        {"long_name", as_text(axis->text[0] ? axis->text : NULL)}, {"count", as_whole(axis->count)},
+        {"first", as_place(axis, 0)}, {"last", as_place(axis, axis->count - 1)});
+}
+
+/* What a sample varies: its least value and its largest. */
+static json_t *varied_facts(const struct results_varied *v)
+{
+    char name[128], first[128], last[128], range[500];
+    size_t low = 0, high = 0;
+    for (size_t i = 1; i < v->of.count; i++) {
+        low = v->of.value[i] < v->of.value[low] ? i : low;
+        high = v->of.value[i] > v->of.value[high] ? i : high;
     }
-    if (readable)
-        scenario_free(&s);
+    results_varied_text(v, low, false, first, sizeof first);
+    results_varied_text(v, high, true, last, sizeof last);
+    snprintf(name, sizeof name, "  %s", v->of.name);
+    snprintf(range, sizeof range, "%s ... %s%s%s", first, last, v->of.text[0] ? "; " : "",
+             v->of.text);
+    return TABLE_OBJECT({"path", as_text(name)}, {"range", as_text(range)});
+}
+
+static json_t *axes_facts(const struct results *r, size_t *width)
+{
+    json_t *const list = json_array();
+    char first[128], last[128], range[500];
+    for (int a = 0; !r->single && a < r->axes; a++) {
+        const struct results_axis *const axis = &r->axis[a];
+        json_t *const facts = axis_facts(axis), *const varied = json_array();
+        const char *const order = results_ends_text(axis, first, last, sizeof first);
+        *width = strlen(axis->name) > *width ? strlen(axis->name) : *width;
+        for (int k = 0; a == r->sample && k < r->varied; k++) {
+            const size_t length = strlen(r->vary[k].of.name) + 2;
+            *width = length > *width ? length : *width;
+            json_array_append_new(varied, varied_facts(&r->vary[k]));
+        }
+        if (a == r->sample)
+            snprintf(range, sizeof range, "%zu points, %s", axis->count, r->method);
+        else
+            snprintf(range, sizeof range, "%s ... %s, %zu value%s%s%s%s", first, last, axis->count,
+                     axis->count == 1 ? "" : "s", order, axis->text[0] ? "; " : "", axis->text);
+        table_put(facts, ".range", as_text(range));
+        json_object_set_new(facts, ".varied", varied);
+        json_array_append_new(list, facts);
+    }
+    return list;
+}
+
+bool summary_head(const struct summary *summary)
+{
+    const struct results *const r = summary->r;
+    json_t *const facts = summary->facts, *const scenarios = json_array();
+    struct ancestry ancestry;
+    size_t width = 0;
+    if (!ancestry_read(r, &ancestry, summary->message))
+        return false;
+    for (size_t k = 0; k < ancestry.scenarios; k++)
+        json_array_append_new(scenarios, TABLE_OBJECT({"date", as_text(ancestry.date[k])},
+                                                      {"done", as_whole(ancestry.done[k])}));
+    json_object_update_new(
+        facts,
+        TABLE_OBJECT(
+            {"file", as_text(r->file)}, {"title", as_text(r->title)},
+            {"version", as_text(r->version)}, {"revision", as_text(r->revision)},
+            {"date", as_text(r->date)}, {"ranks", as_whole((uint64_t)r->ranks)},
+            {".name", as_text(r->title[0] ? r->title : r->name)},
+            {".sampled", as_truth(r->sample >= 0)}, {".shards", as_whole(r->shard.count)},
+            {".judged", as_text(results_kind_names[summary->judged])},
+            {".Judged", as_text(summary->judged == RESULTS_RESTED ? "Rested" : "Stabilised")},
+            {".scenarios", as_whole(ancestry.scenarios)}));
+    if (r->shard.count > 0 && r->shard.count <= r->cases) {
+        const struct shard shard = shard_of(&r->shard, r->cases);
+        table_put(facts, ".shard",
+                  as_tree(TABLE_OBJECT({"number", as_whole(shard.number)},
+                                       {"count", as_whole(shard.count)},
+                                       {"rows", as_whole(shard_rows(&shard))})));
+    }
+    if (ancestry.scenarios > 1)
+        json_object_set(facts, "scenarios", scenarios);
+    json_decref(scenarios);
+    table_put(facts, "axes", as_tree(axes_facts(r, &width)));
+    table_put(facts, ".width", as_whole(width));
+    return true;
+}
+
+/* ---- outcomes ----------------------------------------------------------------------------- */
+
+static bool add_outcomes(struct summary *summary)
+{
+    const struct results *const r = summary->r;
+    const struct statistics_counts *const counts = &summary->counts;
+    struct table t = {.named = true};
+    for (int k = 0; k < RESULTS_KIND_COUNT; k++) {
+        struct interval interval = {NAN, NAN};
+        if (k == RESULTS_PENDING || k == RESULTS_FAILED)
+            continue;
+        if (r->sample >= 0 && !intervals_find(r, (enum results_kind)k, -1, NULL, 1, &interval))
+            return statistics_no_memory(r, summary->message);
+        if (k == (int)summary->judged)
+            summary->share = interval;
+        if (k == RESULTS_DONE && counts->kind[k] == 0)
+            continue;
+        TABLE_FACTS(
+            &t,
+            {{"outcome", .hidden = TABLE_NO_JSON, .width = 11, .left = true},
+             as_text(results_kind_names[k])},
+            {{"count", .before = "", .width = 12}, as_whole(counts->kind[k])},
+            {{"share", .format = "%.3f %%", .before = "  ", .width = 9, .percent = true},
+             as_number(counts->done ? (double)counts->kind[k] / (double)counts->done : NAN)},
+            {{"low", .format = "(%.3f", .before = "   ", .left = true, .empty = "",
+              .percent = true},
+             as_number(interval.low)},
+            {{"high", .format = "%.3f %%)", .joined = true, .before = " ... ", .percent = true},
+             as_number(interval.high)});
+        table_end_row(&t);
+    }
+    if (summary->known)
+        return table_give(summary->facts, "outcomes", &t, "outcome count share low high", 0);
+    table_put(summary->facts, "outcomes", as_nothing(NULL));
+    table_free(&t);
+    return true;
+}
+
+/* Reasons of failures, and the first case that has one. */
+static void add_failures(const struct summary *summary)
+{
+    const struct results *const r = summary->r;
+    json_t *const reasons = json_object(), *const told = json_array();
+    uint64_t failures[STANCE_FAILURE_COUNT + 1] = {0}, first = UINT64_MAX;
+    for (uint64_t i = 0; i < r->cases; i++) {
+        if (r->kind[i] == RESULTS_FAILED) {
+            const int reason = r->failure ? r->failure[i] : 0;
+            failures[reason < STANCE_FAILURE_COUNT ? reason : STANCE_FAILURE_COUNT]++;
+            first = i < first ? i : first;
+        }
+    }
+    for (int f = 0; f <= STANCE_FAILURE_COUNT; f++) {
+        if (failures[f] == 0)
+            continue;
+        const bool known = f < STANCE_FAILURE_COUNT;
+        const char *const name = known ? stance_failure_name[f] : "unknown";
+        table_put(reasons, name, as_whole(failures[f]));
+        json_array_append_new(
+            told, TABLE_OBJECT({"count", as_whole(failures[f])}, {"reason", as_text(name)},
+                               {"text", as_text(known && f > 0 ? stance_failure_text[f]
+                                                               : "the file does not say why")}));
+    }
+    json_object_update_new(summary->facts, TABLE_OBJECT({"failures", as_tree(reasons)},
+                                                        {".failures", as_tree(told)},
+                                                        {".first_failed", as_whole(first)}));
+}
+
+/* By what cases fell, as the file names it. */
+static bool add_causes(const struct summary *summary)
+{
+    const struct results *const r = summary->r;
+    struct results_column column;
+    double *values = NULL;
+    uint64_t fallen[STANCE_MAX_WORDS] = {0};
+    json_t *const causes = json_object(), *const told = json_array();
+    if (!results_column_open(r, stance_answers[STANCE_ANSWER_fall_cause].name, &column,
+                             summary->message))
+        return false;
+    const bool good = column.id < 0 || results_answer(r, column.name, &values, summary->message);
+    for (uint64_t i = 0; values && i < r->cases; i++)
+        if (r->kind[i] == RESULTS_FELL && values[i] >= 0 && values[i] < STANCE_MAX_WORDS)
+            fallen[(int)values[i]]++;
+    char *rest = column.words;
+    for (int k = 0; k < STANCE_MAX_WORDS; k++) {
+        const char *const cause = rest ? strsep(&rest, " ") : "";
+        if (k == 0 || fallen[k] == 0)
+            continue;
+        table_put(causes, cause, as_whole(fallen[k]));
+        json_array_append_new(
+            told,
+            TABLE_OBJECT({"cause", as_text(cause)}, {"count", as_whole(fallen[k])},
+                         {"share", as_number((double)fallen[k] / (double)summary->counts.done)}));
+    }
+    free(values);
+    results_column_close(&column);
+    json_object_update_new(
+        summary->facts, TABLE_OBJECT({"fall_causes", as_tree(causes)}, {".fallen", as_tree(told)}));
     return good;
 }
 
-void summary_free(struct summary *summary)
+/* Whether the share is the box's, or where there is no boundary to be seen. */
+static void add_cut(const struct summary *summary)
 {
-    for (int a = 0; a < SCENARIO_MAX_AXES; a++) {
-        free(summary->by_value[a]);
-        free(summary->interval[a]);
+    const struct statistics_counts *const counts = &summary->counts;
+    struct faces faces;
+    char text[2048];
+    faces_make(&faces, summary->r, NULL, 0);
+    const face_set cut = faces_cut(&faces, summary->judged);
+    faces_text(&faces, cut, text, sizeof text);
+    const bool starts = faces.starts > 0, many = counts->done > 1;
+    const char *const whole = counts->kind[RESULTS_STABILISED] == counts->done ? "domain"
+                              : counts->kind[RESULTS_FELL] == counts->done     ? "none"
+                                                                               : NULL;
+    json_object_update_new(
+        summary->facts,
+        TABLE_OBJECT({"cut", as_tree(faces_json(&faces, cut))}, {".cut", as_text(text)},
+                     {".uncut", as_text(!starts || counts->kind[summary->judged] == 0 ? NULL
+                                        : counts->done < summary->r->cases ? "not known to be cut"
+                                                                           : "not cut")},
+                     {".whole", as_text(starts && many ? whole : NULL)}));
+}
+
+bool summary_outcomes(struct summary *summary)
+{
+    const struct results *const r = summary->r;
+    const struct statistics_counts *const counts = &summary->counts;
+    const double done = (double)counts->done;
+    uint64_t inferred;
+    if (!statistics_inferred(r, &inferred, NULL, summary->message))
+        return false;
+    json_t *const cases =
+        TABLE_OBJECT({"total", as_whole(r->cases)}, {"done", as_whole(counts->done)},
+                     {"failed", as_whole(counts->kind[RESULTS_FAILED])},
+                     {"pending", as_whole(counts->kind[RESULTS_PENDING])},
+                     {"inferred", as_whole(inferred)}, {"damaged", as_whole(r->damage.cases)});
+    table_put(summary->facts, "cases", as_tree(cases));
+    table_put(summary->facts, ".inferred", as_number((double)inferred / done));
+    table_put(summary->facts, ".shared",
+              as_truth(r->sample >= 0 && r->cases > r->axis[r->sample].count));
+    table_put(summary->facts, ".one",
+              as_number(r->sample < 0 && counts->done > 1 ? 100 / done : NAN));
+    add_failures(summary);
+    if (!add_outcomes(summary))
+        return false;
+    add_cut(summary);
+    return add_causes(summary);
+}
+
+/* ---- a single case ------------------------------------------------------------------------ */
+
+/* Contacts on the ground, stops reached, where it failed: "foot1, foot2". */
+static void find_touching(const struct summary *summary, char *text, size_t size)
+{
+    const struct results *const r = summary->r;
+    const struct scenario *const s = summary->s;
+    double state[SCENARIO_MAX_STATES], gap[STANCE_MAX_CONTACTS];
+    if (!s || (s->axes > 0 && r->index >= s->cases) ||
+        results_numbers(r, "final_state", state, SCENARIO_MAX_STATES) !=
+            2 * (size_t)s->scene->coordinates)
+        return;
+    struct scenario_values values = s->base;
+    if (s->axes > 0)
+        scenario_case_values(s, r->index, &values);
+    s->scene->gaps(s->scene, values.robot, state, gap);
+    for (int c = 0; c < s->scene->contacts; c++) {
+        const bool stop = s->scene->grip[c] < 0;
+        if (gap[c] <= TOUCHES && (stop || values.contacts >> c & 1))
+            words_add(text, size, "%s%s", text[0] ? ", " : "", s->scene->contact_name[c]);
     }
-    free(summary->pair_counts);
-    free(summary->bins);
-    free(summary->rays);
-    *summary = (struct summary){0};
+}
+
+/* {name: value}, and for people in two lines. */
+static void add_final_state(const struct results *r, bool done, json_t *facts)
+{
+    char name[SCENARIO_MAX_STATES][SCENARIO_NAME], text[2048] = "";
+    double state[SCENARIO_MAX_STATES];
+    json_t *const final = json_object();
+    size_t n = results_words(r, "state", name, SCENARIO_MAX_STATES);
+    n = done && results_numbers(r, "final_state", state, SCENARIO_MAX_STATES) == n ? n : 0;
+    for (size_t i = 0; i < n; i++) {
+        table_put(final, name[i], as_number(state[i]));
+        words_add(text, sizeof text, "%s%s %.6g",
+                  i == 0       ? ""
+                  : i == n / 2 ? ",\n               "
+                               : ", ",
+                  name[i], state[i]);
+    }
+    table_put(facts, "final_state", as_tree(final));
+    table_put(facts, ".final_state", as_text(text));
+}
+
+bool summary_case(const struct summary *summary)
+{
+    static const char *const times[][2] = {
+        {"end_time", "ended at"}, {"settle_time", "settled at"}, {"fall_time", "fell at"}};
+    const struct results *const r = summary->r;
+    const bool failed = r->kind[0] == RESULTS_FAILED,
+               done = !failed && r->kind[0] != RESULTS_PENDING;
+    json_t *const told = json_array(), *const facts = TABLE_OBJECT(
+                                           {"index", as_whole(r->index)},
+                                           {"outcome", as_text(results_kind_names[r->kind[0]])});
+    const json_t *const reasons = json_object_get(summary->facts, ".failures");
+    char touching[STANCE_MAX_CONTACTS * (STANCE_NAME + 2)] = "";
+    table_put(facts, "failure",
+              failed && r->failure ? as_text(json_string_value(
+                                         json_object_get(json_array_get(reasons, 0), "reason")))
+                                   : as_nothing(NULL));
+    for (size_t k = 0; k < sizeof times / sizeof times[0]; k++) {
+        double time = NAN;
+        if (results_numbers(r, times[k][0], &time, 1) != 1)
+            time = NAN;
+        if (failed && k == 0)
+            table_put(facts, ".step", as_number(time));
+        table_put(facts, times[k][0], as_number(done ? time : NAN));
+        if (done && !isnan(time))
+            json_array_append_new(
+                told, TABLE_OBJECT({"what", as_text(times[k][1])}, {"time", as_number(time)}));
+    }
+    if (failed)
+        find_touching(summary, touching, sizeof touching);
+    table_put(facts, ".times", as_tree(told));
+    table_put(facts, ".touching", as_text(touching));
+    table_put(facts, ".done", as_truth(done));
+    add_final_state(r, done, facts);
+    table_put(summary->facts, "case", as_tree(facts));
+    return true;
+}
+
+/* ---- numbers ------------------------------------------------------------------------------ */
+
+/* An answer that is summarised, of the cases of a kind: RESULTS_STABILISED is what the study judges
+ * by, RESULTS_KIND_COUNT all that are done. */
+static const struct number {
+    const char *name, *unit;
+    const char *residual; /* how far cases are from a law that they ought to obey: its name */
+    enum results_kind of;
+} number[] = {
+    {"settle_time", "s", NULL, RESULTS_STABILISED},
+    {"friction_used", "", NULL, RESULTS_STABILISED},
+    {"least_normal_force", "N", NULL, RESULTS_STABILISED},
+    {"excursion", "rad", NULL, RESULTS_STABILISED},
+    {"slip_distance", "m", NULL, RESULTS_STABILISED},
+    {"fall_time", "s", NULL, RESULTS_FELL},
+    {"peak_torque", "N m", NULL, RESULTS_KIND_COUNT},
+    {"max_penetration", "m", NULL, RESULTS_KIND_COUNT},
+    {"through_ground", "m", NULL, RESULTS_KIND_COUNT},
+    {"impact_energy", "J", NULL, RESULTS_KIND_COUNT},
+    {"projection_energy", "J", NULL, RESULTS_KIND_COUNT},
+    {"signorini_residual", "m/s", "Signorini", RESULTS_KIND_COUNT},
+    {"coulomb_residual", "", "Coulomb", RESULTS_KIND_COUNT},
+    {"dissipation_residual", "m/s", "dissipation", RESULTS_KIND_COUNT},
+    {"energy_gain", "J", "energy gained", RESULTS_KIND_COUNT},
+    {"energy_drift", "J", "drifted", RESULTS_KIND_COUNT},
+};
+
+static void add_number(struct table *t, const struct number *row, const char *of,
+                       const struct statistics_numbers *n)
+{
+    char label[64];
+    snprintf(label, sizeof label, "  %s%s%s%s", row->name, row->unit[0] ? " (" : "", row->unit,
+             row->unit[0] ? ")" : "");
+    TABLE_FACTS(
+        t, {{"answer", .hidden = TABLE_NO_JSON}, as_text(row->name)},
+        {{"label", "Numbers", .hidden = TABLE_VIEW_ONLY, .before = "", .width = 26, .left = true},
+         as_text(label)},
+        {{"of", .joined = true, .before = " "}, as_text(of)},
+        {{.name = "unit"}, as_text(row->unit[0] ? row->unit : NULL)},
+        {{"count", "cases", .before = "  ", .left = true}, as_whole(n->n)},
+        {{"smallest", "smallest", "%.4g", .width = 10}, as_number(n->low)},
+        {{"median", "median", "%.4g", .width = 10}, as_number(n->median)},
+        {{"q90", "90 %", "%.4g", .width = 10}, as_number(n->q90)},
+        {{"q99", "99 %", "%.4g", .width = 10}, as_number(n->q99)},
+        {{"largest", "largest", "%.4g", .width = 10}, as_number(n->high)});
+    table_end_row(t);
+}
+
+/* Of a contact that the scenario leaves out: how many cases, and how many of those judged by. */
+static uint64_t add_through(const struct summary *summary, const double *depth)
+{
+    const struct results *const r = summary->r;
+    uint64_t through = 0, judged = 0;
+    for (uint64_t i = 0; depth && i < r->cases; i++) {
+        through += depth[i] > THROUGH; /* false for NAN, too */
+        judged += depth[i] > THROUGH && r->kind[i] == summary->judged;
+    }
+    table_put(summary->facts, "through_ground",
+              as_tree(TABLE_OBJECT({"cases", as_whole(through)}, {"judged", as_whole(judged)})));
+    return through;
+}
+
+bool summary_numbers(const struct summary *summary)
+{
+    const struct results *const r = summary->r;
+    struct table all = {.named = true}, seen = {0};
+    json_t *const residuals = json_array(), *const single = json_array();
+    bool good = true;
+    table_put(summary->facts, "numbers", as_nothing(NULL)); /* its place */
+    add_through(summary, NULL);
+    for (size_t k = 0; good && k < sizeof number / sizeof *number; k++) {
+        const struct number *const row = &number[k];
+        const enum results_kind of = row->of == RESULTS_STABILISED ? summary->judged : row->of;
+        struct statistics_numbers n;
+        double *values, one;
+        if (!(good = results_answer(r, row->name, &values, summary->message)) || !values)
+            continue;
+        bool idle = strcmp(row->name, "through_ground") == 0 && add_through(summary, values) == 0;
+        for (uint64_t i = 0; of != RESULTS_KIND_COUNT && i < r->cases; i++)
+            values[i] = r->kind[i] == of ? values[i] : NAN;
+        statistics_summarise(values, (size_t)r->cases, &n);
+        free(values);
+        /* nothing is actuated, there is no target */
+        idle = idle ||
+               ((strcmp(row->name, "peak_torque") == 0 || strcmp(row->name, "excursion") == 0) &&
+                n.high == 0);
+        const char *const of_word = of == RESULTS_KIND_COUNT ? "done" : results_kind_names[of];
+        add_number(&all, row, of_word, &n);
+        if (!row->residual && n.n > 0 && !idle)
+            add_number(&seen, row, of_word, &n);
+        if (row->residual && n.n > 0)
+            json_array_append_new(residuals, TABLE_OBJECT({"law", as_text(row->residual)},
+                                                          {"largest", as_number(n.high)},
+                                                          {"unit", as_text(row->unit)}));
+        if (r->single && !row->residual && !strstr(row->name, "_time") &&
+            results_numbers(r, row->name, &one, 1) == 1 && !isnan(one))
+            json_array_append_new(single, TABLE_OBJECT({"answer", as_text(row->name)},
+                                                       {"is", as_number(one)},
+                                                       {"unit", as_text(row->unit)}));
+    }
+    table_put(summary->facts, ".residuals", as_tree(residuals));
+    table_put(summary->facts, ".single", as_tree(single));
+    good = table_give(summary->facts, "numbers", &all, NULL, 0) && good;
+    return table_give(summary->facts, ".numbers", &seen,
+                      "label smallest median q90 q99 largest count of", 0) &&
+           good;
+}
+
+/* ---- cost --------------------------------------------------------------------------------- */
+
+/* A count per case: name, name in JSON of the cases that have any, text. Those that are signs of
+ * trouble come last and are told even if there are none. */
+static const struct count {
+    const char *name, *cases, *text;
+    bool trouble;
+} count[] = {
+    {"steps", NULL, NULL, false},
+    {"iterations", NULL, NULL, false},
+    {"evaluations", NULL, NULL, false},
+    {"events", "events_cases", "events, changes of contact mode", false},
+    {"limited_impacts", "limited_cases", "impacts with less restitution than asked for", false},
+    {"degraded_samples", "degraded_cases",
+     "samples at which decoupling could not do what it promises", false},
+    {"subdivided_steps", "subdivided_cases", "steps that had to be subdivided", true},
+    {"ambiguous_steps", "ambiguous_cases", "steps with several contact solutions", true},
+};
+
+/* The sum over the cases, and how many have any; false: it cannot be read. */
+static bool add_count(const struct summary *summary, const struct count *of, json_t *cost,
+                      json_t *told)
+{
+    double *values, sum = 0;
+    uint64_t cases = 0;
+    if (!results_answer(summary->r, of->name, &values, summary->message) || !values)
+        return !summary->message->text[0];
+    for (uint64_t i = 0; i < summary->r->cases; i++) {
+        if (values[i] > 0) { /* false for NAN, too */
+            sum += values[i];
+            cases++;
+        }
+    }
+    free(values);
+    table_put(cost, of->name, as_whole((uint64_t)sum));
+    if (of->cases)
+        table_put(cost, of->cases, as_whole(cases));
+    if (of->text && (of->trouble || sum > 0))
+        json_array_append_new(told,
+                              TABLE_OBJECT({"text", as_text(of->text)}, {"sum", as_number(sum)},
+                                           {"cases", as_whole(cases)}));
+    return true;
+}
+
+bool summary_cost(const struct summary *summary)
+{
+    json_t *const cost = json_object(), *const told = json_array();
+    double longest, total, cases;
+    size_t ranks = 0;
+    bool good = true;
+    for (size_t k = 0; good && k < sizeof count / sizeof *count; k++)
+        good = add_count(summary, &count[k], cost, told);
+    const json_t *const steps = json_object_get(cost, "steps"),
+                        *const iterations = json_object_get(cost, "iterations"),
+                        *const evaluations = json_object_get(cost, "evaluations");
+    if (steps && iterations)
+        table_put(cost, "iterations_per_step",
+                  as_number(json_number_value(iterations) / json_number_value(steps)));
+    if (evaluations && json_number_value(evaluations) != json_number_value(iterations))
+        table_put(cost, ".evaluations",
+                  as_number(json_number_value(evaluations) / json_number_value(steps)));
+    const bool timed = results_timing(summary->r, &longest, &total, &cases, &ranks);
+    json_object_update_new(
+        cost, TABLE_OBJECT({"wall_time", as_number(timed ? longest : NAN)},
+                           {"total_time", as_number(timed ? total : NAN)},
+                           {"cases_per_second", as_number(timed ? cases / longest : NAN)},
+                           {".timed", as_truth(timed)}, {".ranks", as_whole(ranks)},
+                           {".counts", as_tree(told)}, {".steps", as_truth(steps != NULL)}));
+    table_put(summary->facts, "cost", as_tree(cost));
+    return good;
 }

@@ -22,41 +22,64 @@ static bool is_varied(const struct results *r, const struct scenario *s, const c
     return false;
 }
 
-/* Adds a field of the scenario, told by `text`; NULL: there is no room. */
-static struct summary_field *add_field(struct summary *summary, const char *path, const char *text)
+/* Fields as they are found: {path: value}, and for people a paragraph for each group: "robot:
+ * leg_length 0.535 m, ...", wrapped. */
+struct paragraphs {
+    json_t *fixed;
+    FILE *text;
+    int column;
+    char group[96];
+};
+
+static void add_field(struct paragraphs *p, const char *path, const char *text, const char *unit)
 {
-    if (summary->fields == SUMMARY_FIELDS)
-        return NULL;
-    struct summary_field *const field = &summary->field[summary->fields++];
-    *field = (struct summary_field){.number = NAN};
-    snprintf(field->path, sizeof field->path, "%.95s", path);
-    snprintf(field->text, sizeof field->text, "%s", text);
-    return field;
+    enum { WRAP = 100, INDENTED = 13 };
+    char word[300];
+    const size_t length = strcspn(path, ".");
+    snprintf(word, sizeof word, "%s %s%s%s", path[length] ? path + length + 1 : path, text,
+             unit[0] ? " " : "", unit);
+    if (strncmp(p->group, path, length) != 0 || p->group[length]) {
+        snprintf(p->group, sizeof p->group, "%.*s", (int)length, path);
+        p->column = fprintf(p->text, "\n  %-11s", p->group);
+    } else if (p->column + 2 + (int)strlen(word) > WRAP) {
+        fprintf(p->text, ",\n  %-11s", "");
+        p->column = INDENTED;
+    } else {
+        p->column += fprintf(p->text, ", ");
+    }
+    p->column += fprintf(p->text, "%s", word);
 }
 
-static void add_number(struct summary *summary, const char *path, double number, const char *unit)
+static void add_word(struct paragraphs *p, const char *path, const char *word)
+{
+    table_put(p->fixed, path, as_text(word));
+    add_field(p, path, word, "");
+}
+
+static void add_number(struct paragraphs *p, const char *path, double number, const char *unit)
 {
     char text[32];
-    snprintf(text, sizeof text, "%.6g", number);
-    struct summary_field *const field = add_field(summary, path, isinf(number) ? "none" : text);
-    if (field && !isinf(number)) {
-        snprintf(field->unit, sizeof field->unit, "%.15s", strcmp(unit, "1") == 0 ? "" : unit);
-        field->number = number;
+    if (isinf(number)) {
+        add_word(p, path, "none");
+        return;
     }
+    snprintf(text, sizeof text, "%.6g", number);
+    table_put(p->fixed, path, as_number(number));
+    add_field(p, path, text, strcmp(unit, "1") == 0 ? "" : unit);
 }
 
 /* Contacts of the ground by name; stops of joints are none. */
-static void add_contacts(struct summary *summary, const stance_scene *scene, const char *path,
+static void add_contacts(struct paragraphs *p, const stance_scene *scene, const char *path,
                          int contacts)
 {
     const char *names[STANCE_MAX_CONTACTS];
-    char text[sizeof summary->field->text];
+    char text[160];
     size_t count = 0;
     for (int i = 0; i < scene->contacts; i++)
         if ((contacts >> i & 1) && scene->grip[i] >= 0)
             names[count++] = scene->contact_name[i];
     if (count > 0)
-        add_field(summary, path, words_join(text, sizeof text, " ", names, count));
+        add_word(p, path, words_join(text, sizeof text, " ", names, count));
 }
 
 /* Whether a law's number is of what it controls: of coordinates those of its selection. Where that
@@ -111,15 +134,15 @@ static double completed(const struct results *r, const struct scenario *s,
                : number;
 }
 
-void summary_collect_fields(struct summary *summary, const struct results *r,
-                            const struct scenario *s)
+static void add_fields(const struct summary *summary, const struct schema *schema,
+                       struct paragraphs *p)
 {
-    struct schema *own;
-    const struct schema *const schema = schema_of(s->scene, &own);
+    const struct results *const r = summary->r;
+    const struct scenario *const s = summary->s;
     struct scenario_values v = s->base;
     if (r->single && s->axes > 0 && r->index < s->cases)
         scenario_case_values(s, r->index, &v);
-    for (size_t k = 0; schema && k < schema->count; k++) {
+    for (size_t k = 0; k < schema->count; k++) {
         const struct scenario_field *const field = &schema->field[k];
         /* what gains are designed from or given as says `stance design` */
         if (field->offset == NO_OFFSET || field->use == USE_PLACE || field->use == USE_LQR ||
@@ -134,14 +157,32 @@ void summary_collect_fields(struct summary *summary, const struct results *r,
             if (isnan(is) || (field->quiet && is == usual) || is_varied(r, s, path))
                 continue;
             if (field->type == FIELD_WORDS)
-                add_contacts(summary, s->scene, path, (int)is);
+                add_contacts(p, s->scene, path, (int)is);
             else if (field->type == FIELD_WORD)
-                add_field(summary, path,
-                          is >= 0 && is < (double)field->word_count ? field->words[(size_t)is]
-                                                                    : "unknown");
+                add_word(p, path,
+                         is >= 0 && is < (double)field->word_count ? field->words[(size_t)is]
+                                                                   : "unknown");
             else
-                add_number(summary, path, is, field->unit);
+                add_number(p, path, is, field->unit);
         }
     }
+}
+
+bool summary_fields(const struct summary *summary)
+{
+    char *text = NULL;
+    size_t size;
+    struct schema *own = NULL;
+    struct paragraphs p = {.fixed = json_object(), .text = open_memstream(&text, &size)};
+    const struct schema *const schema = summary->s ? schema_of(summary->s->scene, &own) : NULL;
+    if (schema && p.text)
+        add_fields(summary, schema, &p);
     free(own);
+    table_put(summary->facts, "fixed", as_tree(p.fixed));
+    if (p.text) {
+        fclose(p.text);
+        table_put(summary->facts, ".fixed", as_text(text));
+    }
+    free(text);
+    return true;
 }

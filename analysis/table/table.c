@@ -1,6 +1,8 @@
 /* table.c - see table.h. */
 #include "table.h"
 
+#include "runner/base/words.h"
+
 #include <assert.h>
 #include <inttypes.h>
 #include <math.h>
@@ -462,22 +464,58 @@ json_t *table_at(const struct results *r, const bool *which, const size_t *point
     return at;
 }
 
+void table_at_text(const struct results *r, const bool *which, const size_t *point, char *text,
+                   size_t size)
+{
+    char value[128];
+    text[0] = '\0';
+    for (int a = 0; a < r->axes; a++) {
+        if (which[a]) {
+            results_value_text(&r->axis[a], point[a], true, value, sizeof value);
+            words_add(text, size, "%s%s = %s", text[0] ? ", " : "", r->axis[a].name, value);
+        }
+    }
+}
+
+void table_put(json_t *object, const char *key, struct table_value value)
+{
+    char shown[128], text[128];
+    if (value.kind == TABLE_PLACE) {
+        snprintf(shown, sizeof shown, ".%s", key);
+        results_value_text(value.axis, value.whole, true, text, sizeof text);
+        table_put(object, shown, as_text(text));
+    }
+    json_object_set_new(object, key, table_value_json(value));
+}
+
 json_t *table_object(const struct table_member *member, size_t count)
 {
     json_t *object = json_object();
-    bool good = object != NULL;
     for (size_t k = 0; k < count; k++)
-        good = json_object_set_new(object, member[k].key, table_value_json(member[k].value)) == 0 &&
-               good;
-    if (!good)
-        json_decref(object);
-    return good ? object : NULL;
+        table_put(object, member[k].key, member[k].value);
+    return object;
+}
+
+bool table_give(json_t *facts, const char *key, struct table *t, const char *view, size_t most)
+{
+    char shown[64], *text = NULL;
+    size_t size;
+    bool good = !t->failed;
+    FILE *const to = view ? open_memstream(&text, &size) : NULL;
+    if (to) {
+        table_write_text(t, to, view, most);
+        fclose(to);
+        snprintf(shown, sizeof shown, ".%s", key + (key[0] == '.'));
+        good = json_object_set_new(facts, shown, json_string(text)) == 0 && good;
+        free(text);
+    }
+    if (key[0] != '.')
+        good = json_object_set_new(facts, key, table_json(t, t->named)) == 0 && good;
+    table_free(t);
+    return good;
 }
 
 bool table_write_json(json_t *root, FILE *out)
 {
-    const bool good = root && json_dumpf(root, out, JSON_INDENT(2) | JSON_REAL_PRECISION(17)) == 0;
-    json_decref(root);
-    putc('\n', out);
-    return good && !ferror(out);
+    return say_facts(root, true, NULL, out);
 }

@@ -8,6 +8,7 @@
 #define STANCE_TABLE_TABLE_H
 
 #include "runner/base/command.h"
+#include "runner/base/say.h"
 #include "runner/store/results.h"
 
 #include <jansson.h>
@@ -106,6 +107,7 @@ struct table {
     bool failed; /* no memory */
     bool closed; /* its columns are known */
     bool begun;  /* its head has been written */
+    bool named;  /* see table_give */
 };
 
 /* A fact of a row: what column it stands in, and its value. */
@@ -166,15 +168,19 @@ static inline json_t *table_texts(const char *first, const char *second)
 }
 /* {path: value} of the axes at one point[]; which[axes] of them, NULL: all. */
 json_t *table_at(const struct results *r, const bool *which, const size_t *point);
-/* Adds to an object, to a list. */
-static inline void table_put(json_t *object, const char *key, struct table_value value)
-{
-    json_object_set_new(object, key, table_value_json(value));
-}
+/* Adds to an object, of a place with what it is for people, and its unit, as `.key`; to a list. */
+void table_put(json_t *object, const char *key, struct table_value value);
 static inline void table_append(json_t *list, struct table_value value)
 {
     json_array_append_new(list, table_value_json(value));
 }
+/* The same for people, but for those not in `which`: "a = 0.1 rad, b = 3". */
+void table_at_text(const struct results *r, const bool *which, const size_t *point, char *text,
+                   size_t size);
+/* Adds to facts (say.h) the rows as a list, or if the table is `named` as an object by the first
+ * column, under the key; and what a view shows of them, NULL: nothing, as `.key`. Of a key that
+ * begins with '.' the latter alone. Frees the table; false: no memory. */
+bool table_give(json_t *facts, const char *key, struct table *t, const char *view, size_t most);
 /* Writes it, with the end of a line, and releases it. */
 bool table_write_json(json_t *root, FILE *out);
 
