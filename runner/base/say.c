@@ -1,6 +1,7 @@
 /* say.c - see say.h. */
 #include "say.h"
 
+#include <stdarg.h>
 #include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
@@ -169,6 +170,19 @@ bool say(json_t *facts, const char *text, FILE *out)
     if (facts)
         put_text(&scope, text, text + strlen(text), out);
     return facts && !ferror(out);
+}
+
+void say_add(json_t *facts, const char *key, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    json_t *const more = json_vsprintf(format, arguments), *const text =
+                                                               json_object_get(facts, key);
+    va_end(arguments);
+    json_object_set_new(facts, key,
+                        json_sprintf("%s%s", text ? json_string_value(text) : "",
+                                     more ? json_string_value(more) : ""));
+    json_decref(more);
 }
 
 /* ---- JSON --------------------------------------------------------------------------------- */

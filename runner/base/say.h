@@ -9,10 +9,10 @@
  *   {PATH#s}       "s", unless the value is 1
  *   [PATH:TEXT|OTHERWISE]   TEXT where the value there is neither null, false, 0 nor empty, else
  *                  OTHERWISE, which may be left out. Of an object, its members are facts in TEXT.
- *   [!PATH:...], [PATH=...:...], [PATH<...:...], [PATH>...:...]   the contrary; where it is, is less
- *                  or more than a number, or is a word
- *   [PATH*BETWEEN:TEXT]   TEXT for each item of a list or member of an object, BETWEEN after all
- *                  but the last: {value}, {i} from 0, of a member {key}, of an object its members
+ *   [!PATH:...], [PATH=...:...], [PATH<...:...], [PATH>...:...]   the contrary; where it is, is
+ * less or more than a number, or is a word [PATH*BETWEEN:TEXT]   TEXT for each item of a list or
+ * member of an object, BETWEEN after all but the last: {value}, {i} from 0, of a member {key}, of
+ * an object its members
  *
  * PATH is names with '/' between them, and numbers of items; the first name is looked for in the
  * facts nearest by. After a backslash each letter stands for itself.
@@ -23,6 +23,10 @@
 #include <jansson.h>
 #include <stdbool.h>
 #include <stdio.h>
+
+/* Adds to the end of a text among the facts, which is there or becomes so. */
+__attribute__((format(printf, 3, 4))) void say_add(json_t *facts, const char *key,
+                                                   const char *format, ...);
 
 /* Each returns false without facts (no memory), or when the output fails. */
 bool say(json_t *facts, const char *text, FILE *out);

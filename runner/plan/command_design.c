@@ -6,6 +6,7 @@
 #include "standing.h"
 
 #include "runner/base/message.h"
+#include "runner/base/say.h"
 
 #include <stdio.h>
 
@@ -16,17 +17,12 @@ struct request {
     bool json;
 };
 
-/* Takes the reference. */
-static int print_json(json_t *report)
+static int print(json_t *facts, bool json, const char *text)
 {
-    if (!report || json_dumpf(report, stdout, JSON_INDENT(2) | JSON_REAL_PRECISION(17)) != 0) {
-        fputs("stance design: the report could not be written\n", stderr);
-        json_decref(report);
-        return EXIT_IO;
-    }
-    putchar('\n');
-    json_decref(report);
-    return EXIT_DONE;
+    if (say_facts(facts, json, text, stdout))
+        return EXIT_DONE;
+    fputs("stance design: the report could not be written\n", stderr);
+    return EXIT_IO;
 }
 
 /* ---- the command ----------------------------------------------------------------------------- */
@@ -59,15 +55,10 @@ static int design_decoupling(const struct scenario *s, bool json)
 
     if (!design_selections_compute(&selections, s, &message))
         return report_at(s, message.text);
-    if (json) {
-        const int code = print_json(design_selections_json(&selections));
-        return code == EXIT_DONE && selections.singular ? report_at(s, selections.complaint.text)
-                                                        : code;
-    }
-    printf("%s\n\n", s->title);
-    design_selections_print(&selections);
+    const int code = print(design_selections_facts(&selections), json, design_selections_text);
     fflush(stdout);
-    return selections.singular ? report_at(s, selections.complaint.text) : EXIT_DONE;
+    return code == EXIT_DONE && selections.singular ? report_at(s, selections.complaint.text)
+                                                    : code;
 }
 
 static int design(const struct scenario *s, void *request)
@@ -87,10 +78,7 @@ static int design(const struct scenario *s, void *request)
         standing_ranges(s, &s->base, &message);
         return report_at(s, message.text);
     }
-    if (json)
-        return print_json(design_json(&report));
-    design_print(&report);
-    return EXIT_DONE;
+    return print(design_facts(&report), json, design_text);
 }
 
 static int run(int argc, char **argv)

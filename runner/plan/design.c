@@ -423,6 +423,18 @@ const char *design_radius(const struct design_report *r, int digits, char text[3
     return text;
 }
 
+/* ", acting 2 samples late", or nothing. Returns buffer. */
+const char *design_late(int delay, const char *verb, char buffer[64])
+{
+    if (delay == 0)
+        buffer[0] = '\0';
+    else if (delay == 1)
+        snprintf(buffer, 64, ", %sa sample late", verb);
+    else
+        snprintf(buffer, 64, ", %s%d samples late", verb, delay);
+    return buffer;
+}
+
 const char *design_bound_name(const struct design_report *r, int bound, char name[64])
 {
     const int torques = 2 * r->inputs;

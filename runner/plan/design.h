@@ -101,8 +101,8 @@ struct design_selections {
 /* false: `message` says what does not exist. */
 bool design_selections_compute(struct design_selections *d, const struct scenario *s,
                                stance_message *message);
-void design_selections_print(const struct design_selections *d);
-json_t *design_selections_json(const struct design_selections *d);
+json_t *design_selections_facts(const struct design_selections *d);
+extern const char design_selections_text[];
 
 /* false: `message` says what does not exist. design_plant: up to `rank`, whatever the law;
  * design_loop: without `allowed`, `critical` and `set`, which take longer, and with the
@@ -136,9 +136,8 @@ const char *design_late(int delay, const char *verb, char buffer[64]);
 /* What a bound of the set is. */
 const char *design_bound_name(const struct design_report *r, int bound, char name[64]);
 
-void design_print(const struct design_report *r);
-
-/* A new reference; NULL without memory. */
-json_t *design_json(const struct design_report *r);
+/* What `stance design` says (runner/base/say.h): a new reference, and for people its text. */
+json_t *design_facts(const struct design_report *r);
+extern const char design_text[];
 
 #endif

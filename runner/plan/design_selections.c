@@ -44,47 +44,36 @@ static bool is_used(const struct design_selections *d, int selection)
     return selection == used;
 }
 
-void design_selections_print(const struct design_selections *d)
+json_t *design_selections_facts(const struct design_selections *d)
 {
-    const stance_scene *const scene = d->scenario->scene;
+    const struct scenario *const s = d->scenario;
     char name[SCENARIO_NAME];
+    json_t *const selections = json_array();
     int widest = (int)strlen("coordinates");
-    for (int p = 0; p < d->count; p++)
-        if (scenario_selection_name(scene, p, name) && (int)strlen(name) > widest)
-            widest = (int)strlen(name);
-    printf(
-        "Coordinates under the decoupling law (* the scenario's)\n"
-        "  The law inverts the matrix G that takes torques to their accelerations. Where its\n"
-        "  condition number (SI units) is above %.0e the inverse is damped and the sample counts\n"
-        "  as degraded.\n\n"
-        "    %-*s  condition number of G   postures where\n"
-        "    %-*s  at start    at best     it is damped    singular\n",
-        STANCE_ILL_CONDITIONED, widest, "", widest, "coordinates");
     for (int p = 0; p < d->count; p++) {
-        char start[32];
-        scenario_selection_name(scene, p, name);
-        snprintf(start, sizeof start, isfinite(d->at_start[p]) ? "%.3g" : "singular",
-                 d->at_start[p]);
-        printf("  %c %-*s  %-10s  %-9.3g   %8.2g %%      %s\n", is_used(d, p) ? '*' : ' ', widest,
-               name, start, d->report[p].best, 100 * d->report[p].ill_conditioned,
-               d->report[p].singular ? "on a surface of postures" : "nowhere");
+        const double start = d->at_start[p];
+        scenario_selection_name(s->scene, p, name);
+        widest = (int)strlen(name) > widest ? (int)strlen(name) : widest;
+        json_array_append_new(
+            selections,
+            json_pack("{s:s, s:b, s:o?, s:o, s:f, s:f, s:b}", "coordinates", name, "controlled",
+                      is_used(d, p), "condition_at_start", json_real(start), ".start",
+                      isfinite(start) ? json_sprintf("%.3g", start) : json_string("singular"),
+                      "best_condition", d->report[p].best, "damped_share",
+                      d->report[p].ill_conditioned, "singular", d->report[p].singular));
     }
+    return json_pack("{s:s, s:s, s:s, s:o, s:s, s:i, s:f}", "scenario", s->name, "title", s->title,
+                     "scene", s->scene->name, "selections", selections, ".coordinates",
+                     "coordinates", ".width", widest, ".ill", STANCE_ILL_CONDITIONED);
 }
 
-json_t *design_selections_json(const struct design_selections *d)
-{
-    char name[SCENARIO_NAME];
-    json_t *selections = json_array();
-    for (int p = 0; p < d->count; p++) {
-        scenario_selection_name(d->scenario->scene, p, name);
-        json_t *start = isfinite(d->at_start[p]) ? json_real(d->at_start[p]) : json_null();
-        json_array_append_new(
-            selections, json_pack("{s:s, s:b, s:o, s:f, s:f, s:b}", "coordinates", name,
-                                  "controlled", is_used(d, p), "condition_at_start", start,
-                                  "best_condition", d->report[p].best, "damped_share",
-                                  d->report[p].ill_conditioned, "singular", d->report[p].singular));
-    }
-    return json_pack("{s:s, s:s, s:s, s:o}", "scenario", d->scenario->name, "title",
-                     d->scenario->title, "scene", d->scenario->scene->name, "selections",
-                     selections);
-}
+const char design_selections_text[] =
+    "{title}\n\nCoordinates under the decoupling law (* the scenario's)\n"
+    "  The law inverts the matrix G that takes torques to their accelerations. Where its\n"
+    "  condition number (SI units) is above {.ill%.0e} the inverse is damped and the sample "
+    "counts\n"
+    "  as degraded.\n\n"
+    "    {.%-*s}  condition number of G   postures where\n"
+    "    {.coordinates%-*s}  at start    at best     it is damped    singular\n"
+    "[selections*:  [controlled:*| ] {coordinates%-*s}  {.start%-10s}  {best_condition%-9.3g}   "
+    "{damped_share*%8.2g} %      [singular:on a surface of postures|nowhere]\n]";
