@@ -275,40 +275,26 @@ static void make_table(struct table *t, const struct search_front *front)
 
 bool search_front_print(const struct search_front *front, enum table_form form)
 {
+    static const char text[] =
+        "{title}\n{.count} searches against {against}[unit: ({unit})][.text:: {.text}]\n"
+        "[also:also different: {also}\n]\n{.searches}"
+        "(of fresh starts, with 95 % intervals; allowed: by linear theory to any controller)\n"
+        "[.glued:(" ALLOWED_GLUED ")\n]";
     const struct results_axis *const axis = &front->against;
-    const char *const title = front->study[0].f.title;
     struct table t = {0};
-    bool good;
+    char view[300];
+    bool glued = false;
+    for (size_t i = 0; i < front->count; i++)
+        glued = glued || front->study[i].glued;
+    json_t *const facts = TABLE_OBJECT(
+        {"title", as_text(front->study[0].f.title)}, {"against", as_text(axis->name)},
+        {"unit", as_text(axis->unit[0] ? axis->unit : NULL)},
+        {"also", as_text(front->also[0] ? front->also : NULL)}, {".count", as_whole(front->count)},
+        {".text", as_text(axis->text)}, {".glued", as_truth(glued)});
     make_table(&t, front);
-    if (form == TABLE_AS_CSV) {
-        good = table_write_csv(&t, stdout);
-    } else if (form == TABLE_AS_JSON) {
-        good = table_write_json(TABLE_OBJECT({"title", as_text(title)},
-                                             {"against", as_text(axis->name)},
-                                             {"unit", as_text(axis->unit[0] ? axis->unit : NULL)},
-                                             {"also", as_text(front->also[0] ? front->also : NULL)},
-                                             {"searches", as_tree(table_json(&t, false))}),
-                                stdout);
-    } else {
-        char view[300];
-        printf("%s\n%zu searches against %s%s%s%s%s%s\n", title, front->count, axis->name,
-               axis->unit[0] ? " (" : "", axis->unit, axis->unit[0] ? ")" : "",
-               axis->text[0] ? ": " : "", axis->text);
-        if (front->also[0])
-            printf("also different: %s\n", front->also);
-        putchar('\n');
-        snprintf(view, sizeof view,
-                 "%s first first_low first_high chosen chosen_low chosen_high allowed of_allowed "
-                 "critical_chosen file",
-                 axis->name);
-        good = table_write_text(&t, stdout, view, 0);
-        puts("(of fresh starts, with 95 % intervals; allowed: by linear theory to any controller)");
-        bool glued = false;
-        for (size_t i = 0; i < front->count; i++)
-            glued = glued || front->study[i].glued;
-        if (glued)
-            puts("(" ALLOWED_GLUED ")");
-    }
-    table_free(&t);
-    return good && !ferror(stdout);
+    snprintf(view, sizeof view,
+             "%s first first_low first_high chosen chosen_low chosen_high allowed of_allowed "
+             "critical_chosen file",
+             axis->name);
+    return table_say(form, table_show(facts, "searches", &t, view, 0), text, &t);
 }

@@ -1,32 +1,336 @@
-/* search_summary.c - see search_summary.h. */
+/* search_summary.c - see search_summary.h: what the file of a search says, as facts and a text. */
 #include "search_summary.h"
 #include "search_front.h"
 
-static bool print_csv(const struct search_study *study)
+#include "runner/base/units.h"
+#include "runner/plan/allowed.h"
+#include "runner/plan/design.h"
+#include "runner/scenario/schema.h"
+
+#include <math.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- what was sought ---------------------------------------------------------------------- */
+
+/* "[0][3]" of a path is left out: what is varied together is told together. */
+static size_t family(const char *path)
+{
+    return strcspn(path, "[");
+}
+
+static void add_range(const struct search_study *study, const char *path, json_t *facts)
+{
+    const struct scenario *const s = study->first;
+    struct results_axis axis = {.unit = ""};
+    for (int k = 0; s && k < s->search.axis.paths; k++) {
+        const struct scenario_varied *const v = &s->search.varied[k];
+        if (strcmp(s->search.axis.path[k], path) != 0 || !v->bounded)
+            continue;
+        snprintf(axis.name, sizeof axis.name, "%s", path);
+        search_describe(study, &axis);
+        say_add(facts, "range", "  %g ... %g%s%s%s", v->low, v->high, axis.unit[0] ? " " : "",
+                axis.unit, v->scale == SCALE_EVEN ? "" : ", by ratios");
+    }
+}
+
+static json_t *families(const struct search_study *study)
+{
+    const struct search_file *const f = &study->f;
+    const size_t n = f->length[SEARCH_PARAMETER];
+    json_t *const list = json_array();
+    for (size_t k = 0, next; k < n; k = next) {
+        const size_t length = family(f->parameter[k]);
+        char name[128];
+        for (next = k + 1; next < n && family(f->parameter[next]) == length &&
+                           strncmp(f->parameter[next], f->parameter[k], length) == 0;)
+            next++;
+        snprintf(name, sizeof name, "%.*s", (int)length, f->parameter[k]);
+        json_t *const facts =
+            TABLE_OBJECT({"of", as_text(next > k + 1 ? name : f->parameter[k])},
+                         {"more", as_whole(next - k - 1)}, {"many", as_whole(next - k)});
+        add_range(study, f->parameter[k], facts);
+        json_array_append_new(list, facts);
+    }
+    return list;
+}
+
+/* "initial.offset.theta, q1, q2": what a path has in common with the one before is said once. */
+static void add_starts(const struct search_file *f, json_t *facts)
+{
+    for (size_t k = 0; k < f->length[SEARCH_VARIED]; k++) {
+        const char *const path = f->varied[k], *const name = schema_last_name(path);
+        const size_t length = (size_t)(name - path);
+        const bool same =
+            k > 0 && schema_last_name(f->varied[k - 1]) - f->varied[k - 1] == (ptrdiff_t)length &&
+            strncmp(f->varied[k - 1], path, length) == 0;
+        say_add(facts, ".starts_over", "%s%s", k ? ", " : "", same ? name : path);
+    }
+}
+
+static void add_required(const struct search_study *study, json_t *facts)
+{
+    const double critical = study->first->search.critical;
+    double least, longest;
+    scenario_extent(study->first, offsetof(struct scenario_values, sample_time), &least, &longest);
+    if (longest != 0 && isnan(critical)) /* else nothing is sampled */
+        say_add(facts, ".required", "two sample times");
+    else if (longest != 0 && critical > 0)
+        say_add(facts, ".required", "%g s", critical);
+}
+
+/* ---- what came out ------------------------------------------------------------------------ */
+
+/* The limit is that of a posture, which may be varied, too. */
+static json_t *limit(const struct search_study *study)
+{
+    const size_t chosen = (size_t)study->f.chosen;
+    const char *where, *first_where;
+    const double allowed = search_limit(study, chosen, &where),
+                 before = search_limit(study, 0, &first_where),
+                 first = 100 * search_share(study, 0, SEARCH_OVERALL) / before;
+    if (!(allowed > 0))
+        return NULL;
+    json_t *const facts = TABLE_OBJECT(
+        {"allowed", as_number(allowed)}, {"where", as_text(where)},
+        {"chosen", as_number(100 * search_share(study, chosen, SEARCH_OVERALL) / allowed)});
+    if (before == allowed)
+        say_add(facts, "first", ", first %.1f %%", first);
+    else if (before > 0)
+        say_add(facts, "first",
+                ";\n  at the first one's posture it is %.2f %%, of which it has %.1f %%",
+                100 * before, first);
+    return facts;
+}
+
+static void add_counts(const struct search_study *study, json_t *facts)
+{
+    json_t *const counts = json_object();
+    for (int label = 0; label < TRIAL_LABELS; label++) {
+        const int64_t count = search_count(study, (size_t)study->f.chosen, label);
+        table_put(counts, study->f.kind[label], as_whole((uint64_t)count));
+        if (count > 0 || label == STANCE_UNDECIDED + 1 || label == STANCE_RESTED + 1 ||
+            label == TRIAL_FAILED)
+            say_add(facts, ".counts", "%s%lld %s", json_object_get(facts, ".counts") ? ", " : "",
+                    (long long)count,
+                    label == STANCE_STABILISED + 1 ? "recovered" : study->f.kind[label]);
+    }
+    table_put(facts, "starts", as_tree(counts));
+}
+
+/* ---- the chosen one ----------------------------------------------------------------------- */
+
+/* The values of all parameters; for people those that are no entry of controller.gains. */
+static void add_values(const struct search_study *study, json_t *facts)
+{
+    static const char entry[] = "controller.gains[";
+    const struct search_file *const f = &study->f;
+    const size_t n = f->length[SEARCH_PARAMETER];
+    json_t *const values = json_object(), *const told = json_object(), *gains = NULL;
+    for (size_t k = 0; k < n; k++) {
+        const double value = f->confirmed_value[(size_t)f->chosen * n + k];
+        const bool gain = study->best && strncmp(f->parameter[k], entry, strlen(entry)) == 0;
+        table_put(values, f->parameter[k], as_number(value));
+        if (!gain)
+            table_put(told, f->parameter[k], as_number(value));
+        else if (!gains)
+            gains = json_array();
+    }
+    const int columns = gains ? 2 * study->best->scene->postures : 0;
+    for (int i = 0; gains && i < study->best->scene->actuators; i++) {
+        json_t *const row = json_array();
+        for (int j = 0; j < columns; j++)
+            table_append(row, as_number(study->best->base.gains[i * columns + j]));
+        json_array_append_new(gains, row);
+    }
+    table_put(facts, "values", as_tree(values));
+    table_put(facts, ".values", as_tree(told));
+    table_put(facts, "gains", as_tree(gains));
+}
+
+/* Of the loop, where linear theory knows it. */
+static void add_poles(const struct search_study *study, json_t *facts)
+{
+    stance_message ignored;
+    json_t *list = NULL;
+    struct design_report *const loop =
+        study->best && scenario_law(&study->best->base)->designed ? malloc(sizeof *loop) : NULL;
+    if (loop && design_loop(loop, study->best, NULL, &ignored)) {
+        list = json_array();
+        for (int i = 0; i < loop->states; i++) {
+            say_add(facts, ".poles", "%s%.5g", i ? ", " : "", loop->closed_re[i]);
+            if (loop->closed_im[i] != 0)
+                say_add(facts, ".poles", "%+.5gi", loop->closed_im[i]);
+            json_array_append_new(list,
+                                  json_pack("[f, f]", loop->closed_re[i], loop->closed_im[i]));
+        }
+    }
+    free(loop);
+    table_put(facts, "poles", as_tree(list));
+}
+
+static json_t *chosen(const struct search_study *study)
+{
+    const struct search_file *const f = &study->f;
+    const struct search_gain gain = search_gain(study, SEARCH_OVERALL);
+    const double first = f->confirmed_critical[0],
+                 critical =
+                     f->confirmed_critical[(size_t)f->chosen * f->length[SEARCH_CIRCUMSTANCE]];
+    char name[80];
+    search_name(study, (size_t)f->chosen, name, sizeof name);
+    json_t *const facts = TABLE_OBJECT({"which", as_text(name)});
+    add_counts(study, facts);
+    json_object_update_new(facts, TABLE_OBJECT({"gain", as_number(gain.share)},
+                                               {"gain_low", as_number(gain.interval.low)},
+                                               {"gain_high", as_number(gain.interval.high)},
+                                               {"won", as_whole(gain.won)},
+                                               {"lost", as_whole(gain.lost)}));
+    add_values(study, facts);
+    add_poles(study, facts);
+    if (isinf(critical))
+        say_add(facts, ".critical", ": none up to 10 s");
+    else if (!isnan(critical))
+        say_add(facts, ".critical", " %.4g s", critical);
+    if (isfinite(critical) && isfinite(first))
+        say_add(facts, ".critical", ", of the first %.4g s", first);
+    return facts;
+}
+
+/* ---- all of it ---------------------------------------------------------------------------- */
+
+static bool give(json_t *facts, const char *key, const struct search_study *study,
+                 void (*make)(struct table *, const struct search_study *), const char *view)
 {
     struct table t = {0};
-    search_table_confirmed(&t, study);
-    const bool good = table_write_csv(&t, stdout);
-    table_free(&t);
+    make(&t, study);
+    return table_give(facts, key, &t, view, 0);
+}
+
+static bool add_tables(const struct search_study *study, json_t *facts)
+{
+    const struct search_file *const f = &study->f;
+    const size_t circumstances = f->length[SEARCH_CIRCUMSTANCE];
+    const bool apart = search_chosen_apart(study),
+               begins = f->restart[f->length[SEARCH_GENERATION] - 1] > 0;
+    const char *where = NULL;
+    bool limited = false;
+    char view[120];
+    for (size_t c = 0; study->done && c < circumstances; c++)
+        limited = limited || isfinite(f->confirmed_allowed[(size_t)f->chosen * circumstances + c]);
+    snprintf(view, sizeof view, "%sstage starts generations candidates best best_candidate step",
+             begins ? "beginning " : "");
+    bool good = give(facts, "stages", study, search_table_stages, view);
+    table_put(facts, "fresh_starts", as_whole(f->length[SEARCH_START]));
+    snprintf(view, sizeof view, "mark which candidate share low high%s training gap%s",
+             study->plain ? "" : " objective", apart ? " choice" : "");
+    good = give(facts, "confirmed", study, search_table_confirmed, view) && good;
+    const double allowed = study->done ? search_limit(study, (size_t)f->chosen, &where) : NAN;
+    json_object_update_new(
+        facts,
+        TABLE_OBJECT({"linear_limit", as_number(allowed)}, {"linear_limit_in", as_text(where)},
+                     {"linear_limit_glued", as_truth(study->glued)},
+                     {".limit", as_tree(study->done ? limit(study) : NULL)},
+                     {".limited", as_truth(limited)}, {".apart", as_truth(apart)},
+                     {".several", as_truth(circumstances > 1)}));
+    snprintf(view, sizeof view,
+             "circumstance first chosen chosen_low chosen_high gain gain_low gain_high%s "
+             "critical_chosen",
+             limited ? " allowed of_allowed" : "");
+    return give(facts, "circumstances", study, search_table_circumstances, view) &&
+           give(facts, "elsewhere", study, search_table_elsewhere, "where first chosen") && good;
+}
+
+static bool add_facts(const struct search_study *study, json_t *facts)
+{
+    const struct search_file *const f = &study->f;
+    const size_t last = f->length[SEARCH_GENERATION] - 1, n = f->length[SEARCH_PARAMETER];
+    const int64_t best = f->best[last];
+    char aim[600], time[32];
+    search_aim(study, aim, sizeof aim);
+    text_of_seconds(time, sizeof time, f->seconds);
+    json_object_update_new(
+        facts,
+        TABLE_OBJECT(
+            {"file", as_text(study->file)}, {"title", as_text(f->title)},
+            {"revision", as_text(f->revision)}, {"date", as_text(f->date)},
+            {"seconds", as_number(f->seconds)}, {"finished", as_truth(f->finished)},
+            {"note", as_text(f->finished ? f->note : NULL)}, {"generations", as_whole(last + 1)},
+            {"most_generations", as_whole((uint64_t)f->most_generations)},
+            {"candidates", as_whole(f->length[SEARCH_CANDIDATE])},
+            {"best", as_whole((uint64_t)best)}, {"best_objective", as_number(f->objective[best])},
+            {"maximised", as_text(aim)},
+            {"varied", as_tree(table_list((const char *const *)f->parameter, n))},
+            {"starts_over",
+             as_tree(table_list((const char *const *)f->varied, f->length[SEARCH_VARIED]))},
+            {".name", as_text(f->title[0] ? f->title : study->name)}, {".time", as_text(time)},
+            {".numbers", as_whole(n)}, {".varied", as_tree(families(study))},
+            {".starts", as_whole((uint64_t)f->starts[last])}, {".done", as_truth(study->done)}));
+    say_add(facts, ".best", study->plain ? "%.2f %%" : "%.6g",
+            (study->plain ? 100 : 1) * f->objective[best]);
+    add_starts(f, facts);
+    if (study->first && study->first->search.given)
+        add_required(study, facts);
+    const bool good = add_tables(study, facts);
+    table_put(facts, "chosen", as_tree(study->done ? chosen(study) : NULL));
     return good;
+}
+
+static const char text[] =
+    "{.name}\n{file}: a search, {candidates} candidates in {generations} generations, {.time}; "
+    "revision {revision}, {date}\n"
+    "\nVaried: {.numbers} number{.numbers#s}\n"
+    "[.varied*:  {of}[more:  {many} of them]{range}\n]"
+    "Maximised: {maximised}\n"
+    "[.required:Required: a critical sample time of {.required}\n]"
+    "Starts over {.starts_over}\n"
+    "\nSearch\n{.stages}[finished:  ended: {note}\n]"
+    "[!.done:\nNot finished: {generations} of at most {most_generations} generations; best so far "
+    "candidate {best}, {.best} of the {.starts} starts by which it was\n"
+    "chosen (fewer of fresh ones). stance optimise SCENARIO --resume goes on\n|"
+    "\nFrom {fresh_starts} fresh starts, with 95 % intervals\n{.confirmed}"
+    "  (training: objective of the starts by which the search went; gap: training - fresh;\n"
+    "[.apart:  * chosen, for the largest choice: the objective of as many other starts)"
+    "|  * chosen, by these very starts, as in files of earlier versions: too high)]\n"
+    "[chosen:  chosen - first[.several:, mean of the circumstances]: {gain*%+.2f} points "
+    "({gain_low*%.2f} ... {gain_high*%.2f}), start by start: {won} won, {lost} lost\n]"
+    "[.limit:  {allowed*%.2f} % is what linear theory allows any controller "
+    "[where:in its worst circumstance,\n  {where}|there]: chosen {chosen%.1f} % of that{first}\n"
+    "[linear_limit_glued:  (" ALLOWED_GLUED ")\n]]"
+    "[chosen:  of the chosen one's starts {.counts}\n]"
+    "[.several:\nIn each circumstance\n{.circumstances}"
+    "[.limited:  (allowed: from there linear theory allows any controller to recover)\n]]"
+    "[elsewhere:\nElsewhere, where nothing was sought\n{.elsewhere}]"
+    "[chosen:\nChosen: {which} (with all digits in the -best.yaml beside the file)\n"
+    "[gains:  controller:\n    design: gains\n    gains:\n"
+    "[gains*:      - \\[[value*, :{value%.6g}]\\]\n]]"
+    "[.values*:  {key} = {value%.6g}\n]"
+    "[.poles:  poles {.poles} 1/s\n]"
+    "[.critical:  critical sample time{.critical}\n]]]";
+
+static int summarise(const struct report *report, stance_message *message)
+{
+    struct search_study study;
+    struct table t = {0};
+    json_t *const facts = json_object();
+    if (!search_study_open(&study, report->file, message)) {
+        json_decref(facts);
+        return EXIT_IO;
+    }
+    search_table_confirmed(&t, &study);
+    const bool made = add_facts(&study, facts);
+    search_study_close(&study);
+    return table_say(report->form, facts, text, &t) && made ? EXIT_DONE : EXIT_IO;
 }
 
 int search_summarise(struct report *report, stance_message *message)
 {
-    struct search_study study;
     struct search_front front;
-    if (report->files.count > 1) {
-        if (!search_front_open(&front, report->files.text, report->files.count, message))
-            return EXIT_IO;
-        const bool good = search_front_print(&front, report->form);
-        search_front_close(&front);
-        return good ? EXIT_DONE : EXIT_IO;
-    }
-    if (!search_study_open(&study, report->file, message))
+    if (report->files.count < 2)
+        return summarise(report, message);
+    if (!search_front_open(&front, report->files.text, report->files.count, message))
         return EXIT_IO;
-    const bool good = (report->form == TABLE_AS_JSON  ? search_print_json
-                       : report->form == TABLE_AS_CSV ? print_csv
-                                                      : search_print_text)(&study);
-    search_study_close(&study);
+    const bool good = search_front_print(&front, report->form);
+    search_front_close(&front);
     return good ? EXIT_DONE : EXIT_IO;
 }

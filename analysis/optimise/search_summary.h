@@ -6,7 +6,6 @@
 #include "search_study.h"
 
 #include "analysis/table/report.h"
-#include "runner/plan/design.h"
 
 /* The work of a `struct report` on the file of a search, or on several: a front (search_front.h).
  */
@@ -26,13 +25,6 @@ void search_table_stages(struct table *t, const struct search_study *study);
 void search_table_confirmed(struct table *t, const struct search_study *study);
 void search_table_circumstances(struct table *t, const struct search_study *study);
 void search_table_elsewhere(struct table *t, const struct search_study *study);
-
-/* The loop of the chosen candidate, freed by the caller; NULL: linear theory knows none. */
-struct design_report *search_loop(const struct search_study *study);
-/* Whether parameter k is an entry of controller.gains. */
-bool search_is_gain(const struct search_study *study, size_t k);
-/* Whether some is, and `best` has them. */
-bool search_has_gains(const struct search_study *study);
 
 /* What `stance summary -h` says of it. */
 #define SEARCH_SUMMARY_HELP                                                                        \
@@ -74,8 +66,5 @@ bool search_has_gains(const struct search_study *study);
     "  --json   {title, against, unit, also (other paths that differ), searches: [{PATH, first, "  \
     "first_low, first_high, chosen, chosen_low, chosen_high, allowed, of_allowed, glued (as "      \
     "linear_limit_glued), critical_chosen, file}]}; --csv the rows\n"
-
-bool search_print_text(const struct search_study *study);
-bool search_print_json(const struct search_study *study);
 
 #endif

@@ -111,32 +111,3 @@ void search_table_elsewhere(struct table *t, const struct search_study *study)
         table_end_row(t);
     }
 }
-
-/* ---- the chosen one ----------------------------------------------------------------------- */
-
-struct design_report *search_loop(const struct search_study *study)
-{
-    stance_message ignored;
-    if (!study->best || !scenario_law(&study->best->base)->designed)
-        return NULL;
-    struct design_report *const report = malloc(sizeof *report);
-    if (report && !design_loop(report, study->best, NULL, &ignored)) {
-        free(report);
-        return NULL;
-    }
-    return report;
-}
-
-bool search_is_gain(const struct search_study *study, size_t k)
-{
-    static const char gains[] = "controller.gains[";
-    return strncmp(study->f.parameter[k], gains, strlen(gains)) == 0;
-}
-
-bool search_has_gains(const struct search_study *study)
-{
-    bool any = false;
-    for (size_t k = 0; study->best && k < study->f.length[SEARCH_PARAMETER]; k++)
-        any = any || search_is_gain(study, k);
-    return any;
-}

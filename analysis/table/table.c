@@ -496,7 +496,8 @@ json_t *table_object(const struct table_member *member, size_t count)
     return object;
 }
 
-bool table_give(json_t *facts, const char *key, struct table *t, const char *view, size_t most)
+json_t *table_show(json_t *facts, const char *key, const struct table *t, const char *view,
+                   size_t most)
 {
     char shown[64], *text = NULL;
     size_t size;
@@ -511,7 +512,26 @@ bool table_give(json_t *facts, const char *key, struct table *t, const char *vie
     }
     if (key[0] != '.')
         good = json_object_set_new(facts, key, table_json(t, t->named)) == 0 && good;
+    if (!good)
+        json_decref(facts);
+    return good ? facts : NULL;
+}
+
+bool table_give(json_t *facts, const char *key, struct table *t, const char *view, size_t most)
+{
+    json_t *const same = table_show(json_incref(facts), key, t, view, most);
     table_free(t);
+    json_decref(same);
+    return same != NULL;
+}
+
+bool table_say(enum table_form form, json_t *facts, const char *text, struct table *csv)
+{
+    const bool good = form == TABLE_AS_CSV
+                          ? table_write_csv(csv, stdout)
+                          : say_facts(json_incref(facts), form == TABLE_AS_JSON, text, stdout);
+    json_decref(facts);
+    table_free(csv);
     return good;
 }
 

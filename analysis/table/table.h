@@ -179,8 +179,13 @@ void table_at_text(const struct results *r, const bool *which, const size_t *poi
                    size_t size);
 /* Adds to facts (say.h) the rows as a list, or if the table is `named` as an object by the first
  * column, under the key; and what a view shows of them, NULL: nothing, as `.key`. Of a key that
- * begins with '.' the latter alone. Frees the table; false: no memory. */
+ * begins with '.' the latter alone. Returns the facts; without memory releases them: NULL. */
+json_t *table_show(json_t *facts, const char *key, const struct table *t, const char *view,
+                   size_t most);
+/* The same of a table that it frees; false: no memory. */
 bool table_give(json_t *facts, const char *key, struct table *t, const char *view, size_t most);
+/* Facts as JSON or text, or a table as CSV, to standard output; releases both. */
+bool table_say(enum table_form form, json_t *facts, const char *text, struct table *csv);
 /* Writes it, with the end of a line, and releases it. */
 bool table_write_json(json_t *root, FILE *out);
 
