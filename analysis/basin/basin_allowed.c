@@ -140,66 +140,48 @@ static void add_row(struct table *t, const struct basin *b, size_t k, const stru
     table_end_row(t);
 }
 
-/* What is to be known of the bound itself, in any row. */
-static void print_remarks(const struct basin *b, const struct row *rows)
+static const char text[] = BASIN_TITLE
+    "Starts from which linear theory allows some controller to recover with these torques, while "
+    "the\ncontacts stand; of that, what ends as {.asked}; and what does from outside of it\n\n"
+    "[.glued:(" ALLOWED_GLUED ")\n[!.unreached:\n]]"
+    "[.unreached:(no torque moves some modes that do not decay: starts with a part in them are not "
+    "allowed)\n\n]"
+    "{.rows}"
+    "[.excuses:\nThose from outside by what they did: slipped, lifted (a foot; it may have "
+    "slipped, "
+    "too), or neither,\nfor linear theory is none of a robot far from its equilibrium; the "
+    "farthest of each in units of the\nset, whose boundary is at 1, and which case that is\n\n"
+    "{.excuses}]";
+
+static bool print_rows(const struct basin *b, const struct row *rows, enum table_form form)
 {
-    bool any_glued = false, unreached = false;
+    struct table t = {0};
+    bool any_glued = false, unreached = false, excused = false;
+    char view[300];
+    size_t used = (size_t)snprintf(view, sizeof view, "at/");
+    uint64_t excuses[EXCUSE_COUNT] = {0};
     for (size_t k = 0; k < b->rows; k++) {
+        add_row(&t, b, k, &rows[k]);
         any_glued = any_glued || glued(&rows[k]);
         unreached = unreached ||
                     (rows[k].of.set && stance_null_set_unreached(rows[k].of.set, NULL, NULL) > 0);
+        for (int e = 0; e < EXCUSE_COUNT; e++)
+            excuses[e] += rows[k].excuse[e].starts;
     }
-    if (any_glued)
-        puts("(" ALLOWED_GLUED ")");
-    if (unreached)
-        puts("(no torque moves some modes that do not decay: starts with a part in them are not "
-             "allowed)");
-    if (any_glued || unreached)
-        putchar('\n');
-}
-
-static bool print_text(struct table *t, const struct basin *b, const struct row *rows,
-                       const uint64_t *excuses)
-{
-    char view[300];
-    size_t used = (size_t)snprintf(view, sizeof view, "at/");
-    basin_print_title(b->r);
-    printf("Starts from which linear theory allows some controller to recover with these torques, "
-           "while the\ncontacts stand; of that, what ends as %s; and what does from outside of "
-           "it\n\n",
-           basin_asked(b));
-    print_remarks(b, rows);
-    if (!table_write_text(t, stdout, "at/ starts allowed used outside why", BASIN_SHOWN))
-        return false;
 #define VIEW(NAME, name, heading)                                                                  \
     if (excuses[NAME] > 0)                                                                         \
         used += (size_t)snprintf(view + used, sizeof view - used,                                  \
                                  " " #name "_starts " #name "_farthest " #name "_case");
     EXCUSES(VIEW)
 #undef VIEW
-    if (used == strlen("at/"))
-        return true;
-    puts("\nThose from outside by what they did: slipped, lifted (a foot; it may have slipped, "
-         "too), or neither,\nfor linear theory is none of a robot far from its equilibrium; the "
-         "farthest of each in units of the\nset, whose boundary is at 1, and which case that is\n");
-    return table_write_text(t, stdout, view, BASIN_SHOWN);
-}
-
-static bool print_rows(const struct basin *b, const struct row *rows, enum table_form form)
-{
-    struct table t = {0};
-    uint64_t excuses[EXCUSE_COUNT] = {0};
-    for (size_t k = 0; k < b->rows; k++) {
-        add_row(&t, b, k, &rows[k]);
-        for (int e = 0; e < EXCUSE_COUNT; e++)
-            excuses[e] += rows[k].excuse[e].starts;
-    }
-    if (form != TABLE_AS_TEXT)
-        return basin_table_write(
-            &t, form, "", TABLE_OBJECT({"outcome", as_text(results_kind_names[b->choice.of])}));
-    const bool good = print_text(&t, b, rows, excuses);
-    table_free(&t);
-    return good;
+    excused = used > strlen("at/");
+    json_t *const facts = TABLE_OBJECT(
+        {"outcome", as_text(results_kind_names[b->choice.of])}, {".asked", as_text(basin_asked(b))},
+        {".glued", as_truth(any_glued)}, {".unreached", as_truth(unreached)});
+    json_t *const shown = table_show(basin_titled(b->r, facts), "rows", &t,
+                                     "at/ starts allowed used outside why", BASIN_SHOWN);
+    return table_say(form, excused ? table_show(shown, ".excuses", &t, view, BASIN_SHOWN) : shown,
+                     text, &t);
 }
 
 bool basin_print_allowed(const struct basin *b, enum table_form form, bool *usage,

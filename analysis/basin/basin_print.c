@@ -139,7 +139,7 @@ static void make_table(struct table *t, const struct basin *b)
     }
 }
 
-/* ---- text --------------------------------------------------------------------------------- */
+/* ---- what its text is made of ------------------------------------------------------------- */
 
 /* What the points of a design make of the interval. */
 static const char *interval_reason(enum doe_method method)
@@ -157,29 +157,6 @@ static const char *interval_reason(enum doe_method method)
     }
 }
 
-/* What rows are averaged over, where they are. */
-static void print_averaged(const struct basin *b)
-{
-    enum { MOST = 64, WIDTH = 96 };
-    const char *path[MOST];
-    const size_t count = basin_averaged(b, path, MOST);
-    size_t column = 0;
-    for (size_t k = 0; k < count; k++) {
-        const char *before = k == 0                                 ? "  averaged over "
-                             : column + strlen(path[k]) + 2 > WIDTH ? ",\n    "
-                                                                    : ", ";
-        column = before[0] == ',' && before[1] == ' ' ? column : 0;
-        column += (size_t)printf("%s%s", before, path[k]);
-    }
-    if (count > 0)
-        putchar('\n');
-    if (b->averaged >= 0) {
-        printf("  (%zu sampled points, %s%s: +- has their scatter in it, bounds have not)\n",
-               b->sample.points, doe_words[b->sample.method],
-               b->sample.method == DOE_MORRIS ? ", on levels of the ranges" : "");
-    }
-}
-
 const char *basin_asked(const struct basin *basin)
 {
     static char text[400];
@@ -189,69 +166,49 @@ const char *basin_asked(const struct basin *basin)
     return text;
 }
 
-void basin_print_axis(const struct results_axis *axis)
+void basin_add_axis(json_t *facts, const char *key, const struct results_axis *axis)
 {
     char first[64], last[64];
     const char *const order = results_ends_text(axis, first, last, sizeof first);
-    printf("  %-24s %s ... %s, %zu places%s", axis->name, first, last, axis->count, order);
+    say_add(facts, key, "  %-24s %s ... %s, %zu places%s", axis->name, first, last, axis->count,
+            order);
 }
 
-void basin_print_factor(const struct basin_factor *factor, const char *otherwise)
+void basin_add_factors(json_t *facts, const char *key, const struct basin_sample *sample,
+                       const char *otherwise)
 {
-    printf("  %-24s", factor->of->name);
-    if (isnan(factor->from))
-        puts(otherwise);
-    else
-        printf(" %.6g ... %.6g %s\n", factor->from, factor->to, factor->of->unit);
-}
-
-static void print_box(const struct basin *b, double box)
-{
-    if (isfinite(box))
-        printf("  a box of %.6g%s%s\n", b->box, b->unit[0] ? " " : "", b->unit);
-}
-
-static void print_sample(const struct basin *b)
-{
-    const struct basin_sample *sample = &b->sample;
-    printf("Starts that end as %s, of %zu points (%s) over\n", basin_asked(b), sample->points,
-           doe_words[sample->method]);
-    for (size_t k = 0; k < sample->factors; k++)
-        basin_print_factor(&sample->factor[k], " not evenly over a range: no volume, shares alone");
-    print_box(b, sample->box);
-    if (sample->others)
-        puts("  averaged over what else is sampled");
-    print_averaged(b);
-    printf("  interval: %s\n", interval_reason(sample->method));
-}
-
-static void print_head(const struct basin *b)
-{
-    const struct results *r = b->r;
-    uint64_t failed = 0, pending = 0;
-    for (size_t k = 0; k < b->rows; k++) {
-        failed += b->row[k].failed;
-        pending += b->row[k].pending;
+    for (size_t k = 0; k < sample->factors; k++) {
+        const struct basin_factor *const factor = &sample->factor[k];
+        say_add(facts, key, "  %-24s", factor->of->name);
+        if (isnan(factor->from))
+            say_add(facts, key, "%s\n", otherwise);
+        else
+            say_add(facts, key, " %.6g ... %.6g %s\n", factor->from, factor->to, factor->of->unit);
     }
-    printf("%s\n%s: %" PRIu64 " cases", r->title[0] ? r->title : r->name, r->file, r->cases);
-    if (failed + pending > 0)
-        printf(", %" PRIu64 " failed, %" PRIu64 " pending", failed, pending);
-    puts("\n");
-    if (b->starts == BASIN_SAMPLE) {
-        print_sample(b);
-        return;
+}
+
+/* What rows are averaged over, where they are, wrapped. */
+static void add_averaged(const struct basin *b, const char *const *path, size_t count,
+                         json_t *facts)
+{
+    enum { MOST = 64, WIDTH = 96 };
+    size_t column = 0;
+    for (size_t k = 0; k < count && k < MOST; k++) {
+        const bool wraps = k > 0 && column + strlen(path[k]) + 2 > WIDTH;
+        const char *const before = k == 0 ? "  averaged over " : wraps ? ",\n    " : ", ";
+        column = (wraps || k == 0 ? 0 : column) + strlen(before) + strlen(path[k]);
+        say_add(facts, ".averaged", "%s%s", before, path[k]);
     }
-    printf("Starts that end as %s, on a grid over\n", basin_asked(b));
-    for (int d = 0; d < b->start_axes; d++) {
-        basin_print_axis(&r->axis[b->start[d]]);
-        putchar('\n');
-    }
-    print_box(b, b->box);
-    print_averaged(b);
+    say_add(facts, ".averaged", "%s", count > 0 ? "\n" : "");
+    if (b->averaged >= 0)
+        say_add(facts, ".averaged",
+                "  (%zu sampled points, %s%s: +- has their scatter in it, bounds have not)\n",
+                b->sample.points, doe_words[b->sample.method],
+                b->sample.method == DOE_MORRIS ? ", on levels of the ranges" : "");
 }
 
 /* What the marks in the table of boundaries mean. */
-static void print_notes(const struct basin *b)
+static void add_notes(const struct basin *b, json_t *facts)
 {
     bool starred = false;
     size_t refused[BASIN_REFUSALS] = {0};
@@ -260,93 +217,85 @@ static void print_notes(const struct basin *b)
         starred = starred || basin_is_fractal(&row->entropy, &row->uncertainty);
         refused[basin_exponent(&row->uncertainty).refusal]++;
     }
-    if (starred) {
-        puts("  (* above log 2 by more than its interval, alpha below 1 by more than its own: "
-             "fractal)");
-    }
-    for (int k = BASIN_FITTED + 1; k < BASIN_REFUSALS; k++) {
-        if (refused[k] > 0) {
-            printf("  (no alpha%s: %s)\n", b->rows > 1 ? " in some rows" : "",
-                   basin_refusal_text((enum basin_refusal)k));
-        }
-    }
+    table_put(facts, ".starred", as_truth(starred));
+    for (int k = BASIN_FITTED + 1; k < BASIN_REFUSALS; k++)
+        if (refused[k] > 0)
+            say_add(facts, ".refused", "  (no alpha%s: %s)\n", b->rows > 1 ? " in some rows" : "",
+                    basin_refusal_text((enum basin_refusal)k));
 }
 
 /* What cuts what: of several rows, of any. */
-static void print_cut(const struct basin *b)
+static void add_cut(const struct basin *b, json_t *facts)
 {
     char text[2048];
     face_set cut = 0;
-    uint64_t unknown = 0;
+    uint64_t failed = 0, pending = 0;
     for (size_t k = 0; k < b->rows; k++) {
         cut |= b->row[k].cut;
-        unknown += b->row[k].failed + b->row[k].pending;
+        failed += b->row[k].failed;
+        pending += b->row[k].pending;
     }
     faces_text(&b->faces, cut, text, sizeof text);
-    if (cut)
-        printf("  cut by the box at %s%s:\n  %s the box's, and the set goes on beyond it\n", text,
-               b->starts == BASIN_SAMPLE ? ", i.e. within 5 % of it" : "",
-               b->rows > 1 ? "in such rows the share is" : "the share is");
-    else if (b->faces.starts > 0)
-        printf("  %s by the box: no start on its faces is %s\n",
-               unknown > 0 ? "not known to be cut" : "not cut", results_kind_names[b->choice.of]);
+    json_object_update_new(facts, TABLE_OBJECT({".cut", as_text(cut ? text : NULL)},
+                                               {".uncut", as_truth(!cut && b->faces.starts > 0)},
+                                               {".failed", as_whole(failed)},
+                                               {".pending", as_whole(pending)},
+                                               {".unknown", as_whole(failed + pending)}));
 }
 
-static void print_weights(const struct basin *b)
+/* In units of what distances are, and where the nearest end is. */
+static void add_nearest(const struct basin *b, const struct basin_distance *distance, json_t *facts)
 {
-    printf("  (distances in units of");
     for (size_t d = 0; d < basin_starts(b); d++) {
         const struct results_axis *axis = basin_start(b, d);
         const char *with = strstr(axis->text, "; with "); /* paths that move along */
-        printf("%s %.6g %s of %s%s", d ? "," : "", b->weight[d], axis->unit, axis->name,
-               with ? with + 1 : "");
+        say_add(facts, ".weights", "%s %.6g %s of %s%s", d ? "," : "", b->weight[d], axis->unit,
+                axis->name, with ? with + 1 : "");
     }
-    puts(")");
-}
-
-static void print_at(const struct basin *b, const struct basin_distance *distance)
-{
-    printf("%.4g, at", distance->nearest);
+    if (!distance || !isfinite(distance->nearest))
+        return;
+    say_add(facts, ".nearest", "%.4g, at", distance->nearest);
     for (size_t d = 0; d < basin_starts(b); d++) {
         const struct results_axis *axis = basin_start(b, d);
-        printf("%s %s = %.4g %s", d ? "," : "", axis->name, distance->at[d], axis->unit);
+        say_add(facts, ".nearest", "%s %s = %.4g %s", d ? "," : "", axis->name, distance->at[d],
+                axis->unit);
     }
-    putchar('\n');
 }
 
-static void print_part(const struct basin *b, const struct basin_row *row)
+static void add_part_text(const struct basin *b, const struct basin_row *row, json_t *facts)
 {
     char text[2048];
     faces_text(&b->faces, row->part.faces, text, sizeof text);
     if (row->part.inside == 0)
-        printf("  none: the start nearest to the equilibrium is not %s\n",
-               row->part.known > 0 ? results_kind_names[b->choice.of] : "known");
+        say_add(facts, ".part", "none: the start nearest to the equilibrium is not %s",
+                row->part.known > 0 ? results_kind_names[b->choice.of] : "known");
     else if (row->part.faces)
-        printf("  not known to be bounded: it reaches %s\n", text);
-    else if (row->part.unknown)
-        puts("  not known to be bounded: it ends at cases that failed or are pending");
+        say_add(facts, ".part", "not known to be bounded: it reaches %s", text);
     else
-        puts("  bounded: it ends within the box, so none of this changes with the box");
+        say_add(facts, ".part",
+                row->part.unknown
+                    ? "not known to be bounded: it ends at cases that failed or are pending"
+                    : "bounded: it ends within the box, so none of this changes with the box");
 }
 
-static void print_distance(const struct basin *b, const struct basin_distance *distance)
+static void add_directions(const struct basin *b, const struct basin_distance *distance,
+                           json_t *facts)
 {
+    static const char key[] = ".directions";
     struct table ends = {0};
-    if (isfinite(distance->nearest)) {
-        printf("  nearest: ");
-        print_at(b, distance);
-    }
     if (!(distance->nearest <= distance->clear))
-        printf("  at least %.4g, where the box ends or a case is not known\n", distance->clear);
-    printf("  median of %zu directions: ", distance->directions);
+        say_add(facts, key, "  at least %.4g, where the box ends or a case is not known\n",
+                distance->clear);
+    say_add(facts, key, "  median of %zu directions: ", distance->directions);
     if (isfinite(distance->median))
-        printf("%.4g", distance->median);
+        say_add(facts, key, "%.4g", distance->median);
     if (!(distance->median_least >= distance->median))
-        printf("%sat least %.4g", isfinite(distance->median) ? ", " : "", distance->median_least);
+        say_add(facts, key, "%sat least %.4g", isfinite(distance->median) ? ", " : "",
+                distance->median_least);
     if (distance->leave > 0)
-        printf("; %.3g %% of them leave the box, or come to a case that is not known, before",
-               100 * (double)distance->leave / (double)distance->directions);
-    puts("\n\nFrom the equilibrium to the end of the outcome");
+        say_add(facts, key,
+                "; %.3g %% of them leave the box, or come to a case that is not known, before",
+                100 * (double)distance->leave / (double)distance->directions);
     for (int d = 0; d < b->start_axes; d++) {
         const struct results_axis *axis = &b->r->axis[b->start[d]];
         TABLE_FACTS(
@@ -358,57 +307,10 @@ static void print_distance(const struct basin *b, const struct basin_distance *d
             {{.name = "unit", .left = true}, as_text(axis->unit)});
         table_end_row(&ends);
     }
-    table_write_text(&ends, stdout, "axis low high unit", 0);
-    table_free(&ends);
-    puts("  (- where the outcome reaches the end of the axis, or a case that is not known)");
+    table_give(facts, ".ends", &ends, "axis low high unit", 0);
 }
 
-static bool print_text(const struct basin *b, const struct table *t)
-{
-    print_head(b);
-    puts("\nVolume");
-    bool good =
-        table_write_text(t, stdout,
-                         b->rows > 1 ? "at/ share volume reach low high inside cases cut_at remark"
-                                     : "share volume reach low high inside cases remark",
-                         BASIN_SHOWN);
-    print_cut(b);
-    if (b->choice.rank > 0)
-        printf("  (the %zu largest of %zu sampled points)\n", b->rows,
-               b->r->axis[b->r->sample].count);
-    if (b->starts == BASIN_SAMPLE && b->rows == 1 && isfinite(b->row[0].distance.nearest)) {
-        printf("\nNearest start to the equilibrium that is not %s: ",
-               results_kind_names[b->choice.of]);
-        print_at(b, &b->row[0].distance);
-        print_weights(b);
-        puts("  (an upper bound of the distance, of these points; rays and --descend find the "
-             "nearest)");
-    }
-    if (b->starts == BASIN_SAMPLE || b->choice.rank > 0)
-        return good;
-    puts("\nBoundary");
-    good = good && table_write_text(t, stdout,
-                                    "at/ entropy boundary_entropy star mixed_boxes boxes alpha "
-                                    "alpha_error dimension",
-                                    BASIN_SHOWN);
-    print_notes(b);
-    if (!b->around)
-        return good;
-    puts("\nDomain of the equilibrium: what hangs together with it, and how far its boundary is");
-    print_weights(b);
-    good = good && table_write_text(t, stdout,
-                                    "at/ connected connected_reach connected_low connected_high "
-                                    "bounded nearest median leaving",
-                                    BASIN_SHOWN);
-    if (b->rows == 1) {
-        print_part(b, &b->row[0]);
-        if (b->row[0].has_distance && b->row[0].distance.inside)
-            print_distance(b, &b->row[0].distance);
-    }
-    return good;
-}
-
-/* ---- JSON --------------------------------------------------------------------------------- */
+/* ---- facts -------------------------------------------------------------------------------- */
 
 static json_t *names(const struct basin *b, const int *axis, int count)
 {
@@ -435,32 +337,95 @@ static json_t *weights(const struct basin *b)
 }
 
 /* Of all rows. */
-static json_t *head_json(const struct basin *b)
+static json_t *head_facts(const struct basin *b)
 {
     const bool grid = b->starts == BASIN_GRID;
     const char *path[256];
     const size_t count = basin_averaged(b, path, sizeof path / sizeof path[0]);
-    return TABLE_OBJECT({"outcome", as_text(results_kind_names[b->choice.of])},
-                        {"within", as_text(b->choice.within)},
-                        {"level", as_number(b->choice.level)},
-                        {"box_side", as_whole(b->choice.side)},
-                        {"design", as_text(grid ? "grid" : doe_words[b->sample.method])},
-                        {"starts", as_tree(grid ? names(b, b->start, b->start_axes)
-                                                : basin_factor_names(&b->sample))},
-                        {"parameters", as_tree(names(b, b->by, b->by_axes))},
-                        {"averaged", as_tree(table_list(path, count))}, {"box", as_number(b->box)},
-                        {"unit", as_text(b->unit)}, {"weights", as_tree(weights(b))});
+    json_t *const facts = TABLE_OBJECT(
+        {"outcome", as_text(results_kind_names[b->choice.of])},
+        {"within", as_text(b->choice.within)}, {"level", as_number(b->choice.level)},
+        {"box_side", as_whole(b->choice.side)},
+        {"design", as_text(grid ? "grid" : doe_words[b->sample.method])},
+        {"starts",
+         as_tree(grid ? names(b, b->start, b->start_axes) : basin_factor_names(&b->sample))},
+        {"parameters", as_tree(names(b, b->by, b->by_axes))},
+        {"averaged", as_tree(table_list(path, count))}, {"box", as_number(b->box)},
+        {"unit", as_text(b->unit)}, {"weights", as_tree(weights(b))},
+        {".asked", as_text(basin_asked(b))}, {".sampled", as_truth(!grid)},
+        {".boxed", as_truth(isfinite(grid ? b->box : b->sample.box))},
+        {".points", as_whole(b->sample.points)}, {".others", as_truth(!grid && b->sample.others)},
+        {".reason", as_text(interval_reason(b->sample.method))}, {".rows_all", as_whole(b->rows)},
+        {".of_all",
+         b->choice.rank > 0 ? as_whole(b->r->axis[b->r->sample].count) : as_nothing(NULL)});
+    for (int d = 0; grid && d < b->start_axes; d++) {
+        basin_add_axis(facts, ".over", &b->r->axis[b->start[d]]);
+        say_add(facts, ".over", "\n");
+    }
+    if (!grid)
+        basin_add_factors(facts, ".over", &b->sample,
+                          " not evenly over a range: no volume, shares alone");
+    add_averaged(b, path, count, facts);
+    return basin_titled(b->r, facts);
 }
+
+static const char text[] =
+    "{.name}\n{.file}: {.cases} cases[.unknown:, {.failed} failed, {.pending} pending]\n\n"
+    "Starts that end as {.asked}, [.sampled:of {.points} points ({design})|on a grid] over\n{.over}"
+    "[.boxed:  a box of {box%.6g}[unit: {unit}]\n]"
+    "[.others:  averaged over what else is sampled\n]{.averaged}"
+    "[.sampled:  interval: {.reason}\n]"
+    "\nVolume\n{.rows}"
+    "[.cut:  cut by the box at {.cut}[.sampled:, i.e. within 5 % of it]:\n  "
+    "[.rows_all>1:in such rows ]the share is the box's, and the set goes on beyond it\n]"
+    "[.uncut:  [.unknown:not known to be cut|not cut] by the box: no start on its faces is "
+    "{outcome}\n]"
+    "[.of_all:  (the {.rows_all} largest of {.of_all} sampled points)\n]"
+    "[.sampled:[.nearest:\nNearest start to the equilibrium that is not {outcome}: {.nearest}\n"
+    "  (distances in units of{.weights})\n"
+    "  (an upper bound of the distance, of these points; rays and --descend find the nearest)\n]]"
+    "[.boundary:\nBoundary\n{.boundary}"
+    "[.starred:  (* above log 2 by more than its interval, alpha below 1 by more than its own: "
+    "fractal)\n]{.refused}"
+    "[.domain:\nDomain of the equilibrium: what hangs together with it, and how far its boundary "
+    "is\n  (distances in units of{.weights})\n{.domain}"
+    "[.part:  {.part}\n]"
+    "[.directions:[.nearest:  nearest: {.nearest}\n]{.directions}\n\n"
+    "From the equilibrium to the end of the outcome\n{.ends}"
+    "  (- where the outcome reaches the end of the axis, or a case that is not known)\n]]]";
 
 bool basin_print(const struct basin *b, enum table_form form)
 {
+    const bool one = b->rows == 1, grid = b->starts == BASIN_GRID,
+               bounded = grid && b->choice.rank == 0;
+    const struct basin_row *const row = &b->row[0];
     struct table t = {0};
     make_table(&t, b);
-    if (form != TABLE_AS_TEXT)
-        return basin_table_write(&t, form, "", head_json(b));
-    const bool good = print_text(b, &t);
-    table_free(&t);
-    return good;
+    json_t *facts = table_show(head_facts(b), "rows", &t,
+                               one ? "share volume reach low high inside cases remark"
+                                   : "at/ share volume reach low high inside cases cut_at remark",
+                               BASIN_SHOWN);
+    add_cut(b, facts);
+    add_nearest(
+        b, one && (!grid || (row->has_distance && row->distance.inside)) ? &row->distance : NULL,
+        facts);
+    if (bounded) {
+        add_notes(b, facts);
+        facts = table_show(facts, ".boundary", &t,
+                           "at/ entropy boundary_entropy star mixed_boxes boxes alpha "
+                           "alpha_error dimension",
+                           BASIN_SHOWN);
+    }
+    if (bounded && b->around)
+        facts = table_show(facts, ".domain", &t,
+                           "at/ connected connected_reach connected_low connected_high bounded "
+                           "nearest median leaving",
+                           BASIN_SHOWN);
+    if (bounded && b->around && one)
+        add_part_text(b, row, facts);
+    if (bounded && b->around && one && row->has_distance && row->distance.inside)
+        add_directions(b, &row->distance, facts);
+    return table_say(form, facts, text, &t);
 }
 
 /* ---- the boundary ------------------------------------------------------------------------- */

@@ -38,17 +38,16 @@ bool basin_print_answer(const struct basin *basin, const char *answer, enum tabl
 
 bool basin_print_allowed(const struct basin *basin, enum table_form form, bool *usage,
                          stance_message *message);
-/* Their tables; takes the head's reference. */
-bool basin_table_write(struct table *t, enum table_form form, const char *view, json_t *head);
-
 /* "stabilised with settle_time <= 2": what starts are asked for, until the next call. */
 const char *basin_asked(const struct basin *basin);
 
-/* What the file is, and a blank line. */
-void basin_print_title(const struct results *r);
-/* What both say of their starts: a line without its end; a line, `otherwise` without a range. */
-void basin_print_axis(const struct results_axis *axis);
-void basin_print_factor(const struct basin_factor *factor, const char *otherwise);
+/* Adds to facts of any of these what the file is, with which the texts of most begin. */
+#define BASIN_TITLE "{.name}\n{.file}: {.cases} cases\n\n"
+json_t *basin_titled(const struct results *r, json_t *facts);
+/* Adds to a text among them a line without its end; a line, `otherwise` without a range. */
+void basin_add_axis(json_t *facts, const char *key, const struct results_axis *axis);
+void basin_add_factors(json_t *facts, const char *key, const struct basin_sample *sample,
+                       const char *otherwise);
 /* A list of their names. NULL: no memory. */
 json_t *basin_factor_names(const struct basin_sample *sample);
 

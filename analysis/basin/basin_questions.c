@@ -11,24 +11,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-bool basin_table_write(struct table *t, enum table_form form, const char *view, json_t *head)
+json_t *basin_titled(const struct results *r, json_t *facts)
 {
-    bool good;
-    if (form == TABLE_AS_JSON) {
-        json_object_set_new(head, "rows", table_json(t, false));
-        good = table_write_json(json_incref(head), stdout);
-    } else {
-        good = form == TABLE_AS_CSV ? table_write_csv(t, stdout)
-                                    : table_write_text(t, stdout, view, BASIN_SHOWN);
-    }
-    json_decref(head);
-    table_free(t);
-    return good;
-}
-
-void basin_print_title(const struct results *r)
-{
-    printf("%s\n%s: %" PRIu64 " cases\n\n", r->title[0] ? r->title : r->name, r->file, r->cases);
+    json_object_update_new(facts, TABLE_OBJECT({".name", as_text(r->title[0] ? r->title : r->name)},
+                                               {".file", as_text(r->file)},
+                                               {".cases", as_whole(r->cases)}));
+    return facts;
 }
 
 /* ---- thresholds --------------------------------------------------------------------------- */
@@ -90,22 +78,21 @@ bool basin_print_threshold(const struct basin *b, const char *path, double thres
     for (size_t row = 0; row < b->rows; row++)
         if (b->row[row].point[b->by[along]] == 0)
             add_threshold(&t, b, row, along, threshold);
-    if (form == TABLE_AS_TEXT) {
-        char first[96], last[96];
-        results_value_text(axis, 0, true, first, sizeof first);
-        results_value_text(axis, axis->count - 1, true, last, sizeof last);
-        basin_print_title(b->r);
-        printf("Where the share of starts that end as %s %s %.6g %% of what it is at %s = %s\n"
-               "(up to %s; interval at %.4g %%)\n\n",
-               basin_asked(b), threshold < 1 ? "falls below" : "rises above", 100 * threshold,
-               axis->name, first, last, 100 * b->choice.level);
-    }
-    return basin_table_write(
-        &t, form, "at/ first_share last_share value low high before after",
+    static const char text[] =
+        BASIN_TITLE "Where the share of starts that end as {.asked} [threshold<1:falls below|rises "
+                    "above] {threshold*%.6g} % of what it is at {of} = {..from}\n"
+                    "(up to {..to}; interval at {level*%.4g} %)\n\n{.rows}";
+    json_t *const facts =
         TABLE_OBJECT({"outcome", as_text(results_kind_names[b->choice.of])},
                      {"threshold", as_number(threshold)}, {"of", as_text(axis->name)},
                      {"unit", as_text(axis->unit)}, {"level", as_number(b->choice.level)},
-                     {"within", as_text(b->choice.within)}));
+                     {"within", as_text(b->choice.within)}, {".asked", as_text(basin_asked(b))},
+                     {".from", as_place(axis, 0)}, {".to", as_place(axis, axis->count - 1)});
+    return table_say(form,
+                     table_show(basin_titled(b->r, facts), "rows", &t,
+                                "at/ first_share last_share value low high before after",
+                                BASIN_SHOWN),
+                     text, &t);
 }
 
 /* ---- losses ------------------------------------------------------------------------------- */
@@ -168,39 +155,36 @@ bool basin_print_loss(const struct results *r, const char *path, enum results_ki
     const bool any = loss.at <= last;
     const size_t after = loss.down ? last - loss.at : loss.at,
                  before = loss.down ? after + 1 : after - 1;
-    size_t point[SCENARIO_MAX_AXES];
-    if (any)
-        results_point(r, loss.first, point);
-    if (form == TABLE_AS_TEXT) {
-        char from[96], to[96], where[600];
-        results_value_text(axis, loss.down ? last : 0, true, from, sizeof from);
-        basin_print_title(r);
-        printf("%" PRIu64 " starts end as %s at %s = %s", loss.starts, results_kind_names[of],
-               axis->name, from);
-        if (loss.unknown > 0)
-            printf(" (%" PRIu64 " of them come to a case that failed or is pending)", loss.unknown);
-        if (any) {
-            results_value_text(axis, before, true, from, sizeof from);
-            results_value_text(axis, after, true, to, sizeof to);
-            results_case_text(r, loss.first, where, sizeof where);
-            printf(".\nThe first are lost between %s and %s: %" PRIu64 ", one of them case %" PRIu64
-                   "\n  (%s: %s)\n\n",
-                   from, to, loss.lost[loss.at], loss.first, where,
-                   results_kind_names[r->kind[loss.first]]);
-        } else {
-            puts(".\nNone of them is lost.\n");
-        }
-    }
-    const bool good = basin_table_write(
-        &t, form, "value lost lost_so_far share",
+    static const char text[] = BASIN_TITLE
+        "{starts} starts end as {outcome} at {of} = {..from}[unknown: ({unknown} of them "
+        "come to a case that failed or is pending)].\n"
+        "[.where:The first are lost between {.kept} and {.lost}: {.count}, one of them "
+        "case {first}\n  ({.where}: {.became})\n|None of them is lost.\n]\n{.rows}";
+    json_t *const facts =
         TABLE_OBJECT({"outcome", as_text(results_kind_names[of])}, {"of", as_text(axis->name)},
+                     {".from", as_place(axis, loss.down ? last : 0)},
                      {"starts", as_whole(loss.starts)}, {"unknown", as_whole(loss.unknown)},
                      {"kept", any ? as_place(axis, before) : as_nothing(NULL)},
                      {"lost", any ? as_place(axis, after) : as_nothing(NULL)},
-                     {"first", any ? as_whole(loss.first) : as_nothing(NULL)},
-                     {"first_at", as_tree(any ? table_at(r, NULL, point) : NULL)}));
+                     {"first", any ? as_whole(loss.first) : as_nothing(NULL)});
+    json_t *at = NULL;
+    if (any) {
+        size_t point[SCENARIO_MAX_AXES];
+        char where[600];
+        results_point(r, loss.first, point);
+        results_case_text(r, loss.first, where, sizeof where);
+        at = table_at(r, NULL, point);
+        json_object_update_new(
+            facts,
+            TABLE_OBJECT({".where", as_text(where)}, {".count", as_whole(loss.lost[loss.at])},
+                         {".became", as_text(results_kind_names[r->kind[loss.first]])}));
+    }
+    table_put(facts, "first_at", as_tree(at));
     free(loss.lost);
-    return good;
+    return table_say(
+        form,
+        table_show(basin_titled(r, facts), "rows", &t, "value lost lost_so_far share", BASIN_SHOWN),
+        text, &t);
 }
 
 /* ---- answers ------------------------------------------------------------------------------ */
@@ -304,11 +288,12 @@ bool basin_print_answer(const struct basin *b, const char *answer, enum table_fo
     free(number);
     free(begin);
     free(value);
-    if (form == TABLE_AS_TEXT) {
-        basin_print_title(b->r);
-        printf("%s of the starts that end as %s\n\n", answer, basin_asked(b));
-    }
-    return basin_table_write(&t, form, "at/ cases smallest median q90 q99 largest largest_case",
-                             TABLE_OBJECT({"outcome", as_text(results_kind_names[b->choice.of])},
-                                          {"answer", as_text(answer)}));
+    json_t *const facts =
+        TABLE_OBJECT({"outcome", as_text(results_kind_names[b->choice.of])},
+                     {"answer", as_text(answer)}, {".asked", as_text(basin_asked(b))});
+    return table_say(form,
+                     table_show(basin_titled(b->r, facts), "rows", &t,
+                                "at/ cases smallest median q90 q99 largest largest_case",
+                                BASIN_SHOWN),
+                     BASIN_TITLE "{answer} of the starts that end as {.asked}\n\n{.rows}", &t);
 }

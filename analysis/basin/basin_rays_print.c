@@ -1,7 +1,6 @@
 /* basin_rays_print.c - where rays end, for people and for programs. */
 #include "basin_print.h"
 
-#include <inttypes.h>
 #include <math.h>
 
 static const struct basin_ray *ray_of(const struct basin_rays *rays, size_t row, size_t point)
@@ -51,18 +50,50 @@ static double unseen(const struct basin_nearest *nearest)
 
 static json_t *nearest_json(const struct basin_rays *rays, const struct basin_nearest *nearest)
 {
-    json_t *at = json_object(), *of = json_object();
+    json_t *at = json_object(), *of = json_object(), *told = json_array();
     for (size_t k = 0; k < rays->sample.factors; k++) {
-        const char *name = rays->sample.factor[k].of->name;
-        table_put(at, name, as_number(nearest->at[k]));
-        table_put(of, name, as_number(nearest->of[k]));
+        const struct results_axis *const axis = rays->sample.factor[k].of;
+        table_put(at, axis->name, as_number(nearest->at[k]));
+        table_put(of, axis->name, as_number(nearest->of[k]));
+        json_array_append_new(
+            told, TABLE_OBJECT({"name", as_text(axis->name)}, {"is", as_number(nearest->at[k])},
+                               {"unit", as_text(axis->unit)}, {"of", as_number(nearest->of[k])}));
     }
     return TABLE_OBJECT(
         {"scale", as_number(nearest_scale(nearest))},
         {"bracket", as_tree(json_pack("[f,f]", nearest->end.low, nearest->end.high))},
         {"at", as_tree(at)}, {"of_ranges", as_tree(of)}, {"starts", as_whole(nearest->end.starts)},
         {"agree", as_whole(nearest->end.agree)}, {"unseen", as_number(unseen(nearest))},
-        {"simulations", as_whole(nearest->end.asked)}, {"failed", as_whole(nearest->failed)});
+        {"simulations", as_whole(nearest->end.asked)}, {"failed", as_whole(nearest->failed)},
+        {".off", as_number(0.5 * (nearest->end.high - nearest->end.low))}, {".at", as_tree(told)});
+}
+
+/* The ray that ends first. */
+static json_t *first_at(const struct basin_rays *rays, size_t point, const struct basin_ray *ray)
+{
+    json_t *const at = json_object();
+    for (size_t k = 0; k < rays->sample.factors; k++) {
+        const struct results_axis *of = rays->sample.factor[k].of;
+        table_put(at, of->name, as_number(of->value[point] * basin_ray_middle(ray)));
+    }
+    return at;
+}
+
+static json_t *first_facts(const struct basin_rays *rays, size_t point, const struct basin_ray *ray)
+{
+    json_t *const at = json_array();
+    for (size_t k = 0; k < rays->sample.factors; k++) {
+        const struct results_axis *of = rays->sample.factor[k].of;
+        const double along = of->value[point];
+        json_array_append_new(
+            at, TABLE_OBJECT({"name", as_text(of->name)},
+                             {"is", as_number(along * basin_ray_middle(ray))},
+                             {"off", as_number(fabs(along) * 0.5 * (ray->high - ray->low))},
+                             {"unit", as_text(of->unit)}));
+    }
+    return TABLE_OBJECT({"ray", as_whole(point)}, {"low", as_number(ray->low)},
+                        {"high", as_number(ray->high)},
+                        {"to", as_text(results_kind_names[ray->to])}, {"at", as_tree(at)});
 }
 
 static bool make_table(struct table *t, const struct basin_rays *rays)
@@ -74,11 +105,6 @@ static bool make_table(struct table *t, const struct basin_rays *rays)
         const struct basin_ray *first =
             reach.count[RAY_CROSSES] > 0 ? ray_of(rays, row, reach.first) : NULL;
         const struct basin_nearest *nearest = nearest_of(rays, row);
-        json_t *const at = first ? json_object() : NULL;
-        for (size_t k = 0; first && k < rays->sample.factors; k++) {
-            const struct results_axis *of = rays->sample.factor[k].of;
-            table_put(at, of->name, as_number(of->value[reach.first] * basin_ray_middle(first)));
-        }
         add_parameters(t, rays, row);
         add_end(t, rays, reach.first, first);
         TABLE_FACTS(
@@ -103,102 +129,54 @@ static bool make_table(struct table *t, const struct basin_rays *rays)
             {{.name = "first_high", .hidden = TABLE_NO_JSON}, as_number(first ? first->high : NAN)},
             {{.name = "first_bracket", .hidden = TABLE_NO_CSV},
              as_tree(first ? json_pack("[f,f]", first->low, first->high) : NULL)},
-            {{.name = "first_at", .hidden = TABLE_NO_CSV}, as_tree(at)});
+            {{.name = "first_at", .hidden = TABLE_NO_CSV},
+             as_tree(first ? first_at(rays, reach.first, first) : NULL)},
+            {{.name = ".first"}, as_tree(first ? first_facts(rays, reach.first, first) : NULL)});
         table_end_row(t);
     }
     return true;
 }
 
-/* ---- text --------------------------------------------------------------------------------- */
-
-static void print_head(const struct basin_rays *rays)
-{
-    const struct results *r = rays->r;
-    basin_print_title(r);
-    printf("%zu rays from the equilibrium, along which starts stay %s\n", rays->sample.points,
-           results_kind_names[rays->of]);
-    for (size_t k = 0; k < rays->sample.factors; k++)
-        basin_print_factor(&rays->sample.factor[k], "");
-    basin_print_axis(&r->axis[rays->scale]);
-    puts(": 1 is the ellipsoid within these ranges");
-}
-
-static bool print_first(const struct basin_rays *rays, size_t row)
-{
-    struct basin_reach reach;
-    if (!basin_rays_reach(rays, row, &reach))
-        return false;
-    putchar('\n');
-    if (reach.count[RAY_CROSSES] == 0)
-        return true;
-    const struct basin_ray *ray = ray_of(rays, row, reach.first);
-    printf("  ray %zu ends first, between the scales %.6g and %.6g (%s there), at\n", reach.first,
-           ray->low, ray->high, results_kind_names[ray->to]);
-    for (size_t k = 0; k < rays->sample.factors; k++) {
-        const struct results_axis *of = rays->sample.factor[k].of;
-        const double along = of->value[reach.first];
-        printf("    %-24s %.5g +- %.2g %s\n", of->name, along * basin_ray_middle(ray),
-               fabs(along) * 0.5 * (ray->high - ray->low), of->unit);
-    }
-    return true;
-}
-
-static void print_nearest(const struct basin_rays *rays, const struct basin_nearest *nearest)
-{
-    printf("\n  nearest: %.5g +- %.2g, by descent from %zu ray%s (%" PRIu64 " simulations), at\n",
-           nearest_scale(nearest), 0.5 * (nearest->end.high - nearest->end.low),
-           nearest->end.starts, nearest->end.starts == 1 ? "" : "s", nearest->end.asked);
-    for (size_t k = 0; k < rays->sample.factors; k++) {
-        const struct results_axis *of = rays->sample.factor[k].of;
-        printf("    %-24s %.5g %s, %.2g of half its range\n", of->name, nearest->at[k], of->unit,
-               nearest->of[k]);
-    }
-    if (nearest->end.starts > 1) {
-        printf(
-            "  %zu of %zu descents end within 1 %% of it; a nearer end into which %.2g %% of all\n"
-            "  directions lead would have been missed with a probability of 5 %%\n",
-            nearest->end.agree, nearest->end.starts, 100 * unseen(nearest));
-    }
-    if (nearest->failed > 0)
-        printf("  (%" PRIu64 " simulations failed and count as not lost)\n", nearest->failed);
-}
-
-static bool print_text(const struct basin_rays *rays, const struct table *t)
-{
-    print_head(rays);
-    puts("\nScale at which rays end");
-    const bool good = table_write_text(
-        t, stdout,
-        rays->nearest ? "at/ descended smallest median largest crossing open outside"
-                      : "at/ smallest median largest crossing open outside",
-        BASIN_SHOWN);
-    puts("  (go on: to the largest scale, counted as longer than all others; outside: another\n"
-         "  outcome at the smallest scale already, or no case known)");
-    if (!rays->nearest)
-        puts(
-            "  (smallest: of these directions, so an upper bound; --descend 8 goes on from there)");
-    if (!good || rays->rows > 1)
-        return good;
-    if (nearest_of(rays, 0))
-        print_nearest(rays, nearest_of(rays, 0));
-    return print_first(rays, 0);
-}
-
 /* ---- all forms ---------------------------------------------------------------------------- */
+
+static const char text[] = BASIN_TITLE
+    "{rays} rays from the equilibrium, along which starts stay {outcome}\n{.over}"
+    ": 1 is the ellipsoid within these ranges\n"
+    "\nScale at which rays end\n{.rows}"
+    "  (go on: to the largest scale, counted as longer than all others; outside: another\n"
+    "  outcome at the smallest scale already, or no case known)\n"
+    "[!.descends:  (smallest: of these directions, so an upper bound; --descend 8 goes on from "
+    "there)\n]"
+    "[.alone:[rows/0/nearest:\n  nearest: {scale%.5g} +- {.off%.2g}, by descent from {starts} "
+    "ray{starts#s} ({simulations} simulations), at\n"
+    "[.at*:    {name%-24s} {is%.5g} {unit}, {of%.2g} of half its range\n]"
+    "[starts>1:  {agree} of {starts} descents end within 1 % of it; a nearer end into which "
+    "{unseen*%.2g} % of all\n  directions lead would have been missed with a probability of 5 %\n]"
+    "[failed:  ({failed} simulations failed and count as not lost)\n]]"
+    "\n[rows/0/.first:  ray {ray} ends first, between the scales {low%.6g} and {high%.6g} ({to} "
+    "there), at\n[at*:    {name%-24s} {is%.5g} +- {off%.2g} {unit}\n]]]";
 
 bool basin_rays_print(const struct basin_rays *rays, enum table_form form)
 {
     struct table t = {0};
-    bool good = make_table(&t, rays);
-    if (good && form != TABLE_AS_TEXT)
-        return basin_table_write(
-            &t, form, "",
-            TABLE_OBJECT({"outcome", as_text(results_kind_names[rays->of])},
-                         {"starts", as_tree(basin_factor_names(&rays->sample))},
-                         {"rays", as_whole(rays->sample.points)}));
-    good = good && print_text(rays, &t);
-    table_free(&t);
-    return good;
+    if (!make_table(&t, rays)) {
+        table_free(&t);
+        return false;
+    }
+    json_t *const facts =
+        TABLE_OBJECT({"outcome", as_text(results_kind_names[rays->of])},
+                     {"starts", as_tree(basin_factor_names(&rays->sample))},
+                     {"rays", as_whole(rays->sample.points)},
+                     {".descends", as_truth(rays->nearest)}, {".alone", as_truth(rays->rows == 1)});
+    basin_add_factors(facts, ".over", &rays->sample, "");
+    basin_add_axis(facts, ".over", &rays->r->axis[rays->scale]);
+    return table_say(form,
+                     table_show(basin_titled(rays->r, facts), "rows", &t,
+                                rays->nearest
+                                    ? "at/ descended smallest median largest crossing open outside"
+                                    : "at/ smallest median largest crossing open outside",
+                                BASIN_SHOWN),
+                     text, &t);
 }
 
 bool basin_rays_print_boundary(const struct basin_rays *rays)

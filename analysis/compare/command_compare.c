@@ -28,61 +28,25 @@ static void place_text(const struct results *r, const struct compare_difference 
         add_text(text, size, ", component %zu", place->component);
 }
 
-/* The largest of the differences that a tolerance allows or not. */
-static void print_largest(const struct results *r, const struct compare_difference *difference)
-{
-    const struct compare_place *place = &difference->largest_place;
-    char where[800];
-    place_text(r, difference, place, where, sizeof where);
-    printf("  largest difference %.3g in %s: %s | %s\n", difference->largest, where,
-           place->value[0], place->value[1]);
-}
-
-static void print_difference(const struct results *r, const struct compare_difference *difference)
-{
-    char where[800];
-    if (strcmp(difference->reason, "values") != 0) {
-        bool missing = strncmp(difference->reason, "only", 4) == 0;
-        printf("%s: %s%s\n", difference->name, missing ? "" : "different ", difference->reason);
-        return;
-    }
-    if (difference->differing == 0) {
-        printf("%s: equal within the tolerance\n", difference->name);
-        print_largest(r, difference);
-        return;
-    }
-    if (difference->of == 1 && !difference->several) {
-        printf("%s: %s | %s\n", difference->name, difference->place[0].value[0],
-               difference->place[0].value[1]);
-        return;
-    }
-    printf("%s: %" PRIu64 " of %" PRIu64 " %s%s differ\n", difference->name, difference->differing,
-           difference->of, difference->cases ? "case" : "element", difference->of == 1 ? "" : "s");
-    for (int k = 0; k < difference->shown; k++) {
-        const struct compare_place *place = &difference->place[k];
-        place_text(r, difference, place, where, sizeof where);
-        printf("  %s: %s | %s\n", where, place->value[0], place->value[1]);
-    }
-    if (difference->largest > 0)
-        print_largest(r, difference);
-}
-
 /* Coordinates of a case as {path: value}. */
-static json_t *json_point(const struct results *r, uint64_t index)
+static json_t *point_facts(const struct results *r, uint64_t index)
 {
     size_t point[SCENARIO_MAX_AXES];
     results_point(r, index, point);
     return r->single ? json_object() : table_at(r, NULL, point);
 }
 
-static json_t *json_place(const struct results *r, const struct compare_difference *difference,
-                          const struct compare_place *place)
+static json_t *place_facts(const struct results *r, const struct compare_difference *difference,
+                           const struct compare_place *place)
 {
     const bool known = difference->cases && place->index < r->cases;
+    char where[800];
+    place_text(r, difference, place, where, sizeof where);
     return TABLE_OBJECT({"index", as_whole(place->index)},
                         {"component", as_whole(place->component)},
-                        {"at", as_tree(known ? json_point(r, place->index) : json_object())},
-                        {"values", as_tree(table_texts(place->value[0], place->value[1]))});
+                        {"at", as_tree(known ? point_facts(r, place->index) : json_object())},
+                        {"values", as_tree(table_texts(place->value[0], place->value[1]))},
+                        {".where", as_text(where)});
 }
 
 static void add_difference(struct table *t, const struct results *r,
@@ -91,69 +55,66 @@ static void add_difference(struct table *t, const struct results *r,
     const bool measured = difference->largest > 0;
     const struct compare_place *place =
         measured ? &difference->largest_place : &difference->place[0];
-    char where[800] = "";
+    char where[800] = "", largest[32];
     json_t *first = json_array();
     for (int k = 0; k < difference->shown; k++)
-        json_array_append_new(first, json_place(r, difference, &difference->place[k]));
+        json_array_append_new(first, place_facts(r, difference, &difference->place[k]));
     if (measured || difference->shown > 0)
         place_text(r, difference, place, where, sizeof where);
-    TABLE_VALUES(t, as_text(difference->name), as_text(difference->reason),
-                 as_truth(difference->cases), as_whole(difference->differing),
-                 as_whole(difference->of), as_tree(first),
-                 as_number(measured ? difference->largest : NAN),
-                 as_tree(measured ? json_place(r, difference, place) : NULL), as_text(where),
-                 as_text(place->value[0]), as_text(place->value[1]));
+    snprintf(largest, sizeof largest, "%.3g", difference->largest);
+    TABLE_FACTS(
+        t, {{.name = "name"}, as_text(difference->name)},
+        {{.name = "reason"}, as_text(difference->reason)},
+        {{.name = "of_cases", .hidden = TABLE_NO_CSV}, as_truth(difference->cases)},
+        {{.name = "differing"}, as_whole(difference->differing)},
+        {{.name = "of"}, as_whole(difference->of)},
+        {{.name = "first", .hidden = TABLE_NO_CSV}, as_tree(first)},
+        {{.name = "largest"}, as_number(measured ? difference->largest : NAN)},
+        {{.name = "largest_at", .hidden = TABLE_NO_CSV},
+         as_tree(measured ? place_facts(r, difference, place) : NULL)},
+        {{.name = ".largest"}, as_text(largest)},
+        {{.name = ".alone"},
+         as_truth(difference->differing > 0 && difference->of == 1 && !difference->several)},
+        {{.name = ".missing"}, as_truth(strncmp(difference->reason, "only", 4) == 0)},
+        {{.name = "largest_case", .hidden = TABLE_NO_JSON}, as_text(where)},
+        {{.name = "first", .hidden = TABLE_NO_JSON}, as_text(place->value[0])},
+        {{.name = "second", .hidden = TABLE_NO_JSON}, as_text(place->value[1])});
+    table_end_row(t);
 }
 
-static bool print_for_programs(const struct results r[2], const struct comparison *comparison,
-                               enum table_form form)
+#define VALUES "{values/0} \\| {values/1}\n"
+
+static const char differences_text[] =
+    "[differences:"
+    "[equal:equal within the tolerance: {.count} variable{.count#s} in which numbers differ\n]"
+    "{files/0} \\| {files/1}\n"
+    "[differences*:{name}: [reason=values:"
+    "[!differing:equal within the tolerance\n|[.alone:{first/0/values/0} \\| {first/0/values/1}\n"
+    "|{differing} of {of} [of_cases:case|element]{of#s} differ\n"
+    "[first*:  {.where}: " VALUES "]]]"
+    "[!.alone:[largest_at:  largest difference {.largest} in {.where}: " VALUES "]]"
+    "|[.missing:|different ]{reason}\n]]"
+    "|[.tolerances:equal within the tolerance: no number differs|identical]\n]";
+
+static bool print_differences(const struct results r[2], const struct comparison *comparison,
+                              enum table_form form)
 {
     struct table t = {0};
-    TABLE_COLUMNS(
-        &t, {.name = "name"}, {.name = "reason"}, {.name = "of_cases", .hidden = TABLE_NO_CSV},
-        {.name = "differing"}, {.name = "of"}, {.name = "first", .hidden = TABLE_NO_CSV},
-        {.name = "largest"}, {.name = "largest_at", .hidden = TABLE_NO_CSV},
-        {.name = "largest_case", .hidden = TABLE_NO_JSON},
-        {.name = "first", .hidden = TABLE_NO_JSON}, {.name = "second", .hidden = TABLE_NO_JSON});
+    if (comparison->count == 0)
+        TABLE_COLUMNS(&t, {.name = "name"}, {.name = "reason"}, {.name = "differing"},
+                      {.name = "of"}, {.name = "largest"}, {.name = "largest_case"},
+                      {.name = "first"}, {.name = "second"});
     for (size_t i = 0; i < comparison->count; i++)
         add_difference(&t, &r[0], &comparison->difference[i]);
-    const bool same = comparison->count == 0 && !comparison->tolerances;
-    if (form == TABLE_AS_CSV)
-        return table_print(&t, form, NULL, 0);
-    return table_write_json(TABLE_OBJECT({"files", as_tree(table_texts(r[0].file, r[1].file))},
-                                         {"identical", as_truth(same)},
-                                         {"equal", as_truth(comparison->beyond == 0)},
-                                         {"differences", as_tree(table_tree(&t, false))}),
-                            stdout);
-}
-
-static void print_text(const struct results r[2], const struct comparison *comparison)
-{
-    if (comparison->count == 0) {
-        puts(comparison->tolerances ? "equal within the tolerance: no number differs"
-                                    : "identical");
-        return;
-    }
-    if (comparison->beyond == 0) {
-        printf("equal within the tolerance: %zu variable%s in which numbers differ\n",
-               comparison->count, comparison->count == 1 ? "" : "s");
-    }
-    printf("%s | %s\n", r[0].file, r[1].file);
-    for (size_t i = 0; i < comparison->count; i++)
-        print_difference(&r[0], &comparison->difference[i]);
+    json_t *const facts = TABLE_OBJECT(
+        {"files", as_tree(table_texts(r[0].file, r[1].file))},
+        {"identical", as_truth(comparison->count == 0 && !comparison->tolerances)},
+        {"equal", as_truth(comparison->beyond == 0)}, {".count", as_whole(comparison->count)},
+        {".tolerances", as_truth(comparison->tolerances)});
+    return table_say(form, table_show(facts, "differences", &t, NULL, 0), differences_text, &t);
 }
 
 /* ---- labels alone ------------------------------------------------------------------------- */
-
-static const char *label_at(const struct results *r, uint64_t index)
-{
-    return results_kind_names[r->kind[index]];
-}
-
-static double equal_share(const struct label_comparison *c)
-{
-    return c->compared ? (double)c->equal / (double)c->compared : 1;
-}
 
 static double share_of(uint64_t part, uint64_t all)
 {
@@ -184,78 +145,59 @@ static void add_labels(struct table *t, const struct label_comparison *c)
     }
 }
 
-static bool print_labels_json(const struct results r[2], const struct label_comparison *c,
-                              struct table *became)
+static json_t *domain_facts(const struct label_comparison *c)
 {
-    json_t *const domain =
-        TABLE_OBJECT({"outcome", as_text(results_kind_names[c->of])}, {"kept", as_whole(c->kept)},
-                     {"lost", as_whole(c->lost)}, {"won", as_whole(c->won)},
-                     {"neither", as_whole(c->compared - c->kept - c->lost - c->won)},
-                     {"lost_share", as_number(share_of(c->lost, c->kept + c->lost))},
-                     {"lost_low", as_number(c->lost_interval.low)},
-                     {"lost_high", as_number(c->lost_interval.high)},
-                     {"won_share", as_number(share_of(c->won, c->kept + c->won))});
-    json_t *first = json_array();
+    return TABLE_OBJECT(
+        {"outcome", as_text(results_kind_names[c->of])}, {"kept", as_whole(c->kept)},
+        {"lost", as_whole(c->lost)}, {"won", as_whole(c->won)},
+        {"neither", as_whole(c->compared - c->kept - c->lost - c->won)},
+        {"lost_share", as_number(share_of(c->lost, c->kept + c->lost))},
+        {"lost_low", as_number(c->lost_interval.low)},
+        {"lost_high", as_number(c->lost_interval.high)},
+        {"won_share", as_number(share_of(c->won, c->kept + c->won))},
+        {".before", as_whole(c->kept + c->lost)}, {".after", as_whole(c->kept + c->won)},
+        {".either", as_whole(c->kept + c->lost + c->won)},
+        {".bounded", as_truth(isfinite(c->lost_interval.low))});
+}
+
+static const char labels_text[] =
+    "labels: {equal} of {compared} equal ({equal_share*%.5g} %)\n"
+    "[farthest:unequal: {.unequal}, at most {farthest} cell{farthest#s} from another label in "
+    "{files/0}\n"
+    "|[.unequal:unequal: {.unequal}, and {files/0} has no boundary\n]]"
+    "[first*:  case {index}[.where: ({.where})]: " VALUES "]"
+    "[.unequal:\n{.became}]"
+    "[domain:[.either:\n{outcome} in both: {kept}; lost, in {files/0} alone: {lost}"
+    "[.before: ({lost_share*%.3f} % of its domain"
+    "[.bounded:; 95 % interval {lost_low*%.3f} ... {lost_high*%.3f} %])];\n"
+    "won, in {files/1} alone: {won}[.after: ({won_share*%.3f} % of its domain)]\n]]";
+
+static bool print_labels(const struct results r[2], const struct label_comparison *c,
+                         enum table_form form)
+{
+    struct table became = {0};
+    json_t *const first = json_array();
+    char where[600];
     for (int k = 0; k < c->shown; k++) {
         const uint64_t i = c->place[k];
+        results_case_text(&r[0], i, where, sizeof where);
         json_array_append_new(
-            first,
-            TABLE_OBJECT({"index", as_whole(i)}, {"at", as_tree(json_point(&r[0], i))},
-                         {"values", as_tree(table_texts(label_at(&r[0], i), label_at(&r[1], i)))}));
+            first, TABLE_OBJECT({"index", as_whole(i)}, {"at", as_tree(point_facts(&r[0], i))},
+                                {"values", as_tree(table_texts(results_kind_names[r[0].kind[i]],
+                                                               results_kind_names[r[1].kind[i]]))},
+                                {".where", as_text(where)}));
     }
-    return table_write_json(
-        TABLE_OBJECT({"files", as_tree(table_texts(r[0].file, r[1].file))},
-                     {"compared", as_whole(c->compared)}, {"equal", as_whole(c->equal)},
-                     {"equal_share", as_number(equal_share(c))},
-                     {"farthest", c->farthest ? as_whole(c->farthest) : as_nothing(NULL)},
-                     {"became", as_tree(table_tree(became, false))}, {"domain", as_tree(domain)},
-                     {"first", as_tree(first)}),
-        stdout);
-}
-
-static void print_domain(const struct results r[2], const struct label_comparison *c)
-{
-    const char *of = results_kind_names[c->of];
-    if (c->kept + c->lost + c->won == 0)
-        return;
-    printf("\n%s in both: %" PRIu64 "; lost, in %s alone: %" PRIu64, of, c->kept, r[0].file,
-           c->lost);
-    if (c->kept + c->lost > 0)
-        printf(" (%.3f %% of its domain", 100 * share_of(c->lost, c->kept + c->lost));
-    if (isfinite(c->lost_interval.low))
-        printf("; 95 %% interval %.3f ... %.3f %%", 100 * c->lost_interval.low,
-               100 * c->lost_interval.high);
-    printf("%s;\nwon, in %s alone: %" PRIu64, c->kept + c->lost > 0 ? ")" : "", r[1].file, c->won);
-    if (c->kept + c->won > 0)
-        printf(" (%.3f %% of its domain)", 100 * share_of(c->won, c->kept + c->won));
-    putchar('\n');
-}
-
-static void print_labels(const struct results r[2], const struct label_comparison *c,
-                         struct table *became)
-{
-    const uint64_t unequal = c->compared - c->equal;
-    char where[600];
-
-    printf("labels: %" PRIu64 " of %" PRIu64 " equal (%.5g %%)\n", c->equal, c->compared,
-           100 * equal_share(c));
-    if (c->farthest > 0) {
-        printf("unequal: %" PRIu64 ", at most %" PRIu64 " cell%s from another label in %s\n",
-               unequal, c->farthest, c->farthest == 1 ? "" : "s", r[0].file);
-    } else if (unequal > 0) {
-        printf("unequal: %" PRIu64 ", and %s has no boundary\n", unequal, r[0].file);
-    }
-    for (int k = 0; k < c->shown; k++) {
-        results_case_text(&r[0], c->place[k], where, sizeof where);
-        printf("  case %" PRIu64 "%s%s%s: %s | %s\n", c->place[k], where[0] ? " (" : "", where,
-               where[0] ? ")" : "", label_at(&r[0], c->place[k]), label_at(&r[1], c->place[k]));
-    }
-    if (unequal > 0) {
-        putchar('\n');
-        table_print(became, TABLE_AS_TEXT, "first second cases share share_of_first", 0);
-    }
-    table_free(became);
-    print_domain(r, c);
+    json_t *const facts = TABLE_OBJECT(
+        {"files", as_tree(table_texts(r[0].file, r[1].file))}, {"compared", as_whole(c->compared)},
+        {"equal", as_whole(c->equal)}, {".unequal", as_whole(c->compared - c->equal)},
+        {"equal_share", as_number(c->compared ? share_of(c->equal, c->compared) : 1)},
+        {"farthest", c->farthest ? as_whole(c->farthest) : as_nothing(NULL)});
+    add_labels(&became, c);
+    json_t *const all =
+        table_show(facts, "became", &became, "first second cases share share_of_first", 0);
+    json_object_update_new(
+        all, TABLE_OBJECT({"domain", as_tree(domain_facts(c))}, {"first", as_tree(first)}));
+    return table_say(form, all, labels_text, &became);
 }
 
 /* ---- the command -------------------------------------------------------------------------- */
@@ -324,11 +266,7 @@ static int compare_all(const struct results r[2], const struct request *request,
                          message))
         return EXIT_IO;
     const int code = comparison.beyond == 0 ? EXIT_DONE : EXIT_CASES_FAILED;
-    bool good = true;
-    if (request->form == TABLE_AS_TEXT)
-        print_text(r, &comparison);
-    else
-        good = print_for_programs(r, &comparison, request->form);
+    const bool good = print_differences(r, &comparison, request->form);
     compare_free(&comparison);
     return good ? code : EXIT_IO;
 }
@@ -336,24 +274,14 @@ static int compare_all(const struct results r[2], const struct request *request,
 static int compare_only_labels(const struct results r[2], const struct request *request,
                                stance_message *message)
 {
-    const enum table_form form = request->form;
     struct label_comparison comparison;
-
     if (!compare_labels(&comparison, &r[0], &r[1],
                         request->of < RESULTS_KIND_COUNT ? request->of : statistics_judged(&r[0]),
                         message))
         return EXIT_USAGE;
-    struct table t = {0};
-    add_labels(&t, &comparison);
-    bool good = true;
-    if (form == TABLE_AS_TEXT)
-        print_labels(r, &comparison, &t);
-    else
-        good = form == TABLE_AS_CSV ? table_print(&t, form, NULL, 0)
-                                    : print_labels_json(r, &comparison, &t);
-    return !good                                     ? EXIT_IO
-           : comparison.equal == comparison.compared ? EXIT_DONE
-                                                     : EXIT_CASES_FAILED;
+    return !print_labels(r, &comparison, request->form) ? EXIT_IO
+           : comparison.equal == comparison.compared    ? EXIT_DONE
+                                                        : EXIT_CASES_FAILED;
 }
 
 static int compare(void *context)

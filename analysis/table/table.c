@@ -331,7 +331,7 @@ static void csv_row(const struct table *t, size_t row, FILE *out)
 {
     bool inside = false;
     for (size_t k = 0; k < t->columns; k++) {
-        if (!t->column[k].name || t->column[k].hidden & TABLE_NO_CSV)
+        if (!t->column[k].name || t->column[k].name[0] == '.' || t->column[k].hidden & TABLE_NO_CSV)
             continue;
         if (inside)
             putc(',', out);

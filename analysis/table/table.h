@@ -85,7 +85,7 @@ static inline struct table_value as_truth(bool truth)
 enum { TABLE_NO_CSV = 1, TABLE_NO_JSON = 2, TABLE_VIEW_ONLY = TABLE_NO_CSV | TABLE_NO_JSON };
 
 struct table_column {
-    const char *name;    /* for programs */
+    const char *name;    /* for programs; begins with '.': for people, see say.h */
     const char *heading; /* for people; NULL: none, not even blanks in its place */
     const char *format;  /* of numbers, as printf has it; NULL: "%.6g", or all digits */
     int width;           /* letters at least */
