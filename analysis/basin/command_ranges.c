@@ -8,7 +8,6 @@
 #include "runner/plan/instruction_set.h"
 #include "runner/plan/kernels.h"
 
-#include <inttypes.h>
 #include <math.h>
 #include <stddef.h>
 #include <stdio.h>
@@ -43,79 +42,9 @@ static const char *axis_name(const struct ranges *r, const struct ranges_axis *a
     return name;
 }
 
-/* ---- text --------------------------------------------------------------------------------- */
+/* ---- facts -------------------------------------------------------------------------------- */
 
-/* "x" of a path, "[x, y]" of several. */
-static void print_row(const struct ranges *r, const struct ranges_axis *axis, double x)
-{
-    for (int k = 0; k < axis->fields; k++)
-        printf("%s%.9g",
-               k                  ? ", "
-               : axis->fields > 1 ? "["
-                                  : "",
-               value_at(&r->field[axis->first + k], x));
-    printf("%s", axis->fields > 1 ? "]" : "");
-}
-
-static void print_axis(const struct ranges *r, const struct ranges_axis *axis,
-                       const struct ranges_range *range)
-{
-    printf("    - {%s: ", axis->fields > 1 ? "paths" : "path");
-    for (int k = 0; k < axis->fields; k++)
-        printf("%s%s", k ? ", " : axis->fields > 1 ? "[" : "", r->field[axis->first + k].path);
-    printf("%s, from: ", axis->fields > 1 ? "]" : "");
-    print_row(r, axis, range->from);
-    printf(", to: ");
-    print_row(r, axis, range->to);
-    if (range->points > 0)
-        printf(", count: %zu", range->points);
-    printf("} # %s\n", axis->unit);
-}
-
-/* The head of the scenario's sample: the axes are its factors. */
-static void print_sample(const struct doe *design, const char *before)
-{
-    printf("%s  sample:\n%s    method: %s\n%s    count: %" PRIu64 "\n", before, before,
-           doe_words[design->method], before, design->count);
-    if (design->method == DOE_MORRIS)
-        printf("%s    levels: %d\n", before, design->levels);
-    if (design->second_order)
-        printf("%s    second_order: true\n", before);
-    printf("%s    vary:\n", before);
-}
-
-/* The sweep, of the grid before those of the sample; where it does not count as a comment. */
-static void print_axes(const struct ranges *r, bool counts, bool close)
-{
-    const char *before = counts ? "" : "#";
-    printf("%ssweep:\n", before);
-    for (int sampled = 0; sampled < 2; sampled++) {
-        bool any = false;
-        for (int a = 0; !sampled && a < r->s->axes; a++) {
-            /* The axis along which the scenario goes out on rays. */
-            const struct scenario_axis *const axis = &r->s->axis[a];
-            if (axis->offset[0] != offsetof(struct scenario_values, offset_scale))
-                continue;
-            printf("%s  grid:\n%s    - {path: %s, from: %.9g, to: %.9g, count: %zu}\n", before,
-                   before, axis->path[0], scenario_axis_value(axis, 0, 0),
-                   scenario_axis_value(axis, axis->count - 1, 0), axis->count);
-            any = true;
-        }
-        for (int a = 0; a < r->axes; a++) {
-            if (r->axis[a].sampled != sampled)
-                continue;
-            if (!any && sampled)
-                print_sample(&r->s->sample.design, before);
-            else if (!any)
-                printf("%s  grid:\n", before);
-            any = true;
-            printf("%s%s", before, sampled ? "  " : "");
-            print_axis(r, &r->axis[a], close ? &r->axis[a].close : &r->axis[a].whole);
-        }
-    }
-}
-
-/* The row that stands at x, of JSON. */
+/* What stands at x. */
 static json_t *row_json(const struct ranges *r, const struct ranges_axis *axis, double x)
 {
     json_t *row = json_array();
@@ -167,6 +96,8 @@ static void add_axis(struct table *t, const struct ranges *r, const struct range
           .hidden = TABLE_NO_JSON},
          as_number(most)},
         {{"unit", "", .left = true}, as_text(axis->unit)}, {{.name = "paths"}, as_tree(paths)},
+        {{.name = ".many"}, as_truth(axis->fields > 1)},
+        {{.name = ".sampled"}, as_truth(axis->sampled)},
         {{.name = "whole"}, as_tree(range_json(r, axis, &axis->whole))},
         {{.name = "close"}, as_tree(range_json(r, axis, &axis->close))},
         {{.name = "alone"}, as_tree(json_pack("[f,f]", low, high))},
@@ -182,90 +113,124 @@ static void add_axis(struct table *t, const struct ranges *r, const struct range
 }
 
 /* In which directions the outcome was not lost. */
-static void print_open(const struct ranges *r)
+static void add_open(const struct ranges *r, json_t *facts)
 {
-    bool any = false;
-    if (r->open == 0)
-        return;
-    printf("# Not lost along %zu of the rays, as far as is looked:", r->open);
-    for (int a = 0; a < r->axes; a++) {
-        const struct ranges_axis *axis = &r->axis[a];
-        for (int up = 0; up < 2; up++) {
-            if (!axis->open[up])
-                continue;
-            printf("%s %s = %.3g %s", any ? "," : "", r->field[axis->first].path,
-                   value_at(&r->field[axis->first], (up ? 1 : -1) * axis->limit), axis->unit);
-            any = true;
-        }
+    for (int k = 0; k < 2 * r->axes; k++) {
+        const struct ranges_axis *axis = &r->axis[k / 2];
+        if (axis->open[k % 2])
+            say_add(facts, ".open", "%s %s = %.3g %s", json_object_get(facts, ".open") ? "," : "",
+                    r->field[axis->first].path,
+                    value_at(&r->field[axis->first], (k % 2 ? 1 : -1) * axis->limit), axis->unit);
     }
-    puts(".");
 }
 
-/* At which ends the ranges cut the domain, and why they go no further. False: at none. */
-static bool print_cuts(const struct ranges *r, bool print)
+/* At which ends the ranges cut the domain, and why they go no further. */
+static void add_cuts(const struct ranges *r, json_t *facts)
 {
     static const char *const why[] = {[RANGES_NO_START] = "where starts cease to exist",
                                       [RANGES_NOT_FOLLOWED] = "rays were followed no further"};
-    bool any = false;
     for (int k = 0; k < 2 * r->axes; k++) {
         const struct ranges_axis *axis = &r->axis[k / 2];
         const enum ranges_cut cut = ranges_cut(axis, k % 2);
-        any = any || cut;
-        if (cut && print)
-            printf("#   cut at %s = %.9g %s: %s\n", r->field[axis->first].path,
-                   value_at(&r->field[axis->first], k % 2 ? axis->whole.to : axis->whole.from),
-                   axis->unit, why[cut]);
+        if (cut)
+            say_add(facts, ".cuts", "#   cut at %s = %.9g %s: %s\n", r->field[axis->first].path,
+                    value_at(&r->field[axis->first], k % 2 ? axis->whole.to : axis->whole.from),
+                    axis->unit, why[cut]);
     }
-    return any;
 }
 
-/* A part of a scenario: what is not that is a comment. */
-static bool print_text(const struct ranges *r, const struct table *t)
+/* The axis along which the scenario goes out on rays, and the head of its sample, whose factors the
+ * axes are. */
+static void add_sweep(const struct ranges *r, json_t *facts)
 {
-    const bool seen = ranges_resolve(r);
-    const char *of = ranges_end(r->of),
-               *start = r->s->base.state_given ? "initial.state" : "the equilibrium";
-    printf("# Where starts about %s cease to be %s (%zu rays, %" PRIu64 " simulations):\n", start,
-           of, r->rays, r->simulated);
-    const bool good = table_write_text(t, stdout, "axis low high ends least most unit", 0);
-    if (r->held < r->parameters)
-        printf("# At %zu of %zu points of the other axes %s itself is not %s.\n",
-               r->parameters - r->held, r->parameters, start, of);
-    else if (r->parameters > 1)
-        printf("# Alone: at the first point of the other axes; with the others: at %zu of them.\n",
-               r->parameters);
-    if (r->failed > 0)
-        printf("# %" PRIu64 " simulations failed and count as lost.\n", r->failed);
-    print_open(r);
-    printf("# These ranges %s the domain%s: about %.*f %%", print_cuts(r, false) ? "cut" : "hold",
-           seen ? "" : ", with too few points to show it", r->share[0] < 0.1, 100 * r->share[0]);
+    const struct doe *const design = &r->s->sample.design;
+    int sampled = 0;
+    json_t *const scales = json_array();
+    for (int a = 0; a < r->s->axes; a++) {
+        const struct scenario_axis *const axis = &r->s->axis[a];
+        if (axis->offset[0] == offsetof(struct scenario_values, offset_scale))
+            json_array_append_new(
+                scales,
+                TABLE_OBJECT({"path", as_text(axis->path[0])},
+                             {"from", as_number(scenario_axis_value(axis, 0, 0))},
+                             {"to", as_number(scenario_axis_value(axis, axis->count - 1, 0))},
+                             {"count", as_whole(axis->count)}));
+    }
+    for (int a = 0; a < r->axes; a++)
+        sampled += r->axis[a].sampled;
+    json_t *const sample = TABLE_OBJECT(
+        {"method", as_text(doe_words[design->method])}, {"count", as_whole(design->count)},
+        {"levels",
+         design->method == DOE_MORRIS ? as_whole((uint64_t)design->levels) : as_nothing(NULL)},
+        {"second", as_truth(design->second_order)});
+    table_put(facts, ".grid", as_truth(json_array_size(scales) > 0 || sampled < r->axes));
+    table_put(facts, ".scales", as_tree(scales));
+    table_put(facts, ".sample", as_tree(sampled > 0 ? json_incref(sample) : NULL));
+    json_decref(sample);
+}
+
+/* A part of a scenario: what is not that is a comment, as is a sweep behind a hash. */
+#define AXIS(range)                                                                                \
+    "    - \\{[.many:paths: \\[|path: ][paths*, :{value}][.many:\\]], "                            \
+    "from: [.many:\\[][" range "/from*, :{value%.9g}][.many:\\]], "                                \
+    "to: [.many:\\[][" range "/to*, :{value%.9g}][.many:\\]]"                                      \
+    "[" range "/count:, count: {" range "/count}]} # {unit}\n"
+#define SWEEP(hash, range)                                                                         \
+    hash "sweep:\n[.grid:" hash "  grid:\n"                                                        \
+         "[.scales*:" hash "    - \\{path: {path}, from: {from%.9g}, to: {to%.9g}, "               \
+         "count: {count}}\n][axes*:[!.sampled:" hash                                               \
+         AXIS(range) "]]]"                                                                         \
+                     "[.sample:" hash "  sample:\n" hash "    method: {method}\n" hash             \
+                     "    count: {count}\n"                                                        \
+                     "[levels:" hash "    levels: {levels}\n][second:" hash                        \
+                     "    second_order: true\n]" hash "    vary:\n[axes*:[.sampled:" hash          \
+                     "  " AXIS(range) "]]]"
+static const char text[] =
+    "# Where starts about {.start} cease to be {outcome} ({rays} rays, {simulations} "
+    "simulations):\n"
+    "{.looked}"
+    "[.short:# At {.short} of {parameters} points of the other axes {.start} itself is not "
+    "{outcome}.\n"
+    "|[parameters>1:# Alone: at the first point of the other axes; with the others: at "
+    "{parameters} of them.\n]]"
+    "[failed:# {failed} simulations failed and count as lost.\n]"
+    "[not_lost:# Not lost along {not_lost} of the rays, as far as is looked:{.open}.\n]"
+    "# These ranges [.cuts:cut|hold] the domain[!resolved:, with too few points to show it]: about "
+    "{.share} of the starts in them are {outcome}.\n{.cuts}"
+    "[.impossible:# Some of these starts cannot be, and a run says so: narrow the ranges there.\n]"
+    "[!chosen:# (In place of the axes of starts that the scenario has.)\n]" SWEEP(
+        "[!resolved:#]", "whole") "[.thin:# Closer, where they show how wide a thin domain is at "
+                                  "the equilibrium, and cut it:\n" SWEEP("[resolved:#]",
+                                                                         "close") "]";
+
+static bool print(const struct ranges *r, bool json)
+{
+    struct table axes = {0}, looked = {0};
+    const bool resolved = ranges_resolve(r);
+    for (int a = 0; a < r->axes; a++)
+        add_axis(&axes, r, &r->axis[a]);
+    for (int a = 0; !json && a < r->looked; a++)
+        add_axis(&looked, r, &r->axis[a]);
+    json_t *const facts = TABLE_OBJECT(
+        {"scenario", as_text(r->s->name)}, {"outcome", as_text(ranges_end(r->of))},
+        {"chosen", as_truth(r->chosen)}, {"parameters", as_whole(r->parameters)},
+        {"held", as_whole(r->held)}, {"resolved", as_truth(resolved)}, {"rays", as_whole(r->rays)},
+        {"not_lost", as_whole(r->open)}, {"simulations", as_whole(r->simulated)},
+        {"failed", as_whole(r->failed)},
+        {"share", as_tree(json_pack("[f,f]", r->share[0], r->share[1]))},
+        {".start", as_text(r->s->base.state_given ? "initial.state" : "the equilibrium")},
+        {".short", as_whole(r->parameters - r->held)}, {".impossible", as_whole(r->impossible)},
+        {".thin", as_truth(r->share[1] < THIN || !resolved)});
+    say_add(facts, ".share", "%.*f %%", r->share[0] < 0.1, 100 * r->share[0]);
     if (r->share[1] - r->share[0] >= 0.01)
-        printf(" to %.0f %%", 100 * r->share[1]);
-    printf(" of the starts in them are %s.\n", of);
-    print_cuts(r, true);
-    if (r->impossible > 0)
-        puts("# Some of these starts cannot be, and a run says so: narrow the ranges there.");
-    if (!r->chosen)
-        puts("# (In place of the axes of starts that the scenario has.)");
-    print_axes(r, seen, false);
-    if (r->share[1] < THIN || !seen) {
-        puts("# Closer, where they show how wide a thin domain is at the equilibrium, and cut it:");
-        print_axes(r, !seen, true);
-    }
-    return good;
-}
-
-static bool print_json(const struct ranges *r, const struct table *t)
-{
-    return table_write_json(
-        TABLE_OBJECT({"scenario", as_text(r->s->name)}, {"outcome", as_text(ranges_end(r->of))},
-                     {"chosen", as_truth(r->chosen)}, {"parameters", as_whole(r->parameters)},
-                     {"held", as_whole(r->held)}, {"resolved", as_truth(ranges_resolve(r))},
-                     {"rays", as_whole(r->rays)}, {"not_lost", as_whole(r->open)},
-                     {"simulations", as_whole(r->simulated)}, {"failed", as_whole(r->failed)},
-                     {"share", as_tree(json_pack("[f,f]", r->share[0], r->share[1]))},
-                     {"axes", as_tree(table_json(t, false))}),
-        stdout);
+        say_add(facts, ".share", " to %.0f %%", 100 * r->share[1]);
+    add_open(r, facts);
+    add_cuts(r, facts);
+    add_sweep(r, facts);
+    const bool good =
+        table_give(facts, "axes", &axes, NULL, 0) &&
+        table_give(facts, ".looked", &looked, "axis low high ends least most unit", 0);
+    return say_facts(facts, json, text, stdout) && good;
 }
 
 /* ---- the command -------------------------------------------------------------------------- */
@@ -278,18 +243,14 @@ static int show(const struct request *request, const struct scenario *s)
 #undef RANGES_NUMBER
     };
     struct ranges *r = malloc(sizeof *r);
-    struct table t = {0};
     stance_message message = {""};
     int code = EXIT_IO;
     if (!r || !ranges_make(r, s, number_of[request->of], &message)) {
         fprintf(stderr, "%s: %s\n", s->file, r ? message.text : "not enough memory");
         code = r ? EXIT_USAGE : EXIT_IO;
     } else {
-        for (int a = 0; a < (request->json ? r->axes : r->looked); a++)
-            add_axis(&t, r, &r->axis[a]);
-        code = (request->json ? print_json : print_text)(r, &t) ? EXIT_DONE : EXIT_IO;
+        code = print(r, request->json) ? EXIT_DONE : EXIT_IO;
     }
-    table_free(&t);
     free(r);
     return code;
 }
