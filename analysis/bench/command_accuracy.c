@@ -10,7 +10,7 @@ extern const struct command command_accuracy; /* below */
 
 static const double measuring_budget = 0.3; /* s per method and step */
 
-/* ---- text and JSON ------------------------------------------------------------------------ */
+/* ---- facts ------------------------------------------------------------------------ */
 
 void accuracy_errors(struct table *t, const struct accuracy_row *row, bool reference, bool labels)
 {
@@ -60,34 +60,12 @@ static void add_row(struct table *t, const struct accuracy *a, size_t k)
     table_end_row(t);
 }
 
-static bool print_text(const struct accuracy *a, const struct results *r, const struct table *t)
+static json_t *study_facts(const struct accuracy *a, const struct results *r)
 {
-    printf("\n%s\n", r->title);
-    const bool good = table_write_text(
-        t, stdout,
-        a->labels ? "method step tolerance microseconds_per_second evaluations_per_second "
-                    "cells_unlike of share cells_unlike_inside remark"
-                  : "method step tolerance microseconds_per_second evaluations_per_second "
-                    "position_error velocity_error signorini_residual coulomb_residual "
-                    "dissipation_residual energy_gain remark",
-        0);
-    if (a->labels)
-        puts("  (cells unlike the reference, share of the grid; inside: of its domains)");
-    for (size_t k = 0; k < a->orders; k++) {
-        const struct accuracy_order *order = &a->order[k];
-        if (!isnan(order->position)) {
-            printf(
-                "  %s: order %.2f (position), %.2f (velocity) of the %s, %.0e ... %.0e, %zu rows\n",
-                order->method->name, order->position, order->velocity,
-                order->by_tolerance ? "tolerance" : "step", order->from, order->to, order->rows);
-        }
-    }
-    return good;
-}
-
-static json_t *study_json(const struct accuracy *a, const struct results *r, const struct table *t)
-{
-    json_t *orders = json_array();
+    struct table t = {0};
+    json_t *const orders = json_array();
+    for (size_t k = 0; k < a->rows; k++)
+        add_row(&t, a, k);
     for (size_t k = 0; k < a->orders; k++) {
         const struct accuracy_order *order = &a->order[k];
         json_array_append_new(
@@ -96,12 +74,28 @@ static json_t *study_json(const struct accuracy *a, const struct results *r, con
                          {"of", as_text(order->by_tolerance ? "tolerance" : "step")},
                          {"position", as_number(order->position)},
                          {"velocity", as_number(order->velocity)}, {"from", as_number(order->from)},
-                         {"to", as_number(order->to)}, {"rows", as_whole(order->rows)}));
+                         {"to", as_number(order->to)}, {"rows", as_whole(order->rows)},
+                         {".known", as_truth(!isnan(order->position))}));
     }
-    return TABLE_OBJECT({"name", as_text(r->name)}, {"title", as_text(r->title)},
-                        {"file", as_text(r->file)}, {"rows", as_tree(table_json(t, false))},
-                        {"orders", as_tree(orders)});
+    json_t *const facts =
+        TABLE_OBJECT({"name", as_text(r->name)}, {"title", as_text(r->title)},
+                     {"file", as_text(r->file)}, {".labels", as_truth(a->labels)});
+    table_give(facts, "rows", &t,
+               a->labels ? "method step tolerance microseconds_per_second evaluations_per_second "
+                           "cells_unlike of share cells_unlike_inside remark"
+                         : "method step tolerance microseconds_per_second evaluations_per_second "
+                           "position_error velocity_error signorini_residual coulomb_residual "
+                           "dissipation_residual energy_gain remark",
+               0);
+    table_put(facts, "orders", as_tree(orders));
+    return facts;
 }
+
+static const char text[] =
+    "\n{title}\n{.rows}"
+    "[.labels:  (cells unlike the reference, share of the grid; inside: of its domains)\n]"
+    "[orders*:[.known:  {method}: order {position%.2f} (position), {velocity%.2f} (velocity) of "
+    "the {of}, {from%.0e} ... {to%.0e}, {rows} rows\n]]";
 
 /* ---- the command --------------------------------------------------------------------------- */
 
@@ -111,16 +105,13 @@ static bool study(const struct results *r, struct look *look, const char *direct
     struct accuracy a;
     if (!accuracy_make(&a, r, measuring_budget, message))
         return false;
-    struct table t = {0};
+    json_t *const facts = study_facts(&a, r);
     bool good = true;
-    for (size_t k = 0; k < a.rows; k++)
-        add_row(&t, &a, k);
     if (object)
-        *object = study_json(&a, r, &t);
+        *object = facts;
     else
-        good = print_text(&a, r, &t) && fflush(stdout) == 0 &&
+        good = say_facts(facts, false, text, stdout) && fflush(stdout) == 0 &&
                accuracy_plot(&a, r, look, directory, stem, message);
-    table_free(&t);
     accuracy_free(&a);
     return good;
 }

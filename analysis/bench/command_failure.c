@@ -2,14 +2,14 @@
 #include "failure.h"
 #include "studies.h"
 
-#include <inttypes.h>
 #include <math.h>
 
 extern const struct command command_failure; /* below */
 
-/* ---- text --------------------------------------------------------------------------------- */
+/* ---- facts -------------------------------------------------------------------------------- */
 
-static bool print_shares(const struct failure *f)
+/* For people. */
+static bool give_shares(json_t *facts, const struct failure *f)
 {
     struct table t = {0};
     for (int v = 0; v < FAILURE_VERDICT_COUNT; v++) {
@@ -29,54 +29,14 @@ static bool print_shares(const struct failure *f)
         }
         table_end_row(&t);
     }
-    const bool good = table_write_text(&t, stdout, "seen/", 0);
-    table_free(&t);
-    return good;
+    return table_give(facts, ".shares", &t, "seen/", 0);
 }
 
-static void print_row(const struct failure *f, const struct failure_row *row)
-{
-    char name[40];
-    printf("  %-18s energy created at most %.2g J, %.2g of that at the start; penetration %.0e m, "
-           "residuals %.0e, %.0e, %.0e\n",
-           failure_row_name(row, name), row->energy_gain, row->energy_share, row->penetration,
-           row->signorini, row->coulomb, row->dissipation);
-    const char *separator = "failed: ";
-    for (int k = 0; k < STANCE_FAILURE_COUNT; k++) {
-        if (row->reason[k] > 0) {
-            printf(separator[0] == 'f' ? "  %18s %s" : "%s%s", "", separator);
-            printf("%s %" PRIu64, stance_failure_name[k], row->reason[k]);
-            separator = ", ";
-        }
-    }
-    if (separator[0] != 'f')
-        putchar('\n');
-    if (f->line.axis > 0) {
-        printf("  %18s before the line of theory %" PRIu64 " of %" PRIu64 " failed, %" PRIu64
-               " came to stand; beyond it %" PRIu64 " of %" PRIu64 " and %" PRIu64 "\n",
-               "", row->bad[0], row->side[0], row->stands[0], row->bad[1], row->side[1],
-               row->stands[1]);
-    }
-}
-
-static bool print_text(const struct failure *f, const struct results *r)
-{
-    printf("\n%s\n  %s (%zu values) x %s (%zu values)\n", r->title, r->axis[1].name,
-           r->axis[1].count, r->axis[2].name, r->axis[2].count);
-    const bool good = print_shares(f);
-    if (f->line.axis > 0)
-        printf("  line of theory: %s\n", f->line.text);
-    for (size_t k = 0; k < f->rows; k++)
-        print_row(f, &f->row[k]);
-    return good;
-}
-
-/* ---- JSON --------------------------------------------------------------------------------- */
-
-static json_t *row_json(const struct failure *f, size_t k)
+static json_t *row_facts(const struct failure *f, size_t k)
 {
     const struct failure_row *row = &f->row[k];
     json_t *shares = json_object(), *reasons = json_object(), *map = json_array();
+    char name[40];
     for (int v = 0; v < FAILURE_VERDICT_COUNT; v++)
         table_put(shares, failure_styles[v].name, as_whole(row->count[v]));
     for (int v = 0; v < STANCE_FAILURE_COUNT; v++)
@@ -90,7 +50,13 @@ static json_t *row_json(const struct failure *f, size_t k)
         }
         json_array_append_new(map, line);
     }
+    json_t *const sides = f->line.axis > 0 ? json_array() : NULL;
+    for (int side = 0; sides && side < 2; side++)
+        json_array_append_new(sides, TABLE_OBJECT({"failed", as_whole(row->bad[side])},
+                                                  {"of", as_whole(row->side[side])},
+                                                  {"stand", as_whole(row->stands[side])}));
     return TABLE_OBJECT({"method", as_text(row->method->name)},
+                        {".name", as_text(failure_row_name(row, name))},
                         {"tolerance", as_number(row->tolerance)}, {"cases", as_tree(shares)},
                         {"failed", as_tree(reasons)}, {"energy_gain", as_number(row->energy_gain)},
                         {"energy_share", as_number(row->energy_share)},
@@ -98,10 +64,10 @@ static json_t *row_json(const struct failure *f, size_t k)
                         {"signorini_residual", as_number(row->signorini)},
                         {"coulomb_residual", as_number(row->coulomb)},
                         {"dissipation_residual", as_number(row->dissipation)},
-                        {"map", as_tree(map)});
+                        {"map", as_tree(map)}, {".sides", as_tree(sides)});
 }
 
-static json_t *theory_json(const struct failure *f, const struct results *r)
+static json_t *theory_facts(const struct failure *f, const struct results *r)
 {
     if (f->line.axis == 0)
         return json_null();
@@ -113,7 +79,7 @@ static json_t *theory_json(const struct failure *f, const struct results *r)
         {"of", as_text(r->axis[3 - f->line.axis].name)}, {"values", as_tree(values)});
 }
 
-static json_t *study_json(const struct failure *f, const struct results *r)
+static json_t *study_facts(const struct failure *f, const struct results *r)
 {
     json_t *rows = json_array(), *axes = json_array();
     for (int a = 1; a < 3; a++) {
@@ -121,16 +87,27 @@ static json_t *study_json(const struct failure *f, const struct results *r)
         json_t *const values = json_array();
         for (size_t i = 0; i < axis->count; i++)
             table_append(values, as_place(axis, i));
-        json_array_append_new(axes, TABLE_OBJECT({"name", as_text(axis->name)},
-                                                 {"unit", as_text(axis->unit)},
-                                                 {"values", as_tree(values)}));
+        json_array_append_new(
+            axes, TABLE_OBJECT({"name", as_text(axis->name)}, {"unit", as_text(axis->unit)},
+                               {"values", as_tree(values)}, {".count", as_whole(axis->count)}));
     }
     for (size_t k = 0; k < f->rows; k++)
-        json_array_append_new(rows, row_json(f, k));
+        json_array_append_new(rows, row_facts(f, k));
     return TABLE_OBJECT({"name", as_text(r->name)}, {"title", as_text(r->title)},
                         {"file", as_text(r->file)}, {"axes", as_tree(axes)},
-                        {"theory", as_tree(theory_json(f, r))}, {"rows", as_tree(rows)});
+                        {"theory", as_tree(theory_facts(f, r))}, {"rows", as_tree(rows)});
 }
+
+static const char text[] =
+    "\n{title}\n  {axes/0/name} ({axes/0/.count} values) x {axes/1/name} ({axes/1/.count} values)\n"
+    "{.shares}[theory:  line of theory: {text}\n]"
+    "[rows*:  {.name%-18s} energy created at most {energy_gain%.2g} J, {energy_share%.2g} of that "
+    "at the start; penetration {max_penetration%.0e} m, residuals {signorini_residual%.0e}, "
+    "{coulomb_residual%.0e}, {dissipation_residual%.0e}\n"
+    "[failed:                     failed: [failed*, :{key} {value}]\n]"
+    "[.sides:                     before the line of theory {.sides/0/failed} of {.sides/0/of} "
+    "failed, {.sides/0/stand} came to stand; beyond it {.sides/1/failed} of {.sides/1/of} and "
+    "{.sides/1/stand}\n]]";
 
 /* ---- the command --------------------------------------------------------------------------- */
 
@@ -140,11 +117,12 @@ static bool study(const struct results *r, struct look *look, const char *direct
     struct failure f;
     if (!failure_make(&f, r, message))
         return false;
-    bool good = true;
+    json_t *const facts = study_facts(&f, r);
+    bool good = give_shares(facts, &f);
     if (object)
-        *object = study_json(&f, r);
+        *object = facts;
     else
-        good = print_text(&f, r) && fflush(stdout) == 0 &&
+        good = say_facts(facts, false, text, stdout) && good && fflush(stdout) == 0 &&
                failure_plot(&f, r, look, directory, stem, message);
     failure_free(&f);
     return good;
