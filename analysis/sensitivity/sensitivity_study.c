@@ -55,16 +55,7 @@ void sensitivity_response_text(const struct sensitivity_study *study, char *text
 void sensitivity_table_text(const struct sensitivity_study *study, size_t table, char *text,
                             size_t size)
 {
-    const struct results *r = study->r;
-    char value[128];
-    text[0] = '\0';
-    for (int a = 0; a < r->axes; a++) {
-        if (study->response.kept[a]) {
-            results_value_text(&r->axis[a], study->response.table[table].point[a], true, value,
-                               sizeof value);
-            add_text(text, size, "%s%s = %s", text[0] ? ", " : "", r->axis[a].name, value);
-        }
-    }
+    table_at_text(study->r, study->response.kept, study->response.table[table].point, text, size);
 }
 
 /* ---- what is asked ------------------------------------------------------------------------ */

@@ -424,21 +424,6 @@ json_t *table_json(const struct table *t, bool by_name)
     return good ? root : NULL;
 }
 
-json_t *table_tree(struct table *t, bool by_name)
-{
-    json_t *const tree = table_json(t, by_name);
-    table_free(t);
-    return tree;
-}
-
-bool table_print(struct table *t, enum table_form form, const char *view, size_t most)
-{
-    const bool good =
-        form == TABLE_AS_CSV ? table_write_csv(t, stdout) : table_write_text(t, stdout, view, most);
-    table_free(t);
-    return good;
-}
-
 json_t *table_value_json(struct table_value value)
 {
     const struct table_value place = value.kind == TABLE_PLACE ? at_place(&value) : value;

@@ -145,9 +145,6 @@ bool table_write_text(const struct table *t, FILE *out, const char *view, size_t
 bool table_write_csv(const struct table *t, FILE *out);
 /* A list of objects, or one object of them by the text of the first column; NULL: no memory. */
 json_t *table_json(const struct table *t, bool by_name);
-/* The same, to standard output, of a table that is freed then. */
-bool table_print(struct table *t, enum table_form form, const char *view, size_t most);
-json_t *table_tree(struct table *t, bool by_name);
 
 /* ---- JSON --------------------------------------------------------------------------------- */
 

@@ -50,15 +50,13 @@ static int report_at(const struct scenario *s, const char *text)
 /* A decoupling law has no linear design: what there is to know is where it is singular. */
 static int design_decoupling(const struct scenario *s, bool json)
 {
-    struct design_selections selections;
-    stance_message message = {""};
-
-    if (!design_selections_compute(&selections, s, &message))
+    stance_message singular = {""}, message = {""};
+    json_t *const facts = design_selections(s, &singular, &message);
+    if (!facts)
         return report_at(s, message.text);
-    const int code = print(design_selections_facts(&selections), json, design_selections_text);
+    const int code = print(facts, json, design_selections_text);
     fflush(stdout);
-    return code == EXIT_DONE && selections.singular ? report_at(s, selections.complaint.text)
-                                                    : code;
+    return code == EXIT_DONE && singular.text[0] ? report_at(s, singular.text) : code;
 }
 
 static int design(const struct scenario *s, void *request)

@@ -88,20 +88,10 @@ struct design_report {
 };
 
 /* What is known of the selections of coordinates that a decoupling law may control, in
- * stance_selection's order. */
-struct design_selections {
-    const struct scenario *scenario;
-    int count;
-    double at_start[STANCE_MAX_SELECTIONS]; /* condition number; INFINITY: singular */
-    stance_selection_report report[STANCE_MAX_SELECTIONS];
-    bool singular; /* the scenario's is, at the start: `complaint` says so */
-    stance_message complaint;
-};
-
-/* false: `message` says what does not exist. */
-bool design_selections_compute(struct design_selections *d, const struct scenario *s,
-                               stance_message *message);
-json_t *design_selections_facts(const struct design_selections *d);
+ * stance_selection's order: facts (runner/base/say.h) and their text. `singular` says so where the
+ * scenario's is, at the start. NULL: `message` says what does not exist. */
+json_t *design_selections(const struct scenario *s, stance_message *singular,
+                          stance_message *message);
 extern const char design_selections_text[];
 
 /* false: `message` says what does not exist. design_plant: up to `rank`, whatever the law;

@@ -6,61 +6,55 @@
 #include "runner/base/message.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 enum { SURVEY = 640000 }; /* matrices that are looked at: for the biped 40 postures an angle */
 
-bool design_selections_compute(struct design_selections *d, const struct scenario *s,
-                               stance_message *message)
+/* Condition numbers at the start, INFINITY where it is singular there, and over all postures, of
+ * the first `count` selections. */
+static bool look(const struct scenario *s, const stance_case *start, int count, double *at_start,
+                 stance_selection_report *report, stance_message *message)
 {
+    stance_error error = STANCE_OK;
+    for (int p = 0; error == STANCE_OK && p < count; p++)
+        error =
+            stance_selection_condition(s->scene, start->robot, start->position, p, &at_start[p]);
+    if (error == STANCE_OK)
+        error = stance_selection_survey(s->scene, start->robot, SURVEY, count, report);
+    return error == STANCE_OK ||
+           complain(message, "controller.controlled: %s", stance_error_text(error));
+}
+
+json_t *design_selections(const struct scenario *s, stance_message *singular,
+                          stance_message *message)
+{
+    double at_start[STANCE_MAX_SELECTIONS] = {0};
+    stance_selection_report report[STANCE_MAX_SELECTIONS] = {0};
     struct resolved_design design;
     stance_case start;
-    int coordinate[STANCE_MAX_ACTUATORS];
-
-    memset(d, 0, sizeof *d);
-    d->scenario = s;
+    int coordinate[STANCE_MAX_ACTUATORS], count = 0, used, widest = (int)strlen("coordinates");
+    char name[SCENARIO_NAME];
     if (!resolve_design(s->scene, &s->base, &design, message) ||
         !resolve_case(s->scene, &s->base, &design, s->seed, 0, &start, message))
-        return false;
-    while (d->count < STANCE_MAX_SELECTIONS && stance_selection(s->scene, d->count, coordinate))
-        d->count++;
-    d->singular = !resolve_selection(s->scene, &start, &d->complaint);
-    stance_error error = STANCE_OK;
-    for (int p = 0; error == STANCE_OK && p < d->count; p++)
-        error =
-            stance_selection_condition(s->scene, start.robot, start.position, p, &d->at_start[p]);
-    if (error == STANCE_OK)
-        error = stance_selection_survey(s->scene, start.robot, SURVEY, d->count, d->report);
-    if (error != STANCE_OK)
-        complain(message, "controller.controlled: %s", stance_error_text(error));
-    return error == STANCE_OK;
-}
-
-static bool is_used(const struct design_selections *d, int selection)
-{
-    int used;
-    memcpy(&used, scenario_law_value(&d->scenario->base, "decoupling", "controlled"), sizeof used);
-    return selection == used;
-}
-
-json_t *design_selections_facts(const struct design_selections *d)
-{
-    const struct scenario *const s = d->scenario;
-    char name[SCENARIO_NAME];
+        return NULL;
+    while (count < STANCE_MAX_SELECTIONS && stance_selection(s->scene, count, coordinate))
+        count++;
+    resolve_selection(s->scene, &start, singular);
+    if (!look(s, &start, count, at_start, report, message))
+        return NULL;
+    memcpy(&used, scenario_law_value(&s->base, "decoupling", "controlled"), sizeof used);
     json_t *const selections = json_array();
-    int widest = (int)strlen("coordinates");
-    for (int p = 0; p < d->count; p++) {
-        const double start = d->at_start[p];
+    for (int p = 0; p < count; p++) {
         scenario_selection_name(s->scene, p, name);
         widest = (int)strlen(name) > widest ? (int)strlen(name) : widest;
-        json_array_append_new(
-            selections,
-            json_pack("{s:s, s:b, s:o?, s:o, s:f, s:f, s:b}", "coordinates", name, "controlled",
-                      is_used(d, p), "condition_at_start", json_real(start), ".start",
-                      isfinite(start) ? json_sprintf("%.3g", start) : json_string("singular"),
-                      "best_condition", d->report[p].best, "damped_share",
-                      d->report[p].ill_conditioned, "singular", d->report[p].singular));
+        json_array_append_new(selections,
+                              json_pack("{s:s, s:b, s:o?, s:o, s:f, s:f, s:b}", "coordinates", name,
+                                        "controlled", p == used, "condition_at_start",
+                                        json_real(at_start[p]), ".start",
+                                        isfinite(at_start[p]) ? json_sprintf("%.3g", at_start[p])
+                                                              : json_string("singular"),
+                                        "best_condition", report[p].best, "damped_share",
+                                        report[p].ill_conditioned, "singular", report[p].singular));
     }
     return json_pack("{s:s, s:s, s:s, s:o, s:s, s:i, s:f}", "scenario", s->name, "title", s->title,
                      "scene", s->scene->name, "selections", selections, ".coordinates",
