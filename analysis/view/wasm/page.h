@@ -49,8 +49,9 @@ struct text {
 };
 void text_clear(struct text *text);
 __attribute__((format(printf, 2, 3))) void text_add(struct text *text, const char *format, ...);
-void text_string(struct text *text, const char *string);
-void text_number(struct text *text, double number); /* what is not finite: null */
+/* In the format "'" is a quotation mark, '~' a comma that nothing opens before; '$' stands for a
+ * string, '?' for a truth, '#' for a double, null where it is not finite. */
+void text_json(struct text *text, const char *format, ...);
 const char *text_done(struct text *text);
 
 #endif

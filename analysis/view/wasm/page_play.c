@@ -154,19 +154,14 @@ const char *play_text(void)
     double answer[STANCE_ANSWER_COUNT];
     page_answers(&played.result, answer);
     text_clear(&text);
-    text_add(&text, "{\"rows\":%d,\"interval\":", played.rows);
-    text_number(&text, played.every);
-    text_add(&text, ",\"step\":");
-    text_number(&text, played.input.step);
-    text_add(&text, ",\"figure\":%d,\"contacts\":%d,\"kind\":%d,\"checksum\":%lu,\"slope\":",
-             played.points, page.view.scene->contacts, page_kind(&played.result),
-             (unsigned long)page_checksum(&played.result));
-    text_number(&text, played.input.robot[STANCE_ROBOT_SLOPE]);
-    text_add(&text, ",\"answers\":[");
-    for (int a = 0; a < STANCE_ANSWER_COUNT; a++) {
-        text_add(&text, "%s", a ? "," : "");
-        text_number(&text, answer[a]);
-    }
-    text_add(&text, "]}");
+    text_json(&text,
+              "{'rows':#,'interval':#,'step':#,'figure':#,'contacts':#,'kind':#,'checksum':#,"
+              "'slope':#,'answers':[",
+              (double)played.rows, played.every, played.input.step, (double)played.points,
+              (double)page.view.scene->contacts, (double)page_kind(&played.result),
+              (double)page_checksum(&played.result), played.input.robot[STANCE_ROBOT_SLOPE]);
+    for (int a = 0; a < STANCE_ANSWER_COUNT; a++)
+        text_json(&text, "~#", answer[a]);
+    text_json(&text, "]}");
     return text_done(&text);
 }

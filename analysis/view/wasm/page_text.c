@@ -42,7 +42,7 @@ void text_add(struct text *text, const char *format, ...)
     }
 }
 
-void text_string(struct text *text, const char *string)
+static void add_string(struct text *text, const char *string)
 {
     text_add(text, "\"");
     for (const char *s = string; *s; s++) {
@@ -58,12 +58,24 @@ void text_string(struct text *text, const char *string)
     text_add(text, "\"");
 }
 
-void text_number(struct text *text, double number)
+void text_json(struct text *text, const char *format, ...)
 {
-    if (isfinite(number))
-        text_add(text, "%.17g", number);
-    else
-        text_add(text, "null");
+    va_list arguments;
+    va_start(arguments, format);
+    for (; *format; format++) {
+        const char before = text->length > 0 ? text->bytes[text->length - 1] : '[';
+        if (*format == '$') {
+            add_string(text, va_arg(arguments, const char *));
+        } else if (*format == '#') {
+            const double number = va_arg(arguments, double);
+            text_add(text, isfinite(number) ? "%.17g" : "null", number);
+        } else if (*format == '?') {
+            text_add(text, va_arg(arguments, int) ? "true" : "false");
+        } else if (*format != '~' || (before != '[' && before != '{')) {
+            text_add(text, "%c", *format == '~' ? ',' : *format == '\'' ? '"' : *format);
+        }
+    }
+    va_end(arguments);
 }
 
 const char *text_done(struct text *text)
@@ -73,18 +85,10 @@ const char *text_done(struct text *text)
 
 static void add_words(struct text *text, const char *const *word, size_t words)
 {
-    text_add(text, ",\"words\":");
-    for (size_t i = 0; i < words; i++) {
-        text_add(text, i ? "," : "[");
-        text_string(text, word[i]);
-    }
-    text_add(text, words ? "]" : "null");
-}
-
-static void add_pair(struct text *text, const char *key, const char *string)
-{
-    text_add(text, ",\"%s\":", key);
-    text_string(text, string);
+    text_json(text, words ? ",'words':[" : ",'words':null");
+    for (size_t i = 0; i < words; i++)
+        text_json(text, "~$", word[i]);
+    text_json(text, words ? "]" : "");
 }
 
 /* ---- fields that may be changed ----------------------------------------------------------- */
@@ -95,11 +99,11 @@ static void add_value(struct text *text, const struct scenario_field *field,
 {
     const double number = schema_number(field, values, i);
     if (field->type == FIELD_NUMBER && isinf(number) && field->words)
-        text_string(text, field->words[0]);
+        text_json(text, "$", field->words[0]);
     else if (field->type == FIELD_WORD && number >= 0 && number < (double)field->word_count)
-        text_string(text, field->words[(size_t)number]);
+        text_json(text, "$", field->words[(size_t)number]);
     else
-        text_number(text, number);
+        text_json(text, "#", number);
 }
 
 /* Calls `tell` with each item of each field that may be changed: with its path. */
@@ -127,107 +131,75 @@ static void tell_field(struct text *text, const struct scenario_field *field,
     const size_t size = field->type == FIELD_NUMBER ? sizeof(double) : sizeof(int);
     int k;
     const bool swept = scenario_axis_of(&page.view, field->offset + item * size, &k) != NULL;
-    text_add(text, "%s{\"path\":", text->bytes[text->length - 1] == '[' ? "" : ",");
-    text_string(text, path);
-    add_pair(text, "text", field->text);
-    add_pair(text, "unit", field->unit);
-    text_add(text, ",\"type\":\"%s\",\"value\":",
-             field->type == FIELD_NUMBER    ? "number"
-             : field->type == FIELD_INTEGER ? "integer"
-                                            : "word");
+    text_json(text, "~{'path':$,'text':$,'unit':$,'type':$,'value':", path, field->text,
+              field->unit,
+              field->type == FIELD_NUMBER    ? "number"
+              : field->type == FIELD_INTEGER ? "integer"
+                                             : "word");
     add_value(text, field, values, item);
-    text_add(text, ",\"low\":");
-    text_number(text, field->low);
-    text_add(text, ",\"high\":");
-    text_number(text, field->high);
-    text_add(text, ",\"lowOpen\":%s,\"highOpen\":%s,\"design\":%s,\"swept\":%s",
-             field->low_open ? "true" : "false", field->high_open ? "true" : "false",
-             field->design ? "true" : "false", swept ? "true" : "false");
+    text_json(text, ",'low':#,'high':#,'lowOpen':?,'highOpen':?,'design':?,'swept':?", field->low,
+              field->high, field->low_open, field->high_open, field->design, swept);
     add_words(text, field->words, field->words ? field->word_count : 0);
-    text_add(text, "}");
+    text_json(text, "}");
 }
 
 static void tell_value(struct text *text, const struct scenario_field *field,
                        const struct scenario_values *values, const char *path, size_t item)
 {
-    text_add(text, "%s", text->bytes[text->length - 1] == '{' ? "" : ",");
-    text_string(text, path);
-    text_add(text, ":");
+    text_json(text, "~$:", path);
     add_value(text, field, values, item);
 }
 
 /* ---- the texts ---------------------------------------------------------------------------- */
 
-static void add_quantities(struct text *text, const char *name, const stance_quantity *of, int n)
-{
-    text_add(text, ",\"%s\":[", name);
-    for (int i = 0; i < n; i++) {
-        text_add(text, "%s{\"name\":", i ? "," : "");
-        text_string(text, of[i].name);
-        add_pair(text, "unit", of[i].unit);
-        text_add(text, "}");
-    }
-    text_add(text, "]");
-}
-
 /* Contacts with the ground come first, then the stops of joints. */
 static void add_bodies(struct text *text, const stance_scene *scene)
 {
-    add_quantities(text, "coordinates", scene->coordinate, scene->coordinates);
-    text_add(text, ",\"actuators\":[");
+    text_json(text, ",'coordinates':[");
+    for (int i = 0; i < scene->coordinates; i++)
+        text_json(text, "~{'name':$,'unit':$}", scene->coordinate[i].name,
+                  scene->coordinate[i].unit);
+    text_json(text, "],'actuators':[");
     for (int a = 0; a < scene->actuators; a++) {
         const bool turns = strcmp(scene->coordinate[scene->actuated[a]].unit, "rad") == 0;
-        text_add(text, "%s{\"name\":", a ? "," : "");
-        text_string(text, scene->actuator_name[a]);
-        text_add(text, ",\"unit\":\"%s\"}", turns ? "N m" : "N");
+        text_json(text, "~{'name':$,'unit':$}", scene->actuator_name[a], turns ? "N m" : "N");
     }
-    text_add(text, "],\"contacts\":[");
-    for (int c = 0; c < scene->contacts && scene->grip[c] >= 0; c++) {
-        text_add(text, "%s", c ? "," : "");
-        text_string(text, scene->contact_name[c]);
-    }
-    text_add(text, "]");
+    text_json(text, "],'contacts':[");
+    for (int c = 0; c < scene->contacts && scene->grip[c] >= 0; c++)
+        text_json(text, "~$", scene->contact_name[c]);
+    text_json(text, "]");
 }
 
 static void add_axes(struct text *text, const struct scenario *s)
 {
-    text_add(text, ",\"axes\":[");
+    text_json(text, ",'axes':[");
     for (int a = 0; a < s->axes; a++) {
-        text_add(text, "%s{\"count\":%zu,\"sample\":%s,\"paths\":[", a ? "," : "", s->axis[a].count,
-                 s->axis[a].sample ? "true" : "false");
-        for (int k = 0; k < s->axis[a].paths; k++) {
-            text_add(text, "%s", k ? "," : "");
-            text_string(text, s->axis[a].path[k]);
-        }
-        text_add(text, "]}");
+        const struct scenario_axis *const axis = &s->axis[a];
+        text_json(text, "~{'count':#,'sample':?,'paths':[", (double)axis->count, axis->sample);
+        for (int k = 0; k < axis->paths; k++)
+            text_json(text, "~$", axis->path[k]);
+        text_json(text, "]}");
     }
-    text_add(text, "]");
+    text_json(text, "]");
 }
 
 const char *view_text(void)
 {
     static struct text text;
     const struct scenario *const s = &page.view;
+    const stance_law *const law = scenario_law(&s->base);
     text_clear(&text);
-    text_add(&text, "{\"scene\":");
-    text_string(&text, s->scene->name);
-    add_pair(&text, "title", s->title);
-    add_pair(&text, "method", stance_methods()[s->base.method]->name);
-    add_pair(&text, "law", scenario_law(&s->base)->name);
-    text_add(&text, ",\"designed\":%s,\"seed\":%llu,\"step\":",
-             scenario_law(&s->base)->designed && s->base.design != DESIGN_GAINS ? "true" : "false",
-             (unsigned long long)s->seed);
-    text_number(&text, s->base.step);
-    text_add(&text, ",\"stop_time\":");
-    text_number(&text, s->base.stop_time);
-    text_add(&text, ",\"slope\":");
-    text_number(&text, s->base.robot[STANCE_ROBOT_SLOPE]);
-    text_add(&text, ",\"cases\":%.0f", (double)page.view_plan.rows);
+    text_json(&text, "{'scene':$,'title':$,'method':$,'law':$,'designed':?", s->scene->name,
+              s->title, stance_methods()[s->base.method]->name, law->name,
+              law->designed && s->base.design != DESIGN_GAINS);
+    text_add(&text, ",\"seed\":%llu", (unsigned long long)s->seed);
+    text_json(&text, ",'step':#,'stop_time':#,'slope':#,'cases':#", s->base.step, s->base.stop_time,
+              s->base.robot[STANCE_ROBOT_SLOPE], (double)page.view_plan.rows);
     add_bodies(&text, s->scene);
     add_axes(&text, s);
-    text_add(&text, ",\"fields\":[");
+    text_json(&text, ",'fields':[");
     each_field(&text, &s->base, tell_field);
-    text_add(&text, "]}");
+    text_json(&text, "]}");
     return text_done(&text);
 }
 
@@ -235,22 +207,20 @@ const char *answers_text(void)
 {
     static struct text text;
     text_clear(&text);
+    text_json(&text, "[");
     for (int a = 0; a < STANCE_ANSWER_COUNT; a++) {
         const stance_answer *const answer = &stance_answers[a];
         const char *word[STANCE_MAX_WORDS];
         const int words = stance_answer_words(page.file.scene, a, word);
-        text_add(&text, "%s{\"name\":", a ? "," : "[");
-        text_string(&text, answer->name);
-        add_pair(&text, "unit", answer->unit);
-        add_pair(&text, "text", answer->text);
-        text_add(&text, ",\"type\":\"%s\"",
-                 words                           ? "code"
-                 : answer->type == STANCE_DOUBLE ? "number"
-                                                 : "count");
+        text_json(&text, "~{'name':$,'unit':$,'text':$,'type':$", answer->name, answer->unit,
+                  answer->text,
+                  words                           ? "code"
+                  : answer->type == STANCE_DOUBLE ? "number"
+                                                  : "count");
         add_words(&text, word, (size_t)words);
-        text_add(&text, "}");
+        text_json(&text, "}");
     }
-    text_add(&text, "]");
+    text_json(&text, "]");
     return text_done(&text);
 }
 
@@ -259,11 +229,11 @@ const char *case_values(double index)
     static struct text text;
     struct scenario_values values;
     text_clear(&text);
-    text_add(&text, "{");
+    text_json(&text, "{");
     if (index >= 0 && index < (double)page.view_plan.rows) {
         scenario_case_values(&page.view, plan_case(&page.view_plan, (uint64_t)index), &values);
         each_field(&text, &values, tell_value);
     }
-    text_add(&text, "}");
+    text_json(&text, "}");
     return text_done(&text);
 }
