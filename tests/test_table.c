@@ -280,6 +280,49 @@ static void test_no_output(void **state)
     table_free(&t);
 }
 
+static void assert_said(const char *facts, const char *of, const char *wanted)
+{
+    FILE *out = begin();
+    assert_true(say_facts(json_loads(facts, 0, NULL), false, of, out));
+    wrote(out, wanted);
+}
+
+/* Texts with holes for facts, as say.h has them. */
+static void test_say(void **state)
+{
+    static const char facts[] =
+        "{'a': 1, 'b': 2.5, 'none': null, 'no': false, 'nil': 0, 'word': 'x', 'empty': '', "
+        "'list': [3, 4], 'rows': [{'k': 'p', 'a': 7}, {'k': 'q'}], 'map': {'u': 1, 'v': 2}, "
+        "'.width': 4}";
+    char quoted[sizeof facts];
+    (void)state;
+    for (size_t i = 0; i < sizeof facts; i++)
+        quoted[i] = facts[i] == '\'' ? '"' : facts[i];
+    assert_said(quoted, "{a} {b} {b%.2f} {b%6.1f}| {b*%.0f} {word%-3s}| {word%*s} {none%3s}|",
+                "1 2.5 2.50    2.5| 250 x  |    x    |");
+    assert_said(quoted, "{a} case{a#s}, {b} case{b#s}, {map/v} {list/1} {rows/0/a}",
+                "1 case, 2.5 cases, 2 4 7");
+    assert_said(quoted, "[a:A|-][none:A|-][no:A|-][nil:A|-][empty:A|-][gone:A|-][list:A]",
+                "A-----A");
+    assert_said(quoted,
+                "[!none:A|-][a=1:A|-][b>2:A|-][b<2:A|-][word=x:A|-][word=y:A|-][none=0:A|-]",
+                "AAA-A--");
+    assert_said(quoted, "[list*, :{i}:{value}] [map*;:{key}={value}] [rows*:{k}{a}] [map:{u}{a}]",
+                "0:3, 1:4 u=1;v=2 p7q1 11");
+    assert_said(quoted, "[list*\\|:\\[{value}\\]] \\{ } [a:x\\|y[no:z|\\]]|w]", "[3]|[4] { } x|y]");
+    json_t *const added = json_object();
+    say_add(added, ".t", "%d", 1);
+    say_add(added, ".t", "-%s", "b");
+    assert_string_equal(json_string_value(json_object_get(added, ".t")), "1-b");
+    json_object_set_new(added, "seen", json_pack("[{s:i,s:i}]", "p", 1, ".q", 2));
+    FILE *out = begin();
+    assert_true(say_facts(added, true, NULL, out)); /* what is for people alone is left out */
+    wrote(out, "{\n  \"seen\": [\n    {\n      \"p\": 1\n    }\n  ]\n}\n");
+    out = begin();
+    assert_false(say_facts(NULL, false, "x", out));
+    wrote(out, "");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -287,6 +330,7 @@ int main(void)
         cmocka_unit_test(test_nothing),   cmocka_unit_test(test_quotes),
         cmocka_unit_test(test_hostile),   cmocka_unit_test(test_json),
         cmocka_unit_test(test_no_memory), cmocka_unit_test(test_no_output),
+        cmocka_unit_test(test_say),
     };
     const int failed = cmocka_run_group_tests(tests, NULL, NULL);
     free(text);

@@ -9,17 +9,21 @@
 
 extern const struct command command_summary; /* below */
 
-static const char head[] =
+static const char text[] =
     "{.name}\n{file}: [case:case {index}|{cases/total} case{cases/total#s}]"
     "[.shard:, of which shard {number}/{count} has {rows}], stance {version} ({revision}), {date}, "
     "{ranks} rank{ranks#s}\n"
     "[scenarios:\nMade from {.scenarios} scenarios; what is said below of their keys is of the "
-    "last "
-    "one\n[scenarios*:  since {date%-22s}{done%12d} cases done\n]]"
+    "last one\n[scenarios*:  since {date%-22s}{done%12d} cases done\n]]"
     "[axes:\nVaried\n[axes*:  {path%-*s}  {.range}\n[.varied*:  {path%-*s}  {range}\n]]]"
-    "[.fixed:\nFixed{.fixed}\n]";
-
-static const char outcomes[] =
+    "[.fixed:\nFixed{.fixed}\n]"
+    /* of a single case, or of many */
+    "[case:\nOutcome: [outcome=pending:not computed yet|{outcome}]\n"
+    "[.failures*:  {reason}: {text}\n][.step:  in the step from {.step} s\n]"
+    "[.touching:  touching     {.touching}\n]"
+    "[.done:[.times*:  {what%-12s} {time} s\n][.fallen*:  fell by      {cause}\n]"
+    "[.final_state:  final state  {.final_state}\n]"
+    "\nNumbers\n[.single*:  {answer%-18s} {is}[unit: {unit}]\n]]|"
     "\nOutcomes of the {cases/done} case{cases/done#s} done[.sampled:, with 95 % intervals]\n"
     "[.outcomes:{.outcomes}"
     "[.shared:  (intervals, here and below: of the sample alone, whose points count however many "
@@ -34,16 +38,13 @@ static const char outcomes[] =
     "[.whole=none:  the ranges do not meet a domain: stance ranges SCENARIO finds where one is\n]"
     "[.fallen*:  fell by {count%16d}  {share*%7.3f} %   {cause}\n]"
     "[cases/inferred:  of these {cases/inferred%14d}  {.inferred*%7.3f} %   not simulated: "
-    "inferred "
-    "from neighbours that agree\n]"
+    "inferred from neighbours that agree\n]"
     "[cases/pending:  pending    {cases/pending%12d}  not computed yet[.shards>1:, or of other "
     "shards]\n]"
     "[.failures*:  failed     {count%12d}  {reason}: {text}\n]"
     "[cases/failed:  the first is case {.first_failed}: `stance run SCENARIO --only "
-    "{.first_failed} "
-    "--trace`, and `stance summary` of that says\n  when it failed and what touched\n]";
-
-static const char sweep[] =
+    "{.first_failed} --trace`, and `stance summary` of that says\n  when it failed and what "
+    "touched\n]"
     "[extents:\nExtent of the stabilised set through the equilibrium\n"
     "[extents*:  {path}  [stabilised:{low}{.low} ... {high}{.high} {unit}"
     "|[low_unknown:unknown|none]: the case nearest to the equilibrium ({.nearest}) "
@@ -68,17 +69,8 @@ static const char sweep[] =
     "[.changes:\nThe outcome changes\n"
     "[.changes*:  between {.from} ({before}) and {.to} ({after})\n]"
     "[.more:  and at {.more} more places\n]]"
-    "[.numbers:\n{.numbers}]";
-
-static const char one_case[] =
-    "[case:\nOutcome: [outcome=pending:not computed yet|{outcome}]\n"
-    "[.failures*:  {reason}: {text}\n][.step:  in the step from {.step} s\n]"
-    "[.touching:  touching     {.touching}\n]"
-    "[.done:[.times*:  {what%-12s} {time} s\n][.fallen*:  fell by      {cause}\n]"
-    "[.final_state:  final state  {.final_state}\n]"
-    "\nNumbers\n[.single*:  {answer%-18s} {is}[unit: {unit}]\n]]]";
-
-static const char tail[] =
+    "[.numbers:\n{.numbers}]"
+    "]"
     "[through_ground:[cases:\nThrough the ground, with a contact that ground.contacts leaves out: "
     "{cases} case{cases#s}, of which {judged} {.judged}\n]]"
     "[.residuals:\nLargest residuals: [.residuals*, :{law} {largest%.3g}[unit: {unit}]]\n]"
@@ -102,18 +94,6 @@ static bool collect(struct summary *summary, struct table *csv)
            summary_numbers(summary) && summary_cost(summary);
 }
 
-static bool print(const struct summary *summary, const struct table *csv, enum table_form form)
-{
-    const bool single = summary->r->single;
-    if (form == TABLE_AS_CSV)
-        return table_write_csv(csv, stdout);
-    if (form == TABLE_AS_JSON)
-        return say_facts(json_incref(summary->facts), true, NULL, stdout);
-    return say(summary->facts, head, stdout) && (single || say(summary->facts, outcomes, stdout)) &&
-           say(summary->facts, single ? one_case : sweep, stdout) &&
-           say(summary->facts, tail, stdout);
-}
-
 static int summarise(struct report *report, const struct results *r, stance_message *message)
 {
     struct scenario s;
@@ -127,7 +107,9 @@ static int summarise(struct report *report, const struct results *r, stance_mess
     statistics_count(r, -1, 0, &summary.counts);
     summary.known =
         summary.counts.done == 0 || summary.counts.kind[RESULTS_DONE] < summary.counts.done;
-    const bool good = collect(&summary, &csv) && print(&summary, &csv, report->form);
+    bool good = collect(&summary, &csv);
+    if (good)
+        good = table_say(report->form, json_incref(summary.facts), text, &csv);
     table_free(&csv);
     json_decref(summary.facts);
     if (readable)

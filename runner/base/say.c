@@ -164,14 +164,6 @@ static void put_text(const struct scope *scope, const char *text, const char *en
     }
 }
 
-bool say(json_t *facts, const char *text, FILE *out)
-{
-    const struct scope scope = {NULL, NULL, facts};
-    if (facts)
-        put_text(&scope, text, text + strlen(text), out);
-    return facts && !ferror(out);
-}
-
 void say_add(json_t *facts, const char *key, const char *format, ...)
 {
     va_list arguments;
@@ -205,13 +197,14 @@ static void drop_hidden(json_t *of)
 
 bool say_facts(json_t *facts, bool json, const char *text, FILE *out)
 {
+    const struct scope scope = {NULL, NULL, facts};
     bool good = facts != NULL;
     if (json) {
         drop_hidden(facts);
         good = good && json_dumpf(facts, out, JSON_INDENT(2) | JSON_REAL_PRECISION(17)) == 0;
         putc('\n', out);
-    } else {
-        good = say(facts, text, out);
+    } else if (good) {
+        put_text(&scope, text, text + strlen(text), out);
     }
     json_decref(facts);
     return good && !ferror(out);

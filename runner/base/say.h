@@ -9,13 +9,13 @@
  *   {PATH#s}       "s", unless the value is 1
  *   [PATH:TEXT|OTHERWISE]   TEXT where the value there is neither null, false, 0 nor empty, else
  *                  OTHERWISE, which may be left out. Of an object, its members are facts in TEXT.
- *   [!PATH:...], [PATH=...:...], [PATH<...:...], [PATH>...:...]   the contrary; where it is, is
- * less or more than a number, or is a word [PATH*BETWEEN:TEXT]   TEXT for each item of a list or
- * member of an object, BETWEEN after all but the last: {value}, {i} from 0, of a member {key}, of
- * an object its members
+ *   [!PATH:...]    the contrary; [PATH=...:...], [PATH<...:...], [PATH>...:...] where it is, is
+ *                  less or more than a number, or is a word
+ *   [PATH*BETWEEN:TEXT]   TEXT for each item of a list or member of an object, BETWEEN after all
+ *                  but the last: {value}, {i} from 0, of a member {key}, of an object its members
  *
  * PATH is names with '/' between them, and numbers of items; the first name is looked for in the
- * facts nearest by. After a backslash each letter stands for itself.
+ * facts nearest by. After a backslash each letter stands for itself, as "|" has to in brackets.
  */
 #ifndef STANCE_BASE_SAY_H
 #define STANCE_BASE_SAY_H
@@ -28,9 +28,8 @@
 __attribute__((format(printf, 3, 4))) void say_add(json_t *facts, const char *key,
                                                    const char *format, ...);
 
-/* Each returns false without facts (no memory), or when the output fails. */
-bool say(json_t *facts, const char *text, FILE *out);
-/* As JSON, or the text; releases the facts. */
+/* As JSON, or the text; releases the facts. False without them (no memory), or when the output
+ * fails. */
 bool say_facts(json_t *facts, bool json, const char *text, FILE *out);
 
 #endif
