@@ -336,9 +336,11 @@ json_t *design_facts(const struct design_report *r)
     const double slope = r->model[STANCE_ROBOT_SLOPE], gravity = r->model[STANCE_ROBOT_GRAVITY];
     json_t *const states = json_array(), *const inputs = json_array();
     char name[SCENARIO_NAME];
+    /* the name of a file need not be UTF-8: JSON has null then */
     json_t *const facts = json_pack(
-        "{s:s, s:s, s:s, s:s, s:b, s:s, s:s, s:s}", "scenario", s->file, "title", s->title, "scene",
-        s->scene->name, ".name", s->title[0] ? s->title : s->name, ".swept", s->axes > 0, ".units",
+        "{s:o?, s:o, s:s, s:s, s:o, s:b, s:s, s:s, s:s}", "scenario", json_string(s->file), ".file",
+        json_string_nocheck(s->file), "title", s->title, "scene", s->scene->name, ".name",
+        json_string_nocheck(s->title[0] ? s->title : s->name), ".swept", s->axes > 0, ".units",
         state_units(r), ".inputs", input_units(r), ".absent", r->allowed.absent.text);
     put_robot(r, facts);
     for (int i = 0; i < r->states; i++)
@@ -361,7 +363,7 @@ json_t *design_facts(const struct design_report *r)
 }
 
 const char design_text[] =
-    "{.name} ({scenario})\n"
+    "{.name} ({.file})\n"
     "[.swept:This is the scenario without its sweep: the base values, not those along the axes.\n]"
     "\nRobot that the design believes in\n"
     "[.robot*:  {name%-*s} {is%10.6g}[unit: {unit}]\n]"

@@ -56,9 +56,10 @@ json_t *design_selections(const struct scenario *s, stance_message *singular,
                                         "best_condition", report[p].best, "damped_share",
                                         report[p].ill_conditioned, "singular", report[p].singular));
     }
-    return json_pack("{s:s, s:s, s:s, s:o, s:s, s:i, s:f}", "scenario", s->name, "title", s->title,
-                     "scene", s->scene->name, "selections", selections, ".coordinates",
-                     "coordinates", ".width", widest, ".ill", STANCE_ILL_CONDITIONED);
+    return json_pack("{s:o?, s:s, s:s, s:o, s:s, s:i, s:f}", "scenario", json_string(s->name),
+                     "title", s->title, "scene", s->scene->name, "selections", selections,
+                     ".coordinates", "coordinates", ".width", widest, ".ill",
+                     STANCE_ILL_CONDITIONED);
 }
 
 const char design_selections_text[] =
