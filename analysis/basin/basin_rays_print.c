@@ -68,26 +68,17 @@ static json_t *nearest_json(const struct basin_rays *rays, const struct basin_ne
         {".off", as_number(0.5 * (nearest->end.high - nearest->end.low))}, {".at", as_tree(told)});
 }
 
-/* The ray that ends first. */
-static json_t *first_at(const struct basin_rays *rays, size_t point, const struct basin_ray *ray)
-{
-    json_t *const at = json_object();
-    for (size_t k = 0; k < rays->sample.factors; k++) {
-        const struct results_axis *of = rays->sample.factor[k].of;
-        table_put(at, of->name, as_number(of->value[point] * basin_ray_middle(ray)));
-    }
-    return at;
-}
-
-static json_t *first_facts(const struct basin_rays *rays, size_t point, const struct basin_ray *ray)
+/* The ray that ends first, for people, and where it ends: {path: offset}. */
+static json_t *first_facts(const struct basin_rays *rays, size_t point, const struct basin_ray *ray,
+                           json_t *by_name)
 {
     json_t *const at = json_array();
     for (size_t k = 0; k < rays->sample.factors; k++) {
         const struct results_axis *of = rays->sample.factor[k].of;
-        const double along = of->value[point];
+        const double along = of->value[point], is = along * basin_ray_middle(ray);
+        table_put(by_name, of->name, as_number(is));
         json_array_append_new(
-            at, TABLE_OBJECT({"name", as_text(of->name)},
-                             {"is", as_number(along * basin_ray_middle(ray))},
+            at, TABLE_OBJECT({"name", as_text(of->name)}, {"is", as_number(is)},
                              {"off", as_number(fabs(along) * 0.5 * (ray->high - ray->low))},
                              {"unit", as_text(of->unit)}));
     }
@@ -105,6 +96,10 @@ static bool make_table(struct table *t, const struct basin_rays *rays)
         const struct basin_ray *first =
             reach.count[RAY_CROSSES] > 0 ? ray_of(rays, row, reach.first) : NULL;
         const struct basin_nearest *nearest = nearest_of(rays, row);
+        json_t *const at = first ? json_object() : NULL, *const told =
+                                                             first ? first_facts(rays, reach.first,
+                                                                                 first, at)
+                                                                   : NULL;
         add_parameters(t, rays, row);
         add_end(t, rays, reach.first, first);
         TABLE_FACTS(
@@ -129,9 +124,8 @@ static bool make_table(struct table *t, const struct basin_rays *rays)
             {{.name = "first_high", .hidden = TABLE_NO_JSON}, as_number(first ? first->high : NAN)},
             {{.name = "first_bracket", .hidden = TABLE_NO_CSV},
              as_tree(first ? json_pack("[f,f]", first->low, first->high) : NULL)},
-            {{.name = "first_at", .hidden = TABLE_NO_CSV},
-             as_tree(first ? first_at(rays, reach.first, first) : NULL)},
-            {{.name = ".first"}, as_tree(first ? first_facts(rays, reach.first, first) : NULL)});
+            {{.name = "first_at", .hidden = TABLE_NO_CSV}, as_tree(at)},
+            {{.name = ".first"}, as_tree(told)});
         table_end_row(t);
     }
     return true;
