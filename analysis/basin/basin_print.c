@@ -236,11 +236,9 @@ static void add_cut(const struct basin *b, json_t *facts)
         pending += b->row[k].pending;
     }
     faces_text(&b->faces, cut, text, sizeof text);
-    json_object_update_new(facts, TABLE_OBJECT({".cut", as_text(cut ? text : NULL)},
-                                               {".uncut", as_truth(!cut && b->faces.starts > 0)},
-                                               {".failed", as_whole(failed)},
-                                               {".pending", as_whole(pending)},
-                                               {".unknown", as_whole(failed + pending)}));
+    TABLE_PUT(facts, {".cut", as_text(cut ? text : NULL)},
+              {".uncut", as_truth(!cut && b->faces.starts > 0)}, {".failed", as_whole(failed)},
+              {".pending", as_whole(pending)}, {".unknown", as_whole(failed + pending)});
 }
 
 /* In units of what distances are, and where the nearest end is. */

@@ -13,9 +13,8 @@
 
 json_t *basin_titled(const struct results *r, json_t *facts)
 {
-    json_object_update_new(facts, TABLE_OBJECT({".name", as_text(r->title[0] ? r->title : r->name)},
-                                               {".file", as_text(r->file)},
-                                               {".cases", as_whole(r->cases)}));
+    TABLE_PUT(facts, {".name", as_text(r->title[0] ? r->title : r->name)},
+              {".file", as_text(r->file)}, {".cases", as_whole(r->cases)});
     return facts;
 }
 
@@ -174,10 +173,8 @@ bool basin_print_loss(const struct results *r, const char *path, enum results_ki
         results_point(r, loss.first, point);
         results_case_text(r, loss.first, where, sizeof where);
         at = table_at(r, NULL, point);
-        json_object_update_new(
-            facts,
-            TABLE_OBJECT({".where", as_text(where)}, {".count", as_whole(loss.lost[loss.at])},
-                         {".became", as_text(results_kind_names[r->kind[loss.first]])}));
+        TABLE_PUT(facts, {".where", as_text(where)}, {".count", as_whole(loss.lost[loss.at])},
+                  {".became", as_text(results_kind_names[r->kind[loss.first]])});
     }
     table_put(facts, "first_at", as_tree(at));
     free(loss.lost);

@@ -55,9 +55,8 @@ static json_t *nearest_json(const struct basin_rays *rays, const struct basin_ne
         const struct results_axis *const axis = rays->sample.factor[k].of;
         table_put(at, axis->name, as_number(nearest->at[k]));
         table_put(of, axis->name, as_number(nearest->of[k]));
-        json_array_append_new(
-            told, TABLE_OBJECT({"name", as_text(axis->name)}, {"is", as_number(nearest->at[k])},
-                               {"unit", as_text(axis->unit)}, {"of", as_number(nearest->of[k])}));
+        TABLE_APPEND(told, {"name", as_text(axis->name)}, {"is", as_number(nearest->at[k])},
+                     {"unit", as_text(axis->unit)}, {"of", as_number(nearest->of[k])});
     }
     return TABLE_OBJECT(
         {"scale", as_number(nearest_scale(nearest))},
@@ -77,10 +76,9 @@ static json_t *first_facts(const struct basin_rays *rays, size_t point, const st
         const struct results_axis *of = rays->sample.factor[k].of;
         const double along = of->value[point], is = along * basin_ray_middle(ray);
         table_put(by_name, of->name, as_number(is));
-        json_array_append_new(
-            at, TABLE_OBJECT({"name", as_text(of->name)}, {"is", as_number(is)},
-                             {"off", as_number(fabs(along) * 0.5 * (ray->high - ray->low))},
-                             {"unit", as_text(of->unit)}));
+        TABLE_APPEND(at, {"name", as_text(of->name)}, {"is", as_number(is)},
+                     {"off", as_number(fabs(along) * 0.5 * (ray->high - ray->low))},
+                     {"unit", as_text(of->unit)});
     }
     return TABLE_OBJECT({"ray", as_whole(point)}, {"low", as_number(ray->low)},
                         {"high", as_number(ray->high)},

@@ -149,12 +149,10 @@ static void add_sweep(const struct ranges *r, json_t *facts)
     for (int a = 0; a < r->s->axes; a++) {
         const struct scenario_axis *const axis = &r->s->axis[a];
         if (axis->offset[0] == offsetof(struct scenario_values, offset_scale))
-            json_array_append_new(
-                scales,
-                TABLE_OBJECT({"path", as_text(axis->path[0])},
-                             {"from", as_number(scenario_axis_value(axis, 0, 0))},
-                             {"to", as_number(scenario_axis_value(axis, axis->count - 1, 0))},
-                             {"count", as_whole(axis->count)}));
+            TABLE_APPEND(scales, {"path", as_text(axis->path[0])},
+                         {"from", as_number(scenario_axis_value(axis, 0, 0))},
+                         {"to", as_number(scenario_axis_value(axis, axis->count - 1, 0))},
+                         {"count", as_whole(axis->count)});
     }
     for (int a = 0; a < r->axes; a++)
         sampled += r->axis[a].sampled;

@@ -68,14 +68,12 @@ static json_t *study_facts(const struct accuracy *a, const struct results *r)
         add_row(&t, a, k);
     for (size_t k = 0; k < a->orders; k++) {
         const struct accuracy_order *order = &a->order[k];
-        json_array_append_new(
-            orders,
-            TABLE_OBJECT({"method", as_text(order->method->name)},
-                         {"of", as_text(order->by_tolerance ? "tolerance" : "step")},
-                         {"position", as_number(order->position)},
-                         {"velocity", as_number(order->velocity)}, {"from", as_number(order->from)},
-                         {"to", as_number(order->to)}, {"rows", as_whole(order->rows)},
-                         {".known", as_truth(!isnan(order->position))}));
+        TABLE_APPEND(orders, {"method", as_text(order->method->name)},
+                     {"of", as_text(order->by_tolerance ? "tolerance" : "step")},
+                     {"position", as_number(order->position)},
+                     {"velocity", as_number(order->velocity)}, {"from", as_number(order->from)},
+                     {"to", as_number(order->to)}, {"rows", as_whole(order->rows)},
+                     {".known", as_truth(!isnan(order->position))});
     }
     json_t *const facts =
         TABLE_OBJECT({"name", as_text(r->name)}, {"title", as_text(r->title)},

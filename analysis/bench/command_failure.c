@@ -52,9 +52,8 @@ static json_t *row_facts(const struct failure *f, size_t k)
     }
     json_t *const sides = f->line.axis > 0 ? json_array() : NULL;
     for (int side = 0; sides && side < 2; side++)
-        json_array_append_new(sides, TABLE_OBJECT({"failed", as_whole(row->bad[side])},
-                                                  {"of", as_whole(row->side[side])},
-                                                  {"stand", as_whole(row->stands[side])}));
+        TABLE_APPEND(sides, {"failed", as_whole(row->bad[side])}, {"of", as_whole(row->side[side])},
+                     {"stand", as_whole(row->stands[side])});
     return TABLE_OBJECT({"method", as_text(row->method->name)},
                         {".name", as_text(failure_row_name(row, name))},
                         {"tolerance", as_number(row->tolerance)}, {"cases", as_tree(shares)},
@@ -87,9 +86,8 @@ static json_t *study_facts(const struct failure *f, const struct results *r)
         json_t *const values = json_array();
         for (size_t i = 0; i < axis->count; i++)
             table_append(values, as_place(axis, i));
-        json_array_append_new(
-            axes, TABLE_OBJECT({"name", as_text(axis->name)}, {"unit", as_text(axis->unit)},
-                               {"values", as_tree(values)}, {".count", as_whole(axis->count)}));
+        TABLE_APPEND(axes, {"name", as_text(axis->name)}, {"unit", as_text(axis->unit)},
+                     {"values", as_tree(values)}, {".count", as_whole(axis->count)});
     }
     for (size_t k = 0; k < f->rows; k++)
         json_array_append_new(rows, row_facts(f, k));

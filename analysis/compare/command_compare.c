@@ -181,11 +181,10 @@ static bool print_labels(const struct results r[2], const struct label_compariso
     for (int k = 0; k < c->shown; k++) {
         const uint64_t i = c->place[k];
         results_case_text(&r[0], i, where, sizeof where);
-        json_array_append_new(
-            first, TABLE_OBJECT({"index", as_whole(i)}, {"at", as_tree(point_facts(&r[0], i))},
-                                {"values", as_tree(table_texts(results_kind_names[r[0].kind[i]],
-                                                               results_kind_names[r[1].kind[i]]))},
-                                {".where", as_text(where)}));
+        TABLE_APPEND(first, {"index", as_whole(i)}, {"at", as_tree(point_facts(&r[0], i))},
+                     {"values", as_tree(table_texts(results_kind_names[r[0].kind[i]],
+                                                    results_kind_names[r[1].kind[i]]))},
+                     {".where", as_text(where)});
     }
     json_t *const facts = TABLE_OBJECT(
         {"files", as_tree(table_texts(r[0].file, r[1].file))}, {"compared", as_whole(c->compared)},
@@ -195,8 +194,7 @@ static bool print_labels(const struct results r[2], const struct label_compariso
     add_labels(&became, c);
     json_t *const all =
         table_show(facts, "became", &became, "first second cases share share_of_first", 0);
-    json_object_update_new(
-        all, TABLE_OBJECT({"domain", as_tree(domain_facts(c))}, {"first", as_tree(first)}));
+    TABLE_PUT(all, {"domain", as_tree(domain_facts(c))}, {"first", as_tree(first)});
     return table_say(form, all, labels_text, &became);
 }
 

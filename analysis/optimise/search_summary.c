@@ -181,11 +181,9 @@ static json_t *chosen(const struct search_study *study)
     search_name(study, (size_t)f->chosen, name, sizeof name);
     json_t *const facts = TABLE_OBJECT({"which", as_text(name)});
     add_counts(study, facts);
-    json_object_update_new(facts, TABLE_OBJECT({"gain", as_number(gain.share)},
-                                               {"gain_low", as_number(gain.interval.low)},
-                                               {"gain_high", as_number(gain.interval.high)},
-                                               {"won", as_whole(gain.won)},
-                                               {"lost", as_whole(gain.lost)}));
+    TABLE_PUT(facts, {"gain", as_number(gain.share)}, {"gain_low", as_number(gain.interval.low)},
+              {"gain_high", as_number(gain.interval.high)}, {"won", as_whole(gain.won)},
+              {"lost", as_whole(gain.lost)});
     add_values(study, facts);
     add_poles(study, facts);
     if (isinf(critical))
@@ -226,13 +224,11 @@ static bool add_tables(const struct search_study *study, json_t *facts)
              study->plain ? "" : " objective", apart ? " choice" : "");
     good = give(facts, "confirmed", study, search_table_confirmed, view) && good;
     const double allowed = study->done ? search_limit(study, (size_t)f->chosen, &where) : NAN;
-    json_object_update_new(
-        facts,
-        TABLE_OBJECT({"linear_limit", as_number(allowed)}, {"linear_limit_in", as_text(where)},
-                     {"linear_limit_glued", as_truth(study->glued)},
-                     {".limit", as_tree(study->done ? limit(study) : NULL)},
-                     {".limited", as_truth(limited)}, {".apart", as_truth(apart)},
-                     {".several", as_truth(circumstances > 1)}));
+    TABLE_PUT(facts, {"linear_limit", as_number(allowed)}, {"linear_limit_in", as_text(where)},
+              {"linear_limit_glued", as_truth(study->glued)},
+              {".limit", as_tree(study->done ? limit(study) : NULL)},
+              {".limited", as_truth(limited)}, {".apart", as_truth(apart)},
+              {".several", as_truth(circumstances > 1)});
     snprintf(view, sizeof view,
              "circumstance first chosen chosen_low chosen_high gain gain_low gain_high%s "
              "critical_chosen",
@@ -249,23 +245,20 @@ static bool add_facts(const struct search_study *study, json_t *facts)
     char aim[600], time[32];
     search_aim(study, aim, sizeof aim);
     text_of_seconds(time, sizeof time, f->seconds);
-    json_object_update_new(
-        facts,
-        TABLE_OBJECT(
-            {"file", as_text(study->file)}, {"title", as_text(f->title)},
-            {"revision", as_text(f->revision)}, {"date", as_text(f->date)},
-            {"seconds", as_number(f->seconds)}, {"finished", as_truth(f->finished)},
-            {"note", as_text(f->finished ? f->note : NULL)}, {"generations", as_whole(last + 1)},
-            {"most_generations", as_whole((uint64_t)f->most_generations)},
-            {"candidates", as_whole(f->length[SEARCH_CANDIDATE])},
-            {"best", as_whole((uint64_t)best)}, {"best_objective", as_number(f->objective[best])},
-            {"maximised", as_text(aim)},
-            {"varied", as_tree(table_list((const char *const *)f->parameter, n))},
-            {"starts_over",
-             as_tree(table_list((const char *const *)f->varied, f->length[SEARCH_VARIED]))},
-            {".name", as_text(f->title[0] ? f->title : study->name)}, {".time", as_text(time)},
-            {".numbers", as_whole(n)}, {".varied", as_tree(families(study))},
-            {".starts", as_whole((uint64_t)f->starts[last])}, {".done", as_truth(study->done)}));
+    TABLE_PUT(facts, {"file", as_text(study->file)}, {"title", as_text(f->title)},
+              {"revision", as_text(f->revision)}, {"date", as_text(f->date)},
+              {"seconds", as_number(f->seconds)}, {"finished", as_truth(f->finished)},
+              {"note", as_text(f->finished ? f->note : NULL)}, {"generations", as_whole(last + 1)},
+              {"most_generations", as_whole((uint64_t)f->most_generations)},
+              {"candidates", as_whole(f->length[SEARCH_CANDIDATE])},
+              {"best", as_whole((uint64_t)best)}, {"best_objective", as_number(f->objective[best])},
+              {"maximised", as_text(aim)},
+              {"varied", as_tree(table_list((const char *const *)f->parameter, n))},
+              {"starts_over",
+               as_tree(table_list((const char *const *)f->varied, f->length[SEARCH_VARIED]))},
+              {".name", as_text(f->title[0] ? f->title : study->name)}, {".time", as_text(time)},
+              {".numbers", as_whole(n)}, {".varied", as_tree(families(study))},
+              {".starts", as_whole((uint64_t)f->starts[last])}, {".done", as_truth(study->done)});
     say_add(facts, ".best", study->plain ? "%.2f %%" : "%.6g",
             (study->plain ? 100 : 1) * f->objective[best]);
     add_starts(f, facts);

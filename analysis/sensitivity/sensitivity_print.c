@@ -114,12 +114,11 @@ static void add_pairs(const struct sensitivity_study *study, const struct sensit
             any = any || v->low > 0;
             sensitivity_factor_text(study, i, one, sizeof one);
             sensitivity_factor_text(study, j, other, sizeof other);
-            json_object_update_new(
-                entry,
-                TABLE_OBJECT({"paths", as_tree(table_texts(sensitivity_factor_path(study, i, 0),
-                                                           sensitivity_factor_path(study, j, 0)))},
-                             {".above", as_truth(v->low > 0)}, {".one", as_text(one)},
-                             {".other", as_text(other)}));
+            TABLE_PUT(entry,
+                      {"paths", as_tree(table_texts(sensitivity_factor_path(study, i, 0),
+                                                    sensitivity_factor_path(study, j, 0)))},
+                      {".above", as_truth(v->low > 0)}, {".one", as_text(one)},
+                      {".other", as_text(other)});
             json_array_append_new(list, entry);
         }
     }

@@ -3,7 +3,6 @@
 
 #include "analysis/statistics/faces.h"
 #include "analysis/statistics/statistics.h"
-#include "runner/base/words.h"
 #include "runner/store/results_rows.h"
 
 #include <math.h>
@@ -36,7 +35,8 @@ static json_t *axis_facts(const struct results_axis *axis)
 /* What a sample varies: its least value and its largest. */
 static json_t *varied_facts(const struct results_varied *v)
 {
-    char name[128], first[128], last[128], range[500];
+    json_t *const facts = json_object();
+    char first[128], last[128];
     size_t low = 0, high = 0;
     for (size_t i = 1; i < v->of.count; i++) {
         low = v->of.value[i] < v->of.value[low] ? i : low;
@@ -44,16 +44,15 @@ static json_t *varied_facts(const struct results_varied *v)
     }
     results_varied_text(v, low, false, first, sizeof first);
     results_varied_text(v, high, true, last, sizeof last);
-    snprintf(name, sizeof name, "  %s", v->of.name);
-    snprintf(range, sizeof range, "%s ... %s%s%s", first, last, v->of.text[0] ? "; " : "",
-             v->of.text);
-    return TABLE_OBJECT({"path", as_text(name)}, {"range", as_text(range)});
+    say_add(facts, "path", "  %s", v->of.name);
+    say_add(facts, "range", "%s ... %s%s%s", first, last, v->of.text[0] ? "; " : "", v->of.text);
+    return facts;
 }
 
 static json_t *axes_facts(const struct results *r, size_t *width)
 {
     json_t *const list = json_array();
-    char first[128], last[128], range[500];
+    char first[128], last[128];
     for (int a = 0; !r->single && a < r->axes; a++) {
         const struct results_axis *const axis = &r->axis[a];
         json_t *const facts = axis_facts(axis), *const varied = json_array();
@@ -65,11 +64,10 @@ static json_t *axes_facts(const struct results *r, size_t *width)
             json_array_append_new(varied, varied_facts(&r->vary[k]));
         }
         if (a == r->sample)
-            snprintf(range, sizeof range, "%zu points, %s", axis->count, r->method);
+            say_add(facts, ".range", "%zu points, %s", axis->count, r->method);
         else
-            snprintf(range, sizeof range, "%s ... %s, %zu value%s%s%s%s", first, last, axis->count,
-                     axis->count == 1 ? "" : "s", order, axis->text[0] ? "; " : "", axis->text);
-        table_put(facts, ".range", as_text(range));
+            say_add(facts, ".range", "%s ... %s, %zu value%s%s%s%s", first, last, axis->count,
+                    axis->count == 1 ? "" : "s", order, axis->text[0] ? "; " : "", axis->text);
         json_object_set_new(facts, ".varied", varied);
         json_array_append_new(list, facts);
     }
@@ -85,19 +83,16 @@ bool summary_head(const struct summary *summary)
     if (!ancestry_read(r, &ancestry, summary->message))
         return false;
     for (size_t k = 0; k < ancestry.scenarios; k++)
-        json_array_append_new(scenarios, TABLE_OBJECT({"date", as_text(ancestry.date[k])},
-                                                      {"done", as_whole(ancestry.done[k])}));
-    json_object_update_new(
-        facts,
-        TABLE_OBJECT(
-            {"file", as_text(r->file)}, {"title", as_text(r->title)},
-            {"version", as_text(r->version)}, {"revision", as_text(r->revision)},
-            {"date", as_text(r->date)}, {"ranks", as_whole((uint64_t)r->ranks)},
-            {".name", as_text(r->title[0] ? r->title : r->name)},
-            {".sampled", as_truth(r->sample >= 0)}, {".shards", as_whole(r->shard.count)},
-            {".judged", as_text(results_kind_names[summary->judged])},
-            {".Judged", as_text(summary->judged == RESULTS_RESTED ? "Rested" : "Stabilised")},
-            {".scenarios", as_whole(ancestry.scenarios)}));
+        TABLE_APPEND(scenarios, {"date", as_text(ancestry.date[k])},
+                     {"done", as_whole(ancestry.done[k])});
+    TABLE_PUT(facts, {"file", as_text(r->file)}, {"title", as_text(r->title)},
+              {"version", as_text(r->version)}, {"revision", as_text(r->revision)},
+              {"date", as_text(r->date)}, {"ranks", as_whole((uint64_t)r->ranks)},
+              {".name", as_text(r->title[0] ? r->title : r->name)},
+              {".sampled", as_truth(r->sample >= 0)}, {".shards", as_whole(r->shard.count)},
+              {".judged", as_text(results_kind_names[summary->judged])},
+              {".Judged", as_text(summary->judged == RESULTS_RESTED ? "Rested" : "Stabilised")},
+              {".scenarios", as_whole(ancestry.scenarios)});
     if (r->shard.count > 0 && r->shard.count <= r->cases) {
         const struct shard shard = shard_of(&r->shard, r->cases);
         table_put(facts, ".shard",
@@ -170,14 +165,12 @@ static void add_failures(const struct summary *summary)
         const bool known = f < STANCE_FAILURE_COUNT;
         const char *const name = known ? stance_failure_name[f] : "unknown";
         table_put(reasons, name, as_whole(failures[f]));
-        json_array_append_new(
-            told, TABLE_OBJECT({"count", as_whole(failures[f])}, {"reason", as_text(name)},
-                               {"text", as_text(known && f > 0 ? stance_failure_text[f]
-                                                               : "the file does not say why")}));
+        TABLE_APPEND(told, {"count", as_whole(failures[f])}, {"reason", as_text(name)},
+                     {"text", as_text(known && f > 0 ? stance_failure_text[f]
+                                                     : "the file does not say why")});
     }
-    json_object_update_new(summary->facts, TABLE_OBJECT({"failures", as_tree(reasons)},
-                                                        {".failures", as_tree(told)},
-                                                        {".first_failed", as_whole(first)}));
+    TABLE_PUT(summary->facts, {"failures", as_tree(reasons)}, {".failures", as_tree(told)},
+              {".first_failed", as_whole(first)});
 }
 
 /* By what cases fell, as the file names it. */
@@ -201,15 +194,12 @@ static bool add_causes(const struct summary *summary)
         if (k == 0 || fallen[k] == 0)
             continue;
         table_put(causes, cause, as_whole(fallen[k]));
-        json_array_append_new(
-            told,
-            TABLE_OBJECT({"cause", as_text(cause)}, {"count", as_whole(fallen[k])},
-                         {"share", as_number((double)fallen[k] / (double)summary->counts.done)}));
+        TABLE_APPEND(told, {"cause", as_text(cause)}, {"count", as_whole(fallen[k])},
+                     {"share", as_number((double)fallen[k] / (double)summary->counts.done)});
     }
     free(values);
     results_column_close(&column);
-    json_object_update_new(
-        summary->facts, TABLE_OBJECT({"fall_causes", as_tree(causes)}, {".fallen", as_tree(told)}));
+    TABLE_PUT(summary->facts, {"fall_causes", as_tree(causes)}, {".fallen", as_tree(told)});
     return good;
 }
 
@@ -226,13 +216,11 @@ static void add_cut(const struct summary *summary)
     const char *const whole = counts->kind[RESULTS_STABILISED] == counts->done ? "domain"
                               : counts->kind[RESULTS_FELL] == counts->done     ? "none"
                                                                                : NULL;
-    json_object_update_new(
-        summary->facts,
-        TABLE_OBJECT({"cut", as_tree(faces_json(&faces, cut))}, {".cut", as_text(text)},
-                     {".uncut", as_text(!starts || counts->kind[summary->judged] == 0 ? NULL
-                                        : counts->done < summary->r->cases ? "not known to be cut"
-                                                                           : "not cut")},
-                     {".whole", as_text(starts && many ? whole : NULL)}));
+    TABLE_PUT(summary->facts, {"cut", as_tree(faces_json(&faces, cut))}, {".cut", as_text(text)},
+              {".uncut", as_text(!starts || counts->kind[summary->judged] == 0 ? NULL
+                                 : counts->done < summary->r->cases ? "not known to be cut"
+                                                                    : "not cut")},
+              {".whole", as_text(starts && many ? whole : NULL)});
 }
 
 bool summary_outcomes(struct summary *summary)
@@ -264,7 +252,7 @@ bool summary_outcomes(struct summary *summary)
 /* ---- a single case ------------------------------------------------------------------------ */
 
 /* Contacts on the ground, stops reached, where it failed: "foot1, foot2". */
-static void find_touching(const struct summary *summary, char *text, size_t size)
+static void add_touching(const struct summary *summary, json_t *facts)
 {
     const struct results *const r = summary->r;
     const struct scenario *const s = summary->s;
@@ -280,28 +268,28 @@ static void find_touching(const struct summary *summary, char *text, size_t size
     for (int c = 0; c < s->scene->contacts; c++) {
         const bool stop = s->scene->grip[c] < 0;
         if (gap[c] <= TOUCHES && (stop || values.contacts >> c & 1))
-            words_add(text, size, "%s%s", text[0] ? ", " : "", s->scene->contact_name[c]);
+            say_add(facts, ".touching", "%s%s", json_object_get(facts, ".touching") ? ", " : "",
+                    s->scene->contact_name[c]);
     }
 }
 
 /* {name: value}, and for people in two lines. */
 static void add_final_state(const struct results *r, bool done, json_t *facts)
 {
-    char name[SCENARIO_MAX_STATES][SCENARIO_NAME], text[2048] = "";
+    char name[SCENARIO_MAX_STATES][SCENARIO_NAME];
     double state[SCENARIO_MAX_STATES];
     json_t *const final = json_object();
     size_t n = results_words(r, "state", name, SCENARIO_MAX_STATES);
     n = done && results_numbers(r, "final_state", state, SCENARIO_MAX_STATES) == n ? n : 0;
     for (size_t i = 0; i < n; i++) {
         table_put(final, name[i], as_number(state[i]));
-        words_add(text, sizeof text, "%s%s %.6g",
-                  i == 0       ? ""
-                  : i == n / 2 ? ",\n               "
-                               : ", ",
-                  name[i], state[i]);
+        say_add(facts, ".final_state", "%s%s %.6g",
+                i == 0       ? ""
+                : i == n / 2 ? ",\n               "
+                             : ", ",
+                name[i], state[i]);
     }
     table_put(facts, "final_state", as_tree(final));
-    table_put(facts, ".final_state", as_text(text));
 }
 
 bool summary_case(const struct summary *summary)
@@ -315,7 +303,6 @@ bool summary_case(const struct summary *summary)
                                            {"index", as_whole(r->index)},
                                            {"outcome", as_text(results_kind_names[r->kind[0]])});
     const json_t *const reasons = json_object_get(summary->facts, ".failures");
-    char touching[STANCE_MAX_CONTACTS * (STANCE_NAME + 2)] = "";
     table_put(facts, "failure",
               failed && r->failure ? as_text(json_string_value(
                                          json_object_get(json_array_get(reasons, 0), "reason")))
@@ -328,13 +315,11 @@ bool summary_case(const struct summary *summary)
             table_put(facts, ".step", as_number(time));
         table_put(facts, times[k][0], as_number(done ? time : NAN));
         if (done && !isnan(time))
-            json_array_append_new(
-                told, TABLE_OBJECT({"what", as_text(times[k][1])}, {"time", as_number(time)}));
+            TABLE_APPEND(told, {"what", as_text(times[k][1])}, {"time", as_number(time)});
     }
     if (failed)
-        find_touching(summary, touching, sizeof touching);
+        add_touching(summary, facts);
     table_put(facts, ".times", as_tree(told));
-    table_put(facts, ".touching", as_text(touching));
     table_put(facts, ".done", as_truth(done));
     add_final_state(r, done, facts);
     table_put(summary->facts, "case", as_tree(facts));
@@ -432,14 +417,12 @@ bool summary_numbers(const struct summary *summary)
         if (!row->residual && n.n > 0 && !idle)
             add_number(&seen, row, of_word, &n);
         if (row->residual && n.n > 0)
-            json_array_append_new(residuals, TABLE_OBJECT({"law", as_text(row->residual)},
-                                                          {"largest", as_number(n.high)},
-                                                          {"unit", as_text(row->unit)}));
+            TABLE_APPEND(residuals, {"law", as_text(row->residual)}, {"largest", as_number(n.high)},
+                         {"unit", as_text(row->unit)});
         if (r->single && !row->residual && !strstr(row->name, "_time") &&
             results_numbers(r, row->name, &one, 1) == 1 && !isnan(one))
-            json_array_append_new(single, TABLE_OBJECT({"answer", as_text(row->name)},
-                                                       {"is", as_number(one)},
-                                                       {"unit", as_text(row->unit)}));
+            TABLE_APPEND(single, {"answer", as_text(row->name)}, {"is", as_number(one)},
+                         {"unit", as_text(row->unit)});
     }
     table_put(summary->facts, ".residuals", as_tree(residuals));
     table_put(summary->facts, ".single", as_tree(single));
@@ -487,9 +470,8 @@ static bool add_count(const struct summary *summary, const struct count *of, jso
     if (of->cases)
         table_put(cost, of->cases, as_whole(cases));
     if (of->text && (of->trouble || sum > 0))
-        json_array_append_new(told,
-                              TABLE_OBJECT({"text", as_text(of->text)}, {"sum", as_number(sum)},
-                                           {"cases", as_whole(cases)}));
+        TABLE_APPEND(told, {"text", as_text(of->text)}, {"sum", as_number(sum)},
+                     {"cases", as_whole(cases)});
     return true;
 }
 
@@ -511,12 +493,11 @@ bool summary_cost(const struct summary *summary)
         table_put(cost, ".evaluations",
                   as_number(json_number_value(evaluations) / json_number_value(steps)));
     const bool timed = results_timing(summary->r, &longest, &total, &cases, &ranks);
-    json_object_update_new(
-        cost, TABLE_OBJECT({"wall_time", as_number(timed ? longest : NAN)},
-                           {"total_time", as_number(timed ? total : NAN)},
-                           {"cases_per_second", as_number(timed ? cases / longest : NAN)},
-                           {".timed", as_truth(timed)}, {".ranks", as_whole(ranks)},
-                           {".counts", as_tree(told)}, {".steps", as_truth(steps != NULL)}));
+    TABLE_PUT(cost, {"wall_time", as_number(timed ? longest : NAN)},
+              {"total_time", as_number(timed ? total : NAN)},
+              {"cases_per_second", as_number(timed ? cases / longest : NAN)},
+              {".timed", as_truth(timed)}, {".ranks", as_whole(ranks)}, {".counts", as_tree(told)},
+              {".steps", as_truth(steps != NULL)});
     table_put(summary->facts, "cost", as_tree(cost));
     return good;
 }

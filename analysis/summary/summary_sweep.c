@@ -3,7 +3,6 @@
 
 #include "analysis/statistics/doe_bins.h"
 #include "analysis/statistics/statistics.h"
-#include "runner/base/words.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -266,11 +265,10 @@ static void add_parts(struct table *t, const struct summary *summary, int k,
 }
 
 /* What the sample varies at a point: offsets times the scale. */
-static json_t *point_facts(const struct results *r, size_t point, double scale, char *text,
-                           size_t size)
+static void add_point(const struct results *r, size_t point, double scale, json_t *facts)
 {
     static const char offset[] = "initial.offset.";
-    json_t *const at = json_object();
+    json_t *const at = json_object_get(facts, "at");
     for (int k = 0; k < r->varied; k++) {
         const struct results_varied *const v = &r->vary[k];
         const bool scaled = strncmp(v->of.name, offset, strlen(offset)) == 0;
@@ -279,10 +277,9 @@ static json_t *point_facts(const struct results *r, size_t point, double scale, 
         char is[128];
         one.of.value = &value;
         results_varied_text(&one, 0, true, is, sizeof is);
-        words_add(text, size, "%s %s = %s", k ? "," : "", v->of.name, is);
+        say_add(facts, ".at", "%s %s = %s", k ? "," : "", v->of.name, is);
         table_put(at, v->of.name, as_varied(v, value));
     }
-    return at;
 }
 
 /* Beside one axis of offsets: where along it the stabilised set through the equilibrium ends, at
@@ -295,7 +292,6 @@ static bool rays_facts(const struct summary *summary, int axis, json_t **facts)
     double *const end = malloc(points * sizeof *end), smallest = INFINITY;
     size_t nearest = 0, open = 0, none = 0, unknown = 0;
     struct statistics_numbers n;
-    char text[2000] = "";
     if (!end)
         return statistics_no_memory(r, summary->message);
     for (size_t i = 0; i < points; i++) {
@@ -318,14 +314,14 @@ static bool rays_facts(const struct summary *summary, int axis, json_t **facts)
     statistics_summarise(end, points, &n);
     free(end);
     const bool scaled = strcmp(along->name, "initial.offset.scale") == 0;
-    json_t *const at =
-        n.n > 0 ? point_facts(r, nearest, scaled ? smallest : 1, text, sizeof text) : json_object();
     *facts = TABLE_OBJECT(
         {"path", as_text(along->name)}, {"points", as_whole(n.n)}, {"smallest", as_number(n.low)},
         {"median", as_number(n.median)}, {"largest", as_number(n.high)},
-        {"nearest", n.n > 0 ? as_whole(nearest) : as_nothing(NULL)}, {"at", as_tree(at)},
+        {"nearest", n.n > 0 ? as_whole(nearest) : as_nothing(NULL)}, {"at", as_tree(json_object())},
         {"reach_end", as_whole(open)}, {"none", as_whole(none)}, {"unknown", as_whole(unknown)},
-        {".unit", as_text(along->unit)}, {".at", as_text(text)});
+        {".unit", as_text(along->unit)});
+    if (n.n > 0)
+        add_point(r, nearest, scaled ? smallest : 1, *facts);
     return true;
 }
 

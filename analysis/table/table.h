@@ -155,6 +155,9 @@ struct table_member {
 /* An object; text that is no UTF-8 has '?' in its place. NULL: no memory. */
 json_t *table_object(const struct table_member *member, size_t count);
 #define TABLE_OBJECT(...) table_object(TABLE_LIST(table_member, __VA_ARGS__))
+/* Adds members to an object; an object to a list. */
+#define TABLE_PUT(object, ...) json_object_update_new(object, TABLE_OBJECT(__VA_ARGS__))
+#define TABLE_APPEND(list, ...) json_array_append_new(list, TABLE_OBJECT(__VA_ARGS__))
 /* New reference. */
 json_t *table_value_json(struct table_value value);
 /* A list of texts; of NULL none, which is NULL. */
