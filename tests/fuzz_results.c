@@ -134,12 +134,9 @@ void __wrap_sandbox_limit(bool begin)
     (void)begin; /* the timer of the worker is stricter */
 }
 
-bool __wrap_gnuplot_end(struct gnuplot *g, const char *where, const char *stem,
-                        stance_message *message);
-bool __wrap_gnuplot_end(struct gnuplot *g, const char *where, const char *stem,
-                        stance_message *message)
+bool __wrap_gnuplot_end(struct gnuplot *g);
+bool __wrap_gnuplot_end(struct gnuplot *g)
 {
-    (void)where, (void)stem, (void)message;
     gnuplot_abandon(g);
     return true;
 }

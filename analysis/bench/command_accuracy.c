@@ -105,11 +105,11 @@ static json_t *study_json(const struct accuracy *a, const struct results *r, con
 
 /* ---- the command --------------------------------------------------------------------------- */
 
-static bool study(const struct results *r, struct look *look, const char *directory,
-                  const char *stem, json_t **object, stance_message *message)
+static bool study(const struct plot *plot, json_t **object)
 {
+    const struct results *const r = plot->r;
     struct accuracy a;
-    if (!accuracy_make(&a, r, measuring_budget, message))
+    if (!accuracy_make(&a, r, measuring_budget, plot->message))
         return false;
     struct table t = {0};
     bool good = true;
@@ -118,8 +118,7 @@ static bool study(const struct results *r, struct look *look, const char *direct
     if (object)
         *object = study_json(&a, r, &t);
     else
-        good = print_text(&a, r, &t) && fflush(stdout) == 0 &&
-               accuracy_plot(&a, r, look, directory, stem, message);
+        good = print_text(&a, r, &t) && fflush(stdout) == 0 && accuracy_plot(&a, plot);
     table_free(&t);
     accuracy_free(&a);
     return good;

@@ -134,18 +134,17 @@ static json_t *study_json(const struct failure *f, const struct results *r)
 
 /* ---- the command --------------------------------------------------------------------------- */
 
-static bool study(const struct results *r, struct look *look, const char *directory,
-                  const char *stem, json_t **object, stance_message *message)
+static bool study(const struct plot *plot, json_t **object)
 {
+    const struct results *const r = plot->r;
     struct failure f;
-    if (!failure_make(&f, r, message))
+    if (!failure_make(&f, r, plot->message))
         return false;
     bool good = true;
     if (object)
         *object = study_json(&f, r);
     else
-        good = print_text(&f, r) && fflush(stdout) == 0 &&
-               failure_plot(&f, r, look, directory, stem, message);
+        good = print_text(&f, r) && fflush(stdout) == 0 && failure_plot(&f, plot);
     failure_free(&f);
     return good;
 }

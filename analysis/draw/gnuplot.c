@@ -27,6 +27,15 @@ GNUPLOT_SCRIPT(style_gp, "analysis/draw/style.gp");
 GNUPLOT_SCRIPT(legend_gp, "analysis/draw/legend.gp");
 GNUPLOT_SCRIPT(page_gp, "analysis/draw/page.gp");
 GNUPLOT_SCRIPT(panels_gp, "analysis/draw/panels.gp");
+GNUPLOT_SCRIPT(chart_gp, "analysis/draw/chart.gp");
+
+/* What stands beside the data and the picture's own script. */
+static const struct {
+    const char *name, *text;
+} shared[] = {{"style.gp", style_gp},
+              {"legend.gp", legend_gp},
+              {"page.gp", page_gp},
+              {"panels.gp", panels_gp}};
 
 /* ---- directories --------------------------------------------------------------------------- */
 
@@ -55,13 +64,13 @@ static void scratch_path(const struct gnuplot *g, const char *name, char path[32
 /* Removes the directory of a picture that is over, with what can be in it. */
 static void remove_picture(const char *directory)
 {
-    static const char *const names[] = {"script",     "style.gp",    "legend.gp",   "page.gp",
-                                        "panels.gp",  "picture.gp",  "data.gp",     "drawn.gp",
-                                        "errors",     "picture.svg", "picture.png", "picture.pdf",
-                                        "picture.gif"};
+    static const char *const names[] = {"script",      "picture.gp",  "data.gp",
+                                        "drawn.gp",    "errors",      "picture.svg",
+                                        "picture.png", "picture.pdf", "picture.gif"};
     char path[1100];
-    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
-        snprintf(path, sizeof path, "%s/%s", directory, names[i]);
+    for (size_t i = 0; i < sizeof names / sizeof *names + sizeof shared / sizeof *shared; i++) {
+        const size_t own = sizeof names / sizeof *names;
+        snprintf(path, sizeof path, "%s/%s", directory, i < own ? names[i] : shared[i - own].name);
         unlink(path);
     }
     int cells = 0;
@@ -71,17 +80,9 @@ static void remove_picture(const char *directory)
     rmdir(directory);
 }
 
-static void remove_scratch(const struct gnuplot *g)
-{
-    fclose(g->sink);
-    remove_picture(g->scratch);
-}
-
 static void note_failure(struct gnuplot *g)
 {
-    if (!g->failed)
-        g->error = errno;
-    g->failed = true;
+    g->error = g->error ? g->error : errno;
 }
 
 static FILE *open_scratch(struct gnuplot *g, const char *name)
@@ -103,6 +104,13 @@ void gnuplot_close_cells(struct gnuplot *g, FILE *file)
     bool bad = ferror(file) != 0;
     if (fclose(file) != 0 || bad)
         note_failure(g);
+}
+
+FILE *gnuplot_cells(struct gnuplot *g)
+{
+    char name[32];
+    snprintf(name, sizeof name, "cells%d", ++g->files);
+    return open_scratch(g, name);
 }
 
 static void put_script(struct gnuplot *g, const char *name, const char *text)
@@ -147,9 +155,9 @@ static void put_prose(struct gnuplot *g, const char *text, const char *name)
 
 /* What the scripts must know of the look. A text of 12 pt in gnuplot's sense is 16 px high, so that
  * a px is 1/16 of the size of the text. */
-static void put_look(struct gnuplot *g, const char *title, const char *subtitle)
+static void put_look(struct gnuplot *g)
 {
-    const struct look *look = g->look;
+    const struct look *look = g->plot->look;
     const double points = look->points / 16, px = 72 / 25.4 / points; /* pt a px, px a mm */
     gnuplot_text(g, look->font, "font_name");
     gnuplot_set(g, "px_points = %.10g; asked_width = %.10g; asked_height = %.10g", points,
@@ -157,163 +165,68 @@ static void put_look(struct gnuplot *g, const char *title, const char *subtitle)
     gnuplot_set(g, "px_dots = %.10g", look->width > 0 ? 600 * points / 72 : 1.6 * look->points / 9);
     if (look->grey)
         gnuplot_set(g, "eval in_grey");
-    put_prose(g, look->title ? look->title : look->bare ? "" : title, "title");
-    put_prose(g, look->bare ? "" : subtitle, "subtitle");
 }
 
-bool gnuplot_begin(struct gnuplot *g, struct look *look, const char *picture, const char *title,
-                   const char *subtitle, stance_message *message)
+static void put_titles(struct gnuplot *g)
 {
-    static struct look plain;
-    const char *base = kept_in() ? kept_in() : getenv("TMPDIR");
+    const struct look *const look = g->plot->look;
+    const struct results *const r = g->plot->r;
+    const char *const title = g->plot->title ? g->plot->title : r->title[0] ? r->title : r->name;
+    put_prose(g, look->title ? look->title : look->bare ? "" : title, "title");
+    put_prose(g, look->bare ? "" : g->subtitle, "subtitle");
+}
 
-    if (!look)
-        look_begin(look = &plain);
-    *g = (struct gnuplot){.look = look};
+bool gnuplot_begin(struct gnuplot *g, const struct plot *plot, const char *name, const char *script)
+{
+    const char *base = kept_in() ? kept_in() : getenv("TMPDIR");
+    *g = (struct gnuplot){.plot = plot, .name = name, .rows = -1};
     snprintf(g->scratch, sizeof g->scratch, "%s/stance-plot-XXXXXX",
              base && base[0] && strlen(base) < 200 ? base : "/tmp");
     g->sink = fopen("/dev/null", "wb");
     if (!g->sink || !mkdtemp(g->scratch)) {
-        complain(message, "%.150s: cannot make a directory%s: %s", g->scratch,
+        complain(plot->message, "%.150s: cannot make a directory%s: %s", g->scratch,
                  kept_in() ? " (STANCE_SCRIPTS)" : "", strerror(errno));
         if (g->sink)
             fclose(g->sink);
         return false;
     }
-    put_script(g, "style.gp", style_gp);
-    put_script(g, "legend.gp", legend_gp);
-    put_script(g, "page.gp", page_gp);
-    put_script(g, "panels.gp", panels_gp);
-    put_script(g, "picture.gp", picture);
+    for (size_t k = 0; k < sizeof shared / sizeof *shared; k++)
+        put_script(g, shared[k].name, shared[k].text);
+    put_script(g, "picture.gp", script ? script : chart_gp);
     g->data = open_scratch(g, "data.gp");
-    put_look(g, title, subtitle);
+    put_look(g);
     return true;
 }
 
-void gnuplot_abandon(struct gnuplot *g)
-{
-    gnuplot_close_cells(g, g->data);
-    remove_scratch(g);
-}
+/* A piece of memory of a picture, and what there was before it. */
+struct gnuplot_room {
+    struct gnuplot_room *before;
+    void *piece;
+};
 
-/* ---- data --------------------------------------------------------------------------------- */
-
-void gnuplot_set(struct gnuplot *g, const char *format, ...)
+void *gnuplot_keep(struct gnuplot *g, void *piece)
 {
-    va_list arguments;
-    va_start(arguments, format);
-    vfprintf(g->data, format, arguments);
-    va_end(arguments);
-    putc('\n', g->data);
-}
-
-void gnuplot_arrays(struct gnuplot *g, int size, const char *names)
-{
-    for (size_t length; *names; names += length + (names[length] == ' ')) {
-        length = strcspn(names, " ");
-        gnuplot_set(g, "array %.*s[%d]", (int)length, names, size);
+    struct gnuplot_room *const room = piece ? malloc(sizeof *room) : NULL;
+    if (!room) {
+        errno = ENOMEM;
+        note_failure(g);
+        free(piece);
+        return NULL;
     }
+    *room = (struct gnuplot_room){g->room, piece};
+    g->room = room;
+    return piece;
 }
 
-/* In single quotes gnuplot expands nothing; a quote itself is doubled. */
-void gnuplot_quote(FILE *out, const char *text)
+void *gnuplot_room(struct gnuplot *g, size_t count, size_t size)
 {
-    putc('\'', out);
-    while (*text) {
-        int length = results_letter(text);
-        if ((unsigned char)*text <= ' ' || *text == 0x7f)
-            putc(' ', out);
-        else if (length == 0)
-            putc('?', out);
-        else if (*text == '\'')
-            fputs("''", out);
-        else
-            fwrite(text, 1, (size_t)length, out);
-        text += length > 0 ? length : 1;
-    }
-    putc('\'', out);
+    return gnuplot_keep(g, calloc(count ? count : 1, size));
 }
 
-void gnuplot_text(struct gnuplot *g, const char *text, const char *name, ...)
+bool gnuplot_needs(struct gnuplot *g, bool had)
 {
-    va_list arguments;
-    va_start(arguments, name);
-    vfprintf(g->data, name, arguments);
-    va_end(arguments);
-    fputs(" = ", g->data);
-    gnuplot_quote(g->data, text);
-    putc('\n', g->data);
-}
-
-void gnuplot_number(struct gnuplot *g, double value, const char *name, ...)
-{
-    va_list arguments;
-    va_start(arguments, name);
-    vfprintf(g->data, name, arguments);
-    va_end(arguments);
-    if (isfinite(value))
-        fprintf(g->data, " = %#.17g\n", value); /* always real: gnuplot divides integers */
-    else
-        fputs(" = NaN\n", g->data);
-}
-
-void gnuplot_row(struct gnuplot *g, const double *values, size_t count)
-{
-    for (size_t i = 0; i < count; i++) {
-        fputs(i ? " " : "", g->data);
-        if (isfinite(values[i]))
-            fprintf(g->data, "%.16g", values[i]);
-        else
-            fputs("NaN", g->data);
-    }
-    putc('\n', g->data);
-}
-
-void gnuplot_block(struct gnuplot *g, const char *name, ...)
-{
-    va_list arguments;
-    va_start(arguments, name);
-    putc('$', g->data);
-    vfprintf(g->data, name, arguments);
-    va_end(arguments);
-    fputs(" << EOD\n", g->data);
-}
-
-void gnuplot_end_block(struct gnuplot *g)
-{
-    fputs("EOD\n", g->data);
-}
-
-FILE *gnuplot_cells(struct gnuplot *g)
-{
-    char name[32];
-    snprintf(name, sizeof name, "cells%d", ++g->files);
-    return open_scratch(g, name);
-}
-
-void gnuplot_colour(struct gnuplot *g, const char *colour, const char *name)
-{
-    const char *value = look_colour(g->look, name);
-    if (value)
-        gnuplot_set(g, "%s = 0x%s", colour, value + 1);
-}
-
-void gnuplot_legend_mark(struct gnuplot *g, const char *colour, int dash, int point,
-                         const char *name, const char *more)
-{
-    char text[400];
-    gnuplot_colour(g, colour, name);
-    snprintf(text, sizeof text, "%s%s%s", look_label(g->look, name), more[0] ? "  " : "", more);
-    gnuplot_set(g,
-                "legends = legends + 1; legend_colour[legends] = %s; legend_dash[legends] = %d; "
-                "legend_point[legends] = %d",
-                colour, dash, point);
-    gnuplot_text(g, text, "legend_text[legends]");
-}
-
-void gnuplot_note(struct gnuplot *g, const char *text)
-{
-    gnuplot_text(g, text, "notes = notes + 1; note[notes]");
+    g->missing = g->missing || !had;
+    return had;
 }
 
 /* ---- running ------------------------------------------------------------------------------ */
@@ -418,11 +331,11 @@ static bool replace_letters(struct gnuplot *g)
     bool ascii = true;
     for (size_t i = 0; text && i < size; i++)
         ascii = ascii && (unsigned char)text[i] < 0x80;
-    if (text && (!ascii || strcmp(g->look->font, LOOK_FONT) != 0)) {
-        fonts_find(&fonts, g->look->font);
+    if (text && (!ascii || strcmp(g->plot->look->font, LOOK_FONT) != 0)) {
+        fonts_find(&fonts, g->plot->look->font);
         if (fonts.has) {
             drawn = fonts_replace(&fonts, text, size, missing, sizeof missing);
-            say_missing(g->look, &fonts, missing);
+            say_missing(g->plot->look, &fonts, missing);
             fonts_free(&fonts);
         }
     }
@@ -439,7 +352,7 @@ static void put_formats(struct gnuplot *g)
     const bool replaced = replace_letters(g);
     FILE *file = open_scratch(g, "script");
     for (int f = 0; f < LOOK_FORMAT_COUNT; f++) {
-        if (!g->look->format[f])
+        if (!g->plot->look->format[f])
             continue;
         fprintf(file,
                 "drawing = '%s'\nload 'style.gp'\nload '%s'\nload 'legend.gp'\n"
@@ -540,14 +453,14 @@ struct product {
 static struct product name_product(const struct gnuplot *g, int format, const char *directory,
                                    const char *stem)
 {
-    struct product product = {g->look, g->scratch, format, false, "", "", ""};
+    struct product product = {g->plot->look, g->scratch, format, false, "", "", ""};
     char drawn[32], name[600];
     snprintf(drawn, sizeof drawn, "picture.%s", look_endings[format]);
     scratch_path(g, drawn, product.from);
     snprintf(name, sizeof name, "%s.%s", stem, look_endings[format]);
     join_path(directory, name, product.to, sizeof product.to);
-    if (g->look->file)
-        snprintf(product.to, sizeof product.to, "%s", g->look->file);
+    if (g->plot->look->file)
+        snprintf(product.to, sizeof product.to, "%s", g->plot->look->file);
     snprintf(name, sizeof name, ".stance-%ld.%s", (long)getpid(), look_endings[format]);
     join_path(directory, name, product.part, sizeof product.part);
     return product;
@@ -602,7 +515,7 @@ static bool fetch(const struct gnuplot *g, const char *directory, const char *st
     int count = 0;
     bool good = true;
     for (int f = 0; f < LOOK_FORMAT_COUNT; f++)
-        if (g->look->format[f])
+        if (g->plot->look->format[f])
             product[count++] = name_product(g, f, directory, stem);
     for (int k = 0; k < count; k++)
         good = good && copy_product(&product[k], message);
@@ -618,11 +531,13 @@ static bool fetch(const struct gnuplot *g, const char *directory, const char *st
 }
 
 /* Runs gnuplot and fetches what it drew. */
-static bool draw(const struct gnuplot *g, const char *directory, const char *stem,
-                 stance_message *message)
+static bool draw(const struct gnuplot *g, const char *stem)
 {
+    stance_message *const message = g->plot->message;
     char complaint[120];
-    if (g->failed)
+    if (g->error == ENOMEM)
+        return no_memory(message);
+    if (g->error)
         return complain(message, "%.100s: cannot be written: %s", g->scratch, strerror(g->error));
     const int status = run_gnuplot(g);
     if (status < 0 && errno == ENOENT)
@@ -631,7 +546,7 @@ static bool draw(const struct gnuplot *g, const char *directory, const char *ste
     if (status < 0)
         return complain(message, "gnuplot cannot be run: %s", strerror(errno));
     if (status == 0)
-        return fetch(g, directory, stem, message);
+        return fetch(g, g->plot->directory, stem, message);
     read_complaint(g, complaint);
     return complain(message,
                     status == TOO_SMALL ? "%.190s: a larger --size, or shorter --labels"
@@ -639,26 +554,48 @@ static bool draw(const struct gnuplot *g, const char *directory, const char *ste
                     complaint);
 }
 
-bool gnuplot_end(struct gnuplot *g, const char *directory, const char *stem,
-                 stance_message *message)
+/* Ends what is not the scratch directory. */
+static void leave(struct gnuplot *g)
 {
-    const char *dash = strrchr(stem, '-');
-    char path[1024];
-
-    if (!look_wants(g->look, dash ? dash + 1 : stem)) {
-        gnuplot_abandon(g);
-        return true;
+    while (g->room) {
+        struct gnuplot_room *const room = g->room;
+        g->room = room->before;
+        free(room->piece);
+        free(room);
     }
+    fclose(g->sink);
+}
+
+void gnuplot_abandon(struct gnuplot *g)
+{
+    gnuplot_close_cells(g, g->data);
+    leave(g);
+    remove_picture(g->scratch);
+}
+
+bool gnuplot_end(struct gnuplot *g)
+{
+    char stem[600], path[1024];
+    snprintf(stem, sizeof stem, "%.400s%s%s", g->plot->stem, g->name[0] ? "-" : "", g->name);
+    const char *const dash = strrchr(stem, '-');
+    const bool missing = g->missing;
+    if (missing && g->error == ENOMEM)
+        no_memory(g->plot->message);
+    if (missing || !look_wants(g->plot->look, dash ? dash + 1 : stem)) {
+        gnuplot_abandon(g);
+        return !missing;
+    }
+    put_titles(g);
     gnuplot_close_cells(g, g->data);
     put_formats(g);
-    const bool good = draw(g, directory, stem, message);
+    const bool good = draw(g, stem);
+    leave(g);
     if (!good || !kept_in()) {
-        remove_scratch(g);
+        remove_picture(g->scratch);
         return good;
     }
     /* The scratch directory stays where it is, under the picture's name; a former one goes. */
     join_path(kept_in(), stem, path, sizeof path);
-    fclose(g->sink);
     remove_picture(path);
-    return rename(g->scratch, path) == 0 || not_written(path, message);
+    return rename(g->scratch, path) == 0 || not_written(path, g->plot->message);
 }

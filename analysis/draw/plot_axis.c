@@ -99,16 +99,14 @@ double plot_axis_place(const struct plot_axis *along, size_t i)
     return along->scale == PLOT_LIST ? (double)i : raw(along->axis, along->scale == PLOT_LOG, i);
 }
 
-struct statistics_place *plot_axis_points(const struct plot_axis *along, stance_message *message)
+struct statistics_place *plot_axis_points(const struct plot_axis *along, struct gnuplot *g)
 {
     const size_t n = along->axis->count;
-    struct statistics_place *points = malloc(n * sizeof *points);
+    struct statistics_place *const points = gnuplot_room(g, n, sizeof *points);
     for (size_t i = 0; points && i < n; i++)
         points[i] = (struct statistics_place){plot_axis_place(along, i), i};
     if (points)
         statistics_order(points, n);
-    else
-        no_memory(message);
     return points;
 }
 
@@ -156,7 +154,7 @@ void plot_label_write(const struct results_axis *axis, struct gnuplot *g, const 
 {
     static const char with[] = "; with ";
     char text[sizeof axis->text], path[sizeof axis->name + sizeof axis->unit + sizeof text + 16];
-    const char *label = look_label(g->look, axis->name), *dot = strrchr(axis->name, '.');
+    const char *label = look_label(g->plot->look, axis->name), *dot = strrchr(axis->name, '.');
     const bool own = label != axis->name;
     snprintf(text, sizeof text, "%s", axis->text);
     snprintf(path, sizeof path, axis->unit[0] ? "%s (%s)" : "%s", axis->name, axis->unit);
@@ -176,65 +174,61 @@ void plot_label_write(const struct results_axis *axis, struct gnuplot *g, const 
     gnuplot_text(g, own ? label : path, "%s_path", which);
 }
 
-void plot_axis_write(const struct plot_axis *along, struct gnuplot *g, const char *which)
+const char *plot_axis_write(const struct plot_axis *along, struct gnuplot *g, char which)
 {
-    static const char *const scales[] = {
-        [PLOT_LINEAR] = "linear", [PLOT_LOG] = "log", [PLOT_LIST] = "list"};
-    plot_label_write(along->axis, g, which);
-    gnuplot_text(g, scales[along->scale], "%s_scale", which);
-    gnuplot_set(g, "%s_low = %#.17g\n%s_high = %#.17g\n%s_step = %#.17g\n%s_count = %zu", which,
-                along->low, which, along->high, which, along->step, which, along->axis->count);
+    const char *const axis =
+        gnuplot_axis(g, which, along->scale, (struct plot_range){along->low, along->high}, "", "");
+    plot_label_write(along->axis, g, axis);
+    gnuplot_set(g, "%s_step = %#.17g; %s_count = %zu", axis, along->step, axis, along->axis->count);
     if (along->scale == PLOT_LIST)
-        put_words(along, g, which);
+        put_words(along, g, axis);
+    return axis;
 }
 
-void plot_became_text(const struct results *r, char *text, size_t size)
+void plot_say_became(struct gnuplot *g)
 {
-    if (r->cases == 1)
-        snprintf(text, size, "What became of 1 case");
-    else
-        snprintf(text, size, "What became of each of %llu cases", (unsigned long long)r->cases);
+    const uint64_t cases = g->plot->r->cases;
+    gnuplot_say(g, cases == 1 ? "What became of %llu case" : "What became of each of %llu cases",
+                (unsigned long long)cases);
 }
 
-void plot_failed_text(const struct results *r, char *text, size_t size)
+void plot_say_failed(struct gnuplot *g)
 {
     struct statistics_counts counts;
-    statistics_count(r, -1, 0, &counts);
+    statistics_count(g->plot->r, -1, 0, &counts);
     if (counts.kind[RESULTS_FAILED] > 0)
-        add_text(text, size, ", %llu failed in all",
-                 (unsigned long long)counts.kind[RESULTS_FAILED]);
+        gnuplot_say(g, ", %llu failed in all", (unsigned long long)counts.kind[RESULTS_FAILED]);
 }
 
-void plot_cut_text(const struct results *r, enum results_kind of, bool shown, char *text,
-                   size_t size)
+void plot_say_cut(struct gnuplot *g, enum results_kind of, bool shown)
 {
     struct faces faces;
     char at[400];
     if (of == RESULTS_KIND_COUNT)
         return;
-    faces_make(&faces, r, NULL, 0);
+    faces_make(&faces, g->plot->r, NULL, 0);
     const face_set cut = faces_cut(&faces, of);
     faces_text(&faces, cut, at, sizeof at);
     if (cut)
-        add_text(text, size, "; what is %s is cut by the box at %s%s", results_kind_names[of], at,
-                 shown ? ": its share is the box's" : "");
+        gnuplot_say(g, "; what is %s is cut by the box at %s%s", results_kind_names[of], at,
+                    shown ? ": its share is the box's" : "");
 }
 
-void plot_kinds_write(const struct results *r, struct gnuplot *g, bool legend)
+void plot_kinds_write(struct gnuplot *g, bool legend)
 {
+    const struct results *const r = g->plot->r;
     struct statistics_counts counts;
     char text[64], colour[64];
     statistics_count(r, -1, 0, &counts);
-    gnuplot_set(g, "array kind_colour[%d]", RESULTS_KIND_COUNT);
+    gnuplot_arrays(g, RESULTS_KIND_COUNT, "kind_colour");
     for (int k = 0; k < RESULTS_KIND_COUNT; k++) {
+        const double share = 100 * (double)counts.kind[k] / (double)r->cases;
         snprintf(colour, sizeof colour, "colour_%s", results_kind_names[k]);
+        snprintf(text, sizeof text, share < 0.05 ? "%.2g %%" : "%.1f %%", share);
         gnuplot_colour(g, colour, results_kind_names[k]);
         gnuplot_set(g, "kind_colour[%d] = %s", k + 1, colour);
-        if (legend && counts.kind[k] > 0) {
-            double share = 100 * (double)counts.kind[k] / (double)r->cases;
-            snprintf(text, sizeof text, share < 0.05 ? "%.2g %%" : "%.1f %%", share);
-            gnuplot_legend(g, colour, results_kind_names[k], text);
-        }
+        if (legend && counts.kind[k] > 0)
+            gnuplot_legend(g, colour, 0, 0, results_kind_names[k], text);
     }
 }
 
@@ -254,22 +248,4 @@ void plot_cells_write(struct gnuplot *g, const struct plot_cells *cells, const v
         }
     }
     gnuplot_close_cells(g, file);
-}
-
-/* ---- pages -------------------------------------------------------------------------------- */
-
-bool plot_begin(const struct plot *plot, struct gnuplot *g, const char *script,
-                const char *subtitle, stance_message *message)
-{
-    const struct results *r = plot->r;
-    return gnuplot_begin(g, plot->look, script, r->title[0] ? r->title : r->name, subtitle,
-                         message);
-}
-
-bool plot_end(const struct plot *plot, struct gnuplot *g, const char *picture,
-              stance_message *message)
-{
-    char stem[512];
-    snprintf(stem, sizeof stem, "%s-%s", plot->stem, picture);
-    return gnuplot_end(g, plot->directory, stem, message);
 }

@@ -90,12 +90,19 @@ x_label(middle, y) = (f_label = axis_label('x', page_width - 2*margin), f_half =
     sprintf("set label f_label at screen %.6f,%.6f center %s front", \
         X(at_least(f_half, at_most(middle, page_width - f_half))), Y(y), small))
 
+# ---- charts: see chart.gp. Panels as the data have them, and where they come to stand ----
+array panel_own[40]; array panel_heading[40]; array panel_y[40]; array panel_plot[40]; array panel_top[40]; array panel_high[40]
+panels = 0
+left = 104
+chart_width = 620 # px, of a panel
+
 # ---- legends: marks with texts, and notes under them; the data add theirs. A mark is a line where it has a type of
 # dashes, a point where it has a type of points, or a filled box ----
 array legend_text[40]
 array legend_colour[40]
 array legend_dash[40]
 array legend_point[40]
+array legend_about[40] # lines under an entry
 array note[12]
 bars = 0
 legends = 0

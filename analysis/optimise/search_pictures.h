@@ -6,7 +6,7 @@
 
 #include "analysis/draw/gnuplot.h"
 
-/* X(name, help): plot_search_NAME draws DIRECTORY/STEM-NAME, nothing of a search that does not call
+/* X(name, help): plot_search_NAME draws STEM-NAME, nothing of a search that does not call
  * for it. */
 #define SEARCH_PICTURES(X)                                                                         \
     X(convergence,                                                                                 \
@@ -19,8 +19,7 @@
       "  finished            chosen one recover, and that linear theory allows, along each\n"      \
       "                      coordinate of the starts\n")
 #define SEARCH_PICTURE(name, help)                                                                 \
-    bool plot_search_##name(const struct search_study *study, struct look *look,                   \
-                            const char *directory, stance_message *message);
+    bool plot_search_##name(const struct search_study *study, const struct plot *plot);
 SEARCH_PICTURES(SEARCH_PICTURE)
 #undef SEARCH_PICTURE
 
@@ -32,8 +31,7 @@ enum search_curve { SEARCH_FIRST, SEARCH_CHOSEN, SEARCH_ALLOWED, SEARCH_CURVES }
 void search_curves_write(struct gnuplot *g, const char *const more[SEARCH_CURVES], bool glued);
 
 struct search_front;
-bool plot_search_front(const struct search_front *front, struct look *look, const char *directory,
-                       stance_message *message);
+bool plot_search_front(const struct search_front *front, const struct plot *plot);
 /* Its lines of help. */
 #define SEARCH_FRONT_HELP                                                                          \
     "  several searches    NAME-front of the first: shares of fresh starts against the number\n"   \

@@ -27,7 +27,6 @@ struct section {
 
 /* What the panels of a picture have in common. */
 struct picture {
-    const struct results *r;
     const struct plot_layout *layout;
     const struct results_axis *axis[2];
     struct plot_frame frame;
@@ -267,30 +266,29 @@ static bool make_panel(struct plot_allowed_panel *panel, struct picture *p, int 
     return good;
 }
 
-bool plot_allowed_make(struct plot_allowed *allowed, const struct plot *plot,
-                       const struct plot_layout *layout, const struct plot_frame *frame,
-                       stance_message *message)
+bool plot_allowed_make(struct plot_allowed *allowed, struct gnuplot *g,
+                       const struct plot_layout *layout, const struct plot_frame *frame)
 {
-    const struct results *const r = plot->r;
+    const struct results *const r = layout->r;
     *allowed = (struct plot_allowed){0};
-    if (!plot->allowed)
+    if (!g->plot->allowed)
         return true;
-    struct picture *const p = malloc(sizeof *p);
-    allowed->panel = calloc((size_t)layout->panels, sizeof *allowed->panel);
-    if (!p || !allowed->panel) {
-        free(p);
-        return no_memory(message);
-    }
-    p->r = r, p->layout = layout, p->frame = *frame;
+    struct picture *const p = gnuplot_room(g, 1, sizeof *p);
+    allowed->panel = gnuplot_room(g, (size_t)layout->panels, sizeof *allowed->panel);
+    if (!p || !allowed->panel || !gnuplot_needs(g, results_swept(r, &p->s, g->plot->message)))
+        return false;
+    p->layout = layout, p->frame = *frame;
     p->axis[0] = &r->axis[layout->x], p->axis[1] = &r->axis[layout->y];
-    bool good = results_swept(r, &p->s, message);
     stance_message first = {""};
     int without = 0;
-    if (good && check_axes(p, &first))
+    bool good = true;
+    if (check_axes(p, &first))
         allowed->panels = layout->panels;
     for (int k = 0; good && k < allowed->panels; k++) {
         stance_message why = {""};
-        good = make_panel(&allowed->panel[k], p, k, &why, message);
+        good = gnuplot_needs(g, make_panel(&allowed->panel[k], p, k, &why, g->plot->message));
+        if (allowed->panel[k].point)
+            gnuplot_keep(g, allowed->panel[k].point);
         if (why.text[0] && without++ == 0)
             first = why;
     }
@@ -300,18 +298,8 @@ bool plot_allowed_make(struct plot_allowed *allowed, const struct plot *plot,
             fprintf(stderr, " in %d of %d panels", without, allowed->panels);
         fprintf(stderr, ": %s\n", first.text);
     }
-    if (good || allowed->panels > 0)
-        scenario_free(&p->s);
-    free(p);
+    scenario_free(&p->s);
     return good;
-}
-
-void plot_allowed_free(struct plot_allowed *allowed)
-{
-    for (int k = 0; k < allowed->panels; k++)
-        free(allowed->panel[k].point);
-    free(allowed->panel);
-    *allowed = (struct plot_allowed){0};
 }
 
 bool plot_allowed_same(const struct plot_allowed_panel *a, const struct plot_allowed_panel *b)
@@ -328,7 +316,7 @@ bool plot_allowed_same(const struct plot_allowed_panel *a, const struct plot_all
 void plot_allowed_write(const struct plot_allowed_panel *panel, struct gnuplot *g, int number)
 {
     const size_t n = panel->points;
-    size_t first = 0, rows = 0;
+    size_t first = 0;
     bool open = false;
     while (first < n && !panel->point[first].edge)
         first++;
@@ -338,13 +326,9 @@ void plot_allowed_write(const struct plot_allowed_panel *panel, struct gnuplot *
         if (!point->edge)
             GNUPLOT_ROW(g, point->place[0], point->place[1]);
         else if (open)
-            gnuplot_set(g, "%s", ""); /* lines are apart */
+            gnuplot_gap(g);
         open = !point->edge;
-        rows += open;
     }
-    if (rows == 0)
-        GNUPLOT_ROW(g, NAN, NAN);
-    gnuplot_end_block(g);
 }
 
 void plot_allowed_legend(const struct plot_allowed_panel *panel, int count, int dash,
@@ -362,7 +346,7 @@ void plot_allowed_legend(const struct plot_allowed_panel *panel, int count, int 
         return;
     if (same)
         snprintf(share, sizeof share, "%.1f %%", 100 * panel[0].share);
-    gnuplot_legend_mark(g, "colour_allowed", dash, 0, "linear theory allows", share);
+    gnuplot_legend(g, "colour_allowed", dash, 0, "linear theory allows", share);
     gnuplot_note(g, "linear theory allows: some controller recovers, while the contacts stand");
     if (glued)
         gnuplot_note(g, ALLOWED_GLUED);

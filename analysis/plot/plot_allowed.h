@@ -32,11 +32,11 @@ struct plot_allowed {
     struct plot_allowed_panel *panel;
 };
 
-/* Says on standard error where there is none, and why. False: no memory, or no scenario. */
-bool plot_allowed_make(struct plot_allowed *allowed, const struct plot *plot,
-                       const struct plot_layout *layout, const struct plot_frame *frame,
-                       stance_message *message);
-void plot_allowed_free(struct plot_allowed *allowed);
+/* Of the panels of a layout of g->plot->r, in the picture's memory; where the plot asks for it.
+ * Says on standard error where there is none, and why. False: no memory, or no scenario, which the
+ * picture then lacks. */
+bool plot_allowed_make(struct plot_allowed *allowed, struct gnuplot *g,
+                       const struct plot_layout *layout, const struct plot_frame *frame);
 
 bool plot_allowed_same(const struct plot_allowed_panel *a, const struct plot_allowed_panel *b);
 /* The block $allowedNUMBER of lines; none of it stands on the picture's edges. */

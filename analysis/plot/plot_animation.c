@@ -70,31 +70,32 @@ static void put_frames(struct gnuplot *g, const struct plot_case *c, int number,
             figure_make(&figure, c, row_at(c->t, f * step));
             figure_put(g, &figure, plot_case_grounded(c->scenario.scene), (enum figure_part)part, 0,
                        0);
-            gnuplot_set(g, "\n");
+            gnuplot_gap(g);
+            gnuplot_gap(g);
         }
-        gnuplot_end_block(g);
     }
 }
 
-bool plot_animation(const struct plot_case *c, stance_message *message)
+bool plot_animation(const struct plot_case *c)
 {
     struct gnuplot g;
     int number = 0;
     if (!c->readable || (c->other && !c->other->readable))
-        return complain(message, "%.150s: no stick figures: this version cannot read its scenario",
+        return complain(c->plot->message,
+                        "%.150s: no stick figures: this version cannot read its scenario",
                         c->plot->r->file);
     const double step = fmax(frame_time, ceil(100 * end_of(c) / LOOK_MOST_FRAMES) / 100);
     const int frames = (int)(end_of(c) / step + 1e-9) + 1;
     const struct view view = measure(c, frames, step, false);
     c->plot->look->animated = step;
-    if (!plot_case_begin(c, &g, plot_animation_gp, "Stick figures", message))
+    if (!plot_case_begin(c, &g, "animation", plot_animation_gp, "Stick figures"))
         return false;
     gnuplot_set(&g, "frames = %d; step = %.10g; fall = %#.17g; follows = %d; cases = %d", frames,
                 step, figure_fall(c), view.follows, c->other ? 2 : 1);
     gnuplot_set(&g, "low_x = %#.17g; high_x = %#.17g; low_z = %#.17g; high_z = %#.17g", view.low[0],
                 view.high[0], view.low[1], view.high[1]);
     figure_names(&g, c->scenario.scene);
-    gnuplot_arrays(&g, frames, "centre base");
+    gnuplot_arrays(&g, (size_t)frames, "centre base");
     for (int f = 0; f < frames; f++) {
         struct figure figure;
         figure_make(&figure, c, row_at(c->t, f * step));
@@ -103,5 +104,5 @@ bool plot_animation(const struct plot_case *c, stance_message *message)
     }
     for (const struct plot_case *k = c; k; k = k->other)
         put_frames(&g, k, ++number, frames, step);
-    return plot_end(c->plot, &g, "animation", message);
+    return gnuplot_end(&g);
 }

@@ -78,7 +78,7 @@ void figure_put(struct gnuplot *g, const struct figure *figure, int contacts, en
         const int contact = body ? contacts : first >= 0 ? first : second;
         for (int end = 0; end < 2; end++)
             GNUPLOT_ROW(g, figure->point[p + end][0] + dx, figure->point[p + end][1] + dz, contact);
-        gnuplot_set(g, "%s", "");
+        gnuplot_gap(g);
     }
     for (int p = 0; part == FIGURE_POINTS && p < figure->points && !figure->outline; p++)
         if (contact_at(figure, contacts, p) < 0)

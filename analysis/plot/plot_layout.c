@@ -111,14 +111,12 @@ int plot_layout_panel(const struct plot_layout *layout, uint64_t index)
 
 void plot_layout_note(const struct plot_layout *layout, struct gnuplot *g)
 {
-    char text[160];
     for (int k = 0; k < layout->others; k++) {
         const struct results_axis *axis = &layout->r->axis[layout->other[k]];
         if (layout->shown[k] == axis->count)
             continue;
-        snprintf(text, sizeof text, "%zu of the %zu values of %s are drawn", layout->shown[k],
-                 axis->count, axis->name);
-        gnuplot_note(g, text);
+        gnuplot_note(g, "%zu of the %zu values of %s are drawn", layout->shown[k], axis->count,
+                     axis->name);
     }
 }
 
@@ -151,11 +149,11 @@ void plot_value_title(struct gnuplot *g, const struct results_axis *axis, size_t
                       enum plot_naming naming, char *text, size_t size)
 {
     char value[96];
-    const char *name = look_label(g->look, axis->name);
+    const char *name = look_label(g->plot->look, axis->name);
     results_value_text(axis, i, true, value, sizeof value);
     if (name == axis->name)
         name = plot_short_name(axis->name, naming);
-    const char *const label = look_label(g->look, value);
+    const char *const label = look_label(g->plot->look, value);
     if (naming == PLOT_NUMBERS && label == value)
         results_value_text(axis, i, false, text, size);
     else if (naming >= PLOT_VALUES_ALONE)

@@ -8,7 +8,6 @@
 #include "plot_model.h"
 #include "plot_case.h"
 
-#include "runner/base/message.h"
 #include "runner/plan/plan.h"
 
 #include <math.h>
@@ -131,7 +130,7 @@ static void label(struct model *m, enum ink ink, double x, double z, const doubl
 {
     if (m->labels == MOST_LABELS)
         return;
-    gnuplot_text(m->g, look_label(m->g->look, text), "label_text[%d]", ++m->labels);
+    gnuplot_text(m->g, look_label(m->g->plot->look, text), "label_text[%d]", ++m->labels);
     gnuplot_set(m->g,
                 "k = %d; label_x[k] = %#.9g; label_y[k] = %#.9g; label_ink[k] = %d; "
                 "of_x[k] = %#.9g; of_y[k] = %#.9g",
@@ -251,7 +250,6 @@ static void put_arrows(struct model *m)
         GNUPLOT_ROW(m->g, point[0], point[1], length * cos(slope), -length * sin(slope),
                     INK_CONTACT, 1);
     }
-    gnuplot_end_block(m->g);
 }
 
 static void put_lines(struct model *m)
@@ -259,7 +257,6 @@ static void put_lines(struct model *m)
     gnuplot_block(m->g, "segments");
     for (int p = 0; p < m->points; p++)
         GNUPLOT_ROW(m->g, m->point[p][0], m->point[p][1]);
-    gnuplot_end_block(m->g);
     gnuplot_block(m->g, "zeros");
     GNUPLOT_ROW(m->g, NAN, NAN);
     for (int k = 0; k < m->scene->coordinates; k++) {
@@ -267,12 +264,11 @@ static void put_lines(struct model *m)
         const double zero = moved->direction - shown_angle(m, k), length = 1.25 * radius_of(m, k);
         if (!moved->turns)
             continue;
-        gnuplot_set(m->g, "%s", "");
+        gnuplot_gap(m->g);
         GNUPLOT_ROW(m->g, moved->centre[0], moved->centre[1]);
         GNUPLOT_ROW(m->g, moved->centre[0] + length * cos(zero),
                     moved->centre[1] + length * sin(zero));
     }
-    gnuplot_end_block(m->g);
 }
 
 static void put_labels(struct model *m)
@@ -370,45 +366,35 @@ static void put_words(struct model *m)
     gnuplot_set(m->g, "words_shown = %d", m->words);
 }
 
-static bool draw_model(const struct scenario *s, const stance_case *c, struct look *look,
-                       const char *directory, stance_message *message)
+static bool draw_model(const struct plot *plot, const struct scenario *s, const stance_case *c)
 {
     struct gnuplot g;
-    struct model *const m = calloc(1, sizeof *m);
-    char subtitle[160], stem[300];
-    if (!m)
-        return no_memory(message);
-    m->scene = s->scene;
-    m->c = c;
-    m->g = &g;
-    make_model(m);
-    const double fall = tan(c->robot[STANCE_ROBOT_SLOPE]);
-    snprintf(subtitle, sizeof subtitle, "The model in its first posture, scene %.60s",
-             s->scene->name);
-    bool good =
-        gnuplot_begin(&g, look, plot_model_gp, s->title[0] ? s->title : s->name, subtitle, message);
-    if (good) {
+    if (!gnuplot_begin(&g, plot, "model", plot_model_gp))
+        return false;
+    struct model *const m = gnuplot_room(&g, 1, sizeof *m);
+    gnuplot_say(&g, "The model in its first posture, scene %.60s", s->scene->name);
+    if (m) {
+        m->scene = s->scene;
+        m->c = c;
+        m->g = &g;
+        make_model(m);
         gnuplot_set(&g,
                     "low_x = %#.9g; high_x = %#.9g; low_y = %#.9g; high_y = %#.9g; size = %#.9g",
                     m->low[0], m->high[0], m->low[1], m->high[1], m->size);
-        gnuplot_set(&g, "has_place = %d; place_x = %#.9g; place_y = %#.9g", is_place(m, 0),
-                    c->position[0], c->position[1]);
+        gnuplot_set(&g, "has_place = %d; place_x = %#.9g; place_y = %#.9g; fall = %#.9g",
+                    is_place(m, 0), c->position[0], c->position[1],
+                    tan(c->robot[STANCE_ROBOT_SLOPE]));
         put_lines(m);
-        gnuplot_set(&g, "fall = %#.9g", fall);
         put_arrows(m);
         put_labels(m);
         put_words(m);
-        snprintf(stem, sizeof stem, "%.250s-model", s->name);
-        good = gnuplot_end(&g, directory, stem, message);
     }
-    free(m);
-    return good;
+    return gnuplot_end(&g);
 }
 
 int plot_model(const char *file, const char *const *sets, size_t set_count, struct look *look)
 {
     const struct parallel alone = parallel_alone();
-    const char *const directory = look->directory ? look->directory : ".";
     struct scenario s;
     struct plan plan;
     struct plan_error error = {0};
@@ -419,6 +405,11 @@ int plot_model(const char *file, const char *const *sets, size_t set_count, stru
         free(c);
         return EXIT_USAGE;
     }
+    const struct plot plot = {.title = s.title[0] ? s.title : s.name,
+                              .directory = look->directory ? look->directory : ".",
+                              .stem = s.name,
+                              .look = look,
+                              .message = &message};
     if (!plan_make(&plan, &s, true, 0, false, &error)) {
         fprintf(stderr, "stance plot: %s\n", error.message.text);
     } else {
@@ -426,10 +417,10 @@ int plot_model(const char *file, const char *const *sets, size_t set_count, stru
             fprintf(stderr, "stance plot: %s\n", error.message.text);
         else if (!plan_resolve(&plan, 0, c, &method))
             fprintf(stderr, "stance plot: the first case does not exist\n");
-        else if (!look->file && !gnuplot_directory(directory))
+        else if (!look->file && !gnuplot_directory(plot.directory))
             code = EXIT_IO;
         else
-            code = draw_model(&s, c, look, directory, &message) ? EXIT_DONE : EXIT_IO;
+            code = draw_model(&plot, &s, c) ? EXIT_DONE : EXIT_IO;
         plan_free(&plan);
     }
     if (message.text[0])

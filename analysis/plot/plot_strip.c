@@ -2,11 +2,7 @@
  * intervals of time. Both directions have the same scale. */
 #include "plot_case.h"
 
-#include "runner/base/message.h"
-
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 GNUPLOT_SCRIPT(plot_strip_gp, "analysis/plot/plot_strip.gp");
 
@@ -96,49 +92,39 @@ static void put_figures(struct gnuplot *g, const struct strip *strip)
     for (int i = 0; i < strip->count; i++) {
         for (int end = 0; end < 2; end++)
             GNUPLOT_ROW(g, (i + end) * strip->spacing, (0.5 - end) * strip->fall * strip->spacing);
-        gnuplot_set(g, "%s", "");
+        gnuplot_gap(g);
     }
-    gnuplot_end_block(g);
-    for (int part = FIGURE_SEGMENTS; part <= FIGURE_POINTS; part++) {
-        gnuplot_block(g, part == FIGURE_SEGMENTS ? "segments" : "points");
+    static const char *const blocks[] = {"segments", "points", "other"};
+    for (int k = 0; k < 3; k++) {
+        gnuplot_block(g, "%s", blocks[k]);
         for (int i = 0; i < strip->count; i++)
-            figure_put(g, &strip->figure[i], strip->contacts, (enum figure_part)part,
+            figure_put(g, k < 2 ? &strip->figure[i] : &strip->other[i], strip->contacts,
+                       k == 1 ? FIGURE_POINTS : FIGURE_SEGMENTS,
                        (i + 0.5) * strip->spacing - strip->figure[i].centre,
                        -strip->figure[i].base);
-        gnuplot_end_block(g);
     }
-    gnuplot_block(g, "other");
-    for (int i = 0; i < strip->count; i++)
-        if (strip->other[i].points > 0)
-            figure_put(g, &strip->other[i], strip->contacts, FIGURE_SEGMENTS,
-                       (i + 0.5) * strip->spacing - strip->figure[i].centre,
-                       -strip->figure[i].base);
-    GNUPLOT_ROW(g, NAN, NAN, NAN);
-    gnuplot_end_block(g);
 }
 
-bool plot_strip(const struct plot_case *c, stance_message *message)
+bool plot_strip(const struct plot_case *c)
 {
     struct gnuplot g;
-    struct strip *strip = calloc(1, sizeof *strip);
-    if (!strip)
-        return no_memory(message);
-    strip->c = c;
-    strip->fall = figure_fall(c);
-    make_strip(strip);
-    const bool good = plot_case_begin(c, &g, plot_strip_gp, "Stick figures", message);
-    if (good) {
+    if (!plot_case_begin(c, &g, "strip", plot_strip_gp, "Stick figures"))
+        return false;
+    struct strip *const strip = gnuplot_room(&g, 1, sizeof *strip);
+    if (strip) {
+        strip->c = c;
+        strip->fall = figure_fall(c);
+        make_strip(strip);
         gnuplot_set(&g,
                     "count = %d; spacing = %#.17g; low = %#.17g; high = %#.17g; travels = %d; "
                     "cases = %d",
                     strip->count, strip->spacing, strip->low, strip->high, strip->follows,
                     c->other ? 2 : 1);
         strip->contacts = figure_names(&g, c->scenario.scene);
-        gnuplot_arrays(&g, strip->count, "time");
+        gnuplot_arrays(&g, (size_t)strip->count, "time");
         for (int i = 0; i < strip->count; i++)
             gnuplot_number(&g, strip->figure[i].time, "time[%d]", i + 1);
         put_figures(&g, strip);
     }
-    free(strip);
-    return good && plot_end(c->plot, &g, "strip", message);
+    return gnuplot_end(&g);
 }
