@@ -9,7 +9,6 @@ GNUPLOT_SCRIPT(plot_accuracy_gp, "analysis/bench/plot_accuracy.gp");
 
 /* What a panel shows of a row. */
 enum shown { POSITION, VELOCITY, LABELS };
-enum { LINES = 8 }; /* under a method's name, at most */
 
 /* What there is no place for on a logarithmic axis is passed over. */
 static void widen(struct plot_range *range, double value)
@@ -54,15 +53,12 @@ static void put_rows(struct gnuplot *g, const struct accuracy *a, const stance_m
     }
 }
 
-/* Orders, failures and residuals in words under the name of the m-th method. */
+/* Orders, failures and residuals in words under the name of a method. */
 static void put_legend(struct gnuplot *g, const struct accuracy *a, const stance_method *method,
-                       size_t m)
+                       size_t style)
 {
-    char text[100];
     double residual = 0;
     uint64_t failed = 0, cases = 0;
-    int line = 0;
-#define PUT_LINE gnuplot_text(g, text, "about[%zu]", (m - 1) * LINES + (size_t)++line)
     for (size_t k = 0; k < a->rows; k++) {
         const struct accuracy_row *row = &a->row[k];
         if (belongs(a, k, method)) {
@@ -70,27 +66,20 @@ static void put_legend(struct gnuplot *g, const struct accuracy *a, const stance
             residual = fmax(residual, fmax(row->signorini, fmax(row->coulomb, row->dissipation)));
         }
     }
-    gnuplot_text(g, method->name, "method_name[%zu]", m);
-    for (size_t k = 0; k < a->orders && line + 2 < LINES; k++) {
+    gnuplot_legend(g, gnuplot_hue(style - 1), 0, 0, method->name, "");
+    for (size_t k = 0; k < a->orders; k++) {
         const struct accuracy_order *order = &a->order[k];
-        if (order->method == method && !isnan(order->position)) {
-            snprintf(text, sizeof text, "order %.2f of %s %.0e ... %.0e", order->position,
-                     order->by_tolerance ? "tolerance" : "step", order->from, order->to);
-            PUT_LINE;
-        }
+        if (order->method == method && !isnan(order->position))
+            gnuplot_about(g, "order %.2f of %s %.0e ... %.0e", order->position,
+                          order->by_tolerance ? "tolerance" : "step", order->from, order->to);
     }
     if (residual > 0)
-        snprintf(text, sizeof text, "contact laws broken by at most %.0e", residual);
+        gnuplot_about(g, "contact laws broken by at most %.0e", residual);
     else
-        snprintf(text, sizeof text, "contact laws never broken");
-    PUT_LINE;
-    if (failed > 0) {
-        snprintf(text, sizeof text, "gave up in %llu of %llu cases", (unsigned long long)failed,
-                 (unsigned long long)cases);
-        PUT_LINE;
-    }
-#undef PUT_LINE
-    gnuplot_set(g, "about_lines[%zu] = %d", m, line);
+        gnuplot_about(g, "contact laws never broken");
+    if (failed > 0)
+        gnuplot_about(g, "gave up in %llu of %llu cases", (unsigned long long)failed,
+                      (unsigned long long)cases);
 }
 
 /* Those of which there are rows beside the truth; style[]: colours stay with a method. */
@@ -126,13 +115,11 @@ bool accuracy_plot(const struct accuracy *a, const struct plot *plot)
                 truth->method->name, truth->tolerance, (unsigned long long)truth->cases,
                 a->labels ? "; open symbols: none unlike, drawn where one cell is."
                           : ". Errors of exactly zero are not drawn.");
-    gnuplot_set(&g, "panels = %d; labels = %d; lines_each = %d; methods = %zu", panels, a->labels,
-                LINES, methods);
-    gnuplot_arrays(&g, methods, "method_name method_style about_lines");
-    gnuplot_arrays(&g, methods * LINES, "about");
+    gnuplot_set(&g, "panels = %d; labels = %d", panels, a->labels);
+    gnuplot_arrays(&g, methods, "method_style");
     gnuplot_arrays(&g, 2, "cost_low cost_high error_low error_high");
     for (size_t m = 1; m <= methods; m++) {
-        put_legend(&g, a, method[m - 1], m);
+        put_legend(&g, a, method[m - 1], style[m - 1]);
         gnuplot_set(&g, "method_style[%zu] = %zu", m, style[m - 1]);
         for (int p = 0; p < panels; p++) {
             const enum shown shown = a->labels ? LABELS : p == 0 ? POSITION : VELOCITY;

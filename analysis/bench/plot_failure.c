@@ -11,29 +11,6 @@ GNUPLOT_SCRIPT(plot_failure_gp, "analysis/bench/plot_failure.gp");
 
 static const double lowest_share = 1e-16, highest_share = 10;
 
-/* Steps that divide a time evenly are a ladder but for rounding: such an axis counts as even when
- * no value is further than a third of a cell from where it is drawn. */
-static void make_axis(struct plot_axis *along, const struct results_axis *axis)
-{
-    plot_axis_make(along, axis);
-    if (along->scale != PLOT_LIST || axis->word || axis->count < 3 || !(axis->value[0] > 0) ||
-        !(axis->value[axis->count - 1] > 0))
-        return;
-    const size_t n = axis->count;
-    const double first = log10(axis->value[0]), last = log10(axis->value[n - 1]);
-    const double step = (last - first) / (double)(n - 1);
-    for (size_t i = 0; i < n; i++)
-        if (!(axis->value[i] > 0) ||
-            !(fabs(log10(axis->value[i]) - first - (double)i * step) < fabs(step) / 3))
-            return;
-    along->scale = PLOT_LOG;
-    along->falling = last < first;
-    along->first = fmin(first, last);
-    along->step = fabs(step);
-    along->low = along->first - 0.5 * along->step;
-    along->high = along->first + ((double)n - 0.5) * along->step;
-}
-
 /* What both pictures show: axes 1 and 2 of the file, the rows' names, and the line of theory. */
 struct maps {
     struct gnuplot g;
@@ -184,7 +161,8 @@ static bool draw_energy(struct maps *maps, const struct plot *plot)
 bool failure_plot(const struct failure *f, const struct plot *plot)
 {
     struct maps maps = {.f = f};
-    make_axis(&maps.across, &plot->r->axis[1]);
-    make_axis(&maps.up, &plot->r->axis[2]);
+    /* Steps that divide a time evenly are a ladder but for rounding. */
+    plot_axis_make_ladder(&maps.across, &plot->r->axis[1], 1.0 / 3);
+    plot_axis_make_ladder(&maps.up, &plot->r->axis[2], 1.0 / 3);
     return draw_verdicts(&maps, plot) && draw_energy(&maps, plot);
 }

@@ -9,9 +9,7 @@
 
 #include <ctype.h>
 #include <errno.h>
-#include <fcntl.h>
 #include <math.h>
-#include <spawn.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
@@ -19,9 +17,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-extern char **environ;
-
-enum { TOO_SMALL = 3 }; /* exit status of page.gp where the asked size has no room */
+/* Exit statuses: of page.gp where the asked size has no room, of sh. */
+enum { TOO_SMALL = 3, NOT_FOUND = 127 };
 
 GNUPLOT_SCRIPT(style_gp, "analysis/draw/style.gp");
 GNUPLOT_SCRIPT(legend_gp, "analysis/draw/legend.gp");
@@ -179,7 +176,8 @@ static void put_titles(struct gnuplot *g)
 bool gnuplot_begin(struct gnuplot *g, const struct plot *plot, const char *name, const char *script)
 {
     const char *base = kept_in() ? kept_in() : getenv("TMPDIR");
-    *g = (struct gnuplot){.plot = plot, .name = name, .rows = -1};
+    *g = (struct gnuplot){.plot = plot, .rows = -1};
+    snprintf(g->stem, sizeof g->stem, "%.400s%s%.100s", plot->stem, name[0] ? "-" : "", name);
     snprintf(g->scratch, sizeof g->scratch, "%s/stance-plot-XXXXXX",
              base && base[0] && strlen(base) < 200 ? base : "/tmp");
     g->sink = fopen("/dev/null", "wb");
@@ -231,33 +229,14 @@ bool gnuplot_needs(struct gnuplot *g, bool had)
 
 /* ---- running ------------------------------------------------------------------------------ */
 
-/* Runs gnuplot in the scratch directory; its exit status, or -1 with errno set. */
+/* Runs gnuplot in the scratch directory; its exit status, NOT_FOUND: there is none, or -1 with
+ * errno set. */
 static int run_gnuplot(const struct gnuplot *g)
 {
-    char *arguments[] = {"gnuplot", "-d", "script", NULL};
-    posix_spawn_file_actions_t actions;
-    pid_t child;
-    int status;
-
-    int error = posix_spawn_file_actions_init(&actions);
-    if (error == 0) {
-        error = posix_spawn_file_actions_addchdir_np(&actions, g->scratch);
-        error = error ? error : posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", 0, 0);
-        error = error ? error
-                      : posix_spawn_file_actions_addopen(&actions, 1, "errors",
-                                                         O_WRONLY | O_CREAT | O_TRUNC, 0600);
-        error = error ? error : posix_spawn_file_actions_adddup2(&actions, 1, 2);
-        error = error ? error : posix_spawnp(&child, "gnuplot", &actions, NULL, arguments, environ);
-        posix_spawn_file_actions_destroy(&actions);
-    }
-    if (error != 0) {
-        errno = error;
-        return -1;
-    }
-    while (waitpid(child, &status, 0) < 0)
-        if (errno != EINTR)
-            return -1;
-    return WIFEXITED(status) ? WEXITSTATUS(status) : 128;
+    setenv("STANCE_SCRATCH", g->scratch, 1);
+    const int status =
+        system("cd \"$STANCE_SCRATCH\" && exec gnuplot -d script </dev/null >errors 2>&1");
+    return status < 0 ? -1 : WIFEXITED(status) ? WEXITSTATUS(status) : 128;
 }
 
 /* The last line that gnuplot said. */
@@ -429,41 +408,30 @@ static bool write_svg(FILE *out, const struct look *look, const char *text, size
     return !ferror(out);
 }
 
-static void join_path(const char *directory, const char *name, char *path, size_t size)
-{
-    snprintf(path, size, "%s%s%s", directory, directory[strlen(directory) - 1] == '/' ? "" : "/",
-             name);
-}
-
 static bool not_written(const char *path, stance_message *message)
 {
     return complain(message, "%.150s: cannot be written: %s", path, strerror(errno));
 }
 
-/* One file of a picture: drawn at `from`, belongs to `to`; complete at `part`, beside it, it takes
- * that place at once. No reader ever sees half a picture, and none is left by a full disk. */
-struct product {
-    const struct look *look;
-    const char *scratch; /* directory in which it was drawn */
-    int format;
-    bool parted; /* there is something at `part` */
-    char from[320], part[2048], to[2048];
-};
+/* A file of a picture is drawn in the scratch directory, and belongs into the plot's; whole as a
+ * part beside its place, it takes that place at once. No reader ever sees half a picture, and none
+ * is left by a full disk. */
+enum place { DRAWN, PART, PLACE };
+enum { PATH = 2048 };
 
-static struct product name_product(const struct gnuplot *g, int format, const char *directory,
-                                   const char *stem)
+static const char *path_of(const struct gnuplot *g, enum place place, int format, char path[PATH])
 {
-    struct product product = {g->plot->look, g->scratch, format, false, "", "", ""};
-    char drawn[32], name[600];
-    snprintf(drawn, sizeof drawn, "picture.%s", look_endings[format]);
-    scratch_path(g, drawn, product.from);
-    snprintf(name, sizeof name, "%s.%s", stem, look_endings[format]);
-    join_path(directory, name, product.to, sizeof product.to);
-    if (g->plot->look->file)
-        snprintf(product.to, sizeof product.to, "%s", g->plot->look->file);
-    snprintf(name, sizeof name, ".stance-%ld.%s", (long)getpid(), look_endings[format]);
-    join_path(directory, name, product.part, sizeof product.part);
-    return product;
+    const char *const directory = place == DRAWN ? g->scratch : g->plot->directory;
+    const char *const slash = directory[strlen(directory) - 1] == '/' ? "" : "/";
+    if (place == PLACE && g->plot->look->file)
+        return g->plot->look->file;
+    if (place == PART)
+        snprintf(path, PATH, "%s%s.stance-%ld.%s", directory, slash, (long)getpid(),
+                 look_endings[format]);
+    else
+        snprintf(path, PATH, "%s%s%s.%s", directory, slash, place == DRAWN ? "picture" : g->stem,
+                 look_endings[format]);
+    return path;
 }
 
 /* gnuplot does not tell when the disk that it draws on is full: the last words of a file do. */
@@ -482,21 +450,20 @@ static bool is_complete(const char *text, size_t size, int format)
     return size >= whole && memcmp(text + size - whole, last[format].words, length) == 0;
 }
 
-static bool copy_product(struct product *product, stance_message *message)
+static bool copy_part(const struct gnuplot *g, int format)
 {
     size_t size = 0;
-    char *text = read_file(product->from, &size);
-    if (!text || !is_complete(text, size, product->format)) {
-        complain(message, "gnuplot drew %s for %.100s; is there room in %.60s?",
-                 text ? "half a picture" : "nothing", product->to, product->scratch);
+    char path[PATH], *text = read_file(path_of(g, DRAWN, format, path), &size);
+    if (!text || !is_complete(text, size, format)) {
+        complain(g->plot->message, "gnuplot drew %s for %.100s; is there room in %.60s?",
+                 text ? "half a picture" : "nothing", path_of(g, PLACE, format, path), g->scratch);
         free(text);
         return false;
     }
-    unlink(product->part); /* of a process of that number that was killed */
-    FILE *out = fopen(product->part, "wbx");
-    product->parted = out != NULL;
-    bool good = out && (product->format == LOOK_SVG ? write_svg(out, product->look, text, size)
-                                                    : fwrite(text, 1, size, out) == size);
+    unlink(path_of(g, PART, format, path)); /* of a process of that number that was killed */
+    FILE *out = fopen(path, "wbx");
+    bool good = out && (format == LOOK_SVG ? write_svg(out, g->plot->look, text, size)
+                                           : fwrite(text, 1, size, out) == size);
     int error = errno;
     if (out && fclose(out) != 0 && good) {
         error = errno;
@@ -504,34 +471,32 @@ static bool copy_product(struct product *product, stance_message *message)
     }
     free(text);
     errno = error;
-    return good || not_written(product->to, message);
+    return good || not_written(path_of(g, PLACE, format, path), g->plot->message);
 }
 
 /* Brings the pictures to where they belong: all, or where one cannot be written none. */
-static bool fetch(const struct gnuplot *g, const char *directory, const char *stem,
-                  stance_message *message)
+static bool fetch(const struct gnuplot *g)
 {
-    struct product product[LOOK_FORMAT_COUNT];
-    int count = 0;
+    const bool *const wanted = g->plot->look->format;
+    char part[PATH], path[PATH];
     bool good = true;
     for (int f = 0; f < LOOK_FORMAT_COUNT; f++)
-        if (g->plot->look->format[f])
-            product[count++] = name_product(g, f, directory, stem);
-    for (int k = 0; k < count; k++)
-        good = good && copy_product(&product[k], message);
-    for (int k = 0; k < count; k++) {
-        const char *const to = product[k].to;
-        good = good && (rename(product[k].part, to) == 0 || not_written(to, message));
+        good = good && (!wanted[f] || copy_part(g, f));
+    for (int f = 0; f < LOOK_FORMAT_COUNT; f++) {
+        const char *const from = path_of(g, PART, f, part), *const to = path_of(g, PLACE, f, path);
+        if (!wanted[f])
+            continue;
+        good = good && (rename(from, to) == 0 || not_written(to, g->plot->message));
         if (good)
             puts(strncmp(to, "./", 2) == 0 ? to + 2 : to);
-        else if (product[k].parted)
-            unlink(product[k].part);
+        else
+            unlink(from);
     }
     return good;
 }
 
 /* Runs gnuplot and fetches what it drew. */
-static bool draw(const struct gnuplot *g, const char *stem)
+static bool draw(const struct gnuplot *g)
 {
     stance_message *const message = g->plot->message;
     char complaint[120];
@@ -540,13 +505,13 @@ static bool draw(const struct gnuplot *g, const char *stem)
     if (g->error)
         return complain(message, "%.100s: cannot be written: %s", g->scratch, strerror(g->error));
     const int status = run_gnuplot(g);
-    if (status < 0 && errno == ENOENT)
+    if (status == NOT_FOUND)
         return complain(message, "gnuplot, which draws the pictures, is not installed; on Debian: "
                                  "apt-get install gnuplot-nox");
     if (status < 0)
         return complain(message, "gnuplot cannot be run: %s", strerror(errno));
     if (status == 0)
-        return fetch(g, g->plot->directory, stem, message);
+        return fetch(g);
     read_complaint(g, complaint);
     return complain(message,
                     status == TOO_SMALL ? "%.190s: a larger --size, or shorter --labels"
@@ -575,27 +540,26 @@ void gnuplot_abandon(struct gnuplot *g)
 
 bool gnuplot_end(struct gnuplot *g)
 {
-    char stem[600], path[1024];
-    snprintf(stem, sizeof stem, "%.400s%s%s", g->plot->stem, g->name[0] ? "-" : "", g->name);
-    const char *const dash = strrchr(stem, '-');
+    const char *const dash = strrchr(g->stem, '-');
+    char path[1024];
     const bool missing = g->missing;
     if (missing && g->error == ENOMEM)
         no_memory(g->plot->message);
-    if (missing || !look_wants(g->plot->look, dash ? dash + 1 : stem)) {
+    if (missing || !look_wants(g->plot->look, dash ? dash + 1 : g->stem)) {
         gnuplot_abandon(g);
         return !missing;
     }
     put_titles(g);
     gnuplot_close_cells(g, g->data);
     put_formats(g);
-    const bool good = draw(g, stem);
+    const bool good = draw(g);
     leave(g);
     if (!good || !kept_in()) {
         remove_picture(g->scratch);
         return good;
     }
     /* The scratch directory stays where it is, under the picture's name; a former one goes. */
-    join_path(kept_in(), stem, path, sizeof path);
+    snprintf(path, sizeof path, "%s/%s", kept_in(), g->stem);
     remove_picture(path);
     return rename(g->scratch, path) == 0 || not_written(path, g->plot->message);
 }

@@ -35,11 +35,11 @@ struct plot {
 
 struct gnuplot {
     const struct plot *plot;
-    const char *name; /* of the picture; "": the stem alone is */
     struct gnuplot_room *room;
     FILE *data;          /* variables and data blocks are appended here */
     FILE *sink;          /* takes what has no file */
     char axis[16];       /* the last one's name */
+    char stem[520];      /* of the files */
     char scratch[256];   /* directory */
     char subtitle[2400]; /* the line under the title, so far */
     int panels, series;  /* so far */

@@ -20,6 +20,8 @@ struct plot_axis {
 };
 
 void plot_axis_make(struct plot_axis *along, const struct results_axis *axis);
+/* Logarithms count as even when none is further than a part of a cell from where it is drawn. */
+void plot_axis_make_ladder(struct plot_axis *along, const struct results_axis *axis, double part);
 /* For curves: numbers without an even spacing stand where they belong, not in a list. */
 void plot_axis_make_curve(struct plot_axis *along, const struct results_axis *axis);
 /* Where value i stands. */

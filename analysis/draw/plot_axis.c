@@ -25,12 +25,13 @@ static bool is_positive(const struct results_axis *axis)
     return true;
 }
 
-static bool is_even(const struct results_axis *axis, bool logarithm)
+/* Whether no value is further than a part of a cell from where it would be drawn. */
+static bool is_even(const struct results_axis *axis, bool logarithm, double part)
 {
     double first = raw(axis, logarithm, 0);
     double step = (raw(axis, logarithm, axis->count - 1) - first) / (double)(axis->count - 1);
     for (size_t i = 0; i < axis->count; i++)
-        if (!(fabs(raw(axis, logarithm, i) - first - (double)i * step) <= 1e-5 * fabs(step)))
+        if (!(fabs(raw(axis, logarithm, i) - first - (double)i * step) <= part * fabs(step)))
             return false;
     return step != 0;
 }
@@ -45,17 +46,22 @@ static void make_even(struct plot_axis *along, bool logarithm)
     along->step = fabs(last - first) / (double)(axis->count - 1);
 }
 
-void plot_axis_make(struct plot_axis *along, const struct results_axis *axis)
+void plot_axis_make_ladder(struct plot_axis *along, const struct results_axis *axis, double part)
 {
     *along = (struct plot_axis){.axis = axis, .scale = PLOT_LIST, .step = 1};
     if (!axis->word && axis->count > 1) {
-        if (is_even(axis, false))
+        if (is_even(axis, false, 1e-5))
             make_even(along, false);
-        else if (axis->count > 2 && is_positive(axis) && is_even(axis, true))
+        else if (axis->count > 2 && is_positive(axis) && is_even(axis, true, part))
             make_even(along, true);
     }
     along->low = along->first - 0.5 * along->step;
     along->high = along->first + ((double)axis->count - 0.5) * along->step;
+}
+
+void plot_axis_make(struct plot_axis *along, const struct results_axis *axis)
+{
+    plot_axis_make_ladder(along, axis, 1e-5);
 }
 
 /* Unevenness of the spacing: standard deviation of the steps over their mean. */

@@ -30,6 +30,13 @@ struct moved {
     double direction; /* rad, from the centre to that point, counter-clockwise from +x */
 };
 
+/* At a place, of what is at `of`, all in m. */
+struct label {
+    const char *text;
+    double x, z, of[2];
+    enum ink ink;
+};
+
 struct model {
     const stance_scene *scene;
     const stance_case *c;
@@ -40,6 +47,7 @@ struct model {
     double low[2], high[2], size; /* m: of the figure */
     struct gnuplot *g;
     int labels, words; /* so far */
+    struct label label[MOST_LABELS];
 };
 
 /* ---- what coordinates move ---------------------------------------------------------------- */
@@ -124,17 +132,11 @@ static void make_model(struct model *m)
 
 /* ---- drawing ------------------------------------------------------------------------------ */
 
-/* At a place, of what is at `of`, both in m. */
 static void label(struct model *m, enum ink ink, double x, double z, const double of[2],
                   const char *text)
 {
-    if (m->labels == MOST_LABELS)
-        return;
-    gnuplot_text(m->g, look_label(m->g->plot->look, text), "label_text[%d]", ++m->labels);
-    gnuplot_set(m->g,
-                "k = %d; label_x[k] = %#.9g; label_y[k] = %#.9g; label_ink[k] = %d; "
-                "of_x[k] = %#.9g; of_y[k] = %#.9g",
-                m->labels, x, z, ink, of[0], of[1]);
+    if (m->labels < MOST_LABELS)
+        m->label[m->labels++] = (struct label){text, x, z, {of[0], of[1]}, ink};
 }
 
 /* At a radius about the centre of coordinate k, at an angle. */
@@ -214,44 +216,6 @@ static double slide_of(const struct model *m, int k, double from[2])
     return sign ? 0.18 * m->size : q;
 }
 
-static void put_arrows(struct model *m)
-{
-    gnuplot_block(m->g, "arrows");
-    for (int k = 0; k < m->scene->coordinates; k++) {
-        const struct moved *const moved = &m->moved[k];
-        const double angle = shown_angle(m, k);
-        if (moved->turns) {
-            arc(m, k, INK_COORDINATE, radius_of(m, k), moved->direction - angle,
-                moved->direction + (angle == 0 ? 0.6 : 0));
-        } else if (!is_place(m, k)) {
-            double from[2];
-            const double far = slide_of(m, k, from);
-            GNUPLOT_ROW(m->g, from[0], from[1], far * moved->along[0], far * moved->along[1],
-                        INK_COORDINATE, 1);
-        }
-    }
-    for (int a = 0; a < m->scene->actuators; a++) {
-        const int k = m->scene->actuated[a];
-        const struct moved *const moved = &m->moved[k];
-        if (moved->turns)
-            arc(m, k, INK_ACTUATOR, torque_radius(m, k), moved->direction + 0.12,
-                moved->direction + 0.7);
-        else
-            GNUPLOT_ROW(m->g, moved->point[0], moved->point[1], 0.18 * m->size * moved->along[0],
-                        0.18 * m->size * moved->along[1], INK_ACTUATOR, 1);
-    }
-    const double slope = m->c->robot[STANCE_ROBOT_SLOPE];
-    const double rest[STANCE_MAX_COORDINATES] = {0}, length = 0.13 * m->size;
-    for (int k = 0; k < plot_case_grounded(m->scene); k++) {
-        double point[2], speed[2];
-        m->scene->contact_point(m->scene, m->c->robot, m->c->position, rest, k, point, speed);
-        GNUPLOT_ROW(m->g, point[0], point[1], length * sin(slope), length * cos(slope), INK_CONTACT,
-                    1);
-        GNUPLOT_ROW(m->g, point[0], point[1], length * cos(slope), -length * sin(slope),
-                    INK_CONTACT, 1);
-    }
-}
-
 static void put_lines(struct model *m)
 {
     gnuplot_block(m->g, "segments");
@@ -271,56 +235,84 @@ static void put_lines(struct model *m)
     }
 }
 
-static void put_labels(struct model *m)
+/* Beside the arc, beyond where the angle is 0; an arc that only shows the sign: at its end. */
+static void put_coordinate(struct model *m, int k)
 {
-    gnuplot_arrays(m->g, MOST_LABELS, "label_text label_x label_y label_ink of_x of_y");
-    for (int k = 0; k < m->scene->coordinates; k++) {
-        const struct moved *const moved = &m->moved[k];
-        /* Beside the arc, beyond where the angle is 0; an arc that only shows the sign: at its end.
-         */
+    const struct moved *const moved = &m->moved[k];
+    const char *const name = m->scene->coordinate[k].name;
+    double at[2], of[2];
+    if (moved->turns) {
         const double angle = shown_angle(m, k), radius = radius_of(m, k),
                      gap = 0.06 * m->size / radius;
-        const double middle = moved->direction + (angle == 0  ? 0.6 + gap
-                                                  : angle > 0 ? -angle - gap
-                                                              : -angle + gap);
-        if (moved->turns) {
-            double at[2], of[2];
-            place_at(m, k, radius, middle, at);
-            place_at(m, k, radius, moved->direction + (angle == 0 ? 0.3 : -0.5 * angle), of);
-            label(m, INK_COORDINATE, at[0], at[1], of, m->scene->coordinate[k].name);
-        }
-        if (!moved->turns && !is_place(m, k)) {
-            double from[2];
-            const double half = 0.5 * slide_of(m, k, from), side = 0.05 * m->size;
-            const double of[2] = {from[0] + half * moved->along[0],
-                                  from[1] + half * moved->along[1]};
-            label(m, INK_COORDINATE, of[0] - side * moved->along[1], of[1] + side * moved->along[0],
-                  of, m->scene->coordinate[k].name);
-        }
+        arc(m, k, INK_COORDINATE, radius, moved->direction - angle,
+            moved->direction + (angle == 0 ? 0.6 : 0));
+        place_at(m, k, radius,
+                 moved->direction + (angle == 0  ? 0.6 + gap
+                                     : angle > 0 ? -angle - gap
+                                                 : -angle + gap),
+                 at);
+        place_at(m, k, radius, moved->direction + (angle == 0 ? 0.3 : -0.5 * angle), of);
+        label(m, INK_COORDINATE, at[0], at[1], of, name);
+    } else if (!is_place(m, k)) {
+        const double far = slide_of(m, k, of), side = 0.05 * m->size;
+        GNUPLOT_ROW(m->g, of[0], of[1], far * moved->along[0], far * moved->along[1],
+                    INK_COORDINATE, 1);
+        for (int i = 0; i < 2; i++)
+            of[i] += 0.5 * far * moved->along[i];
+        label(m, INK_COORDINATE, of[0] - side * moved->along[1], of[1] + side * moved->along[0], of,
+              name);
     }
-    for (int a = 0; a < m->scene->actuators; a++) {
-        const int k = m->scene->actuated[a];
-        const struct moved *const moved = &m->moved[k];
-        const double far = 0.22 * m->size;
-        double at[2] = {moved->point[0] + far * moved->along[0],
-                        moved->point[1] + far * moved->along[1]};
-        double of[2] = {moved->point[0] + 0.5 * far * moved->along[0],
-                        moved->point[1] + 0.5 * far * moved->along[1]};
-        if (moved->turns) {
-            place_at(m, k, torque_radius(m, k) + 0.05 * m->size, moved->direction + 0.6, at);
-            place_at(m, k, torque_radius(m, k), moved->direction + 0.5, of);
-        }
-        label(m, INK_ACTUATOR, at[0], at[1], of, m->scene->actuator_name[a]);
+}
+
+static void put_actuator(struct model *m, int a)
+{
+    const int k = m->scene->actuated[a];
+    const struct moved *const moved = &m->moved[k];
+    const double x = moved->point[0], z = moved->point[1], dx = m->size * moved->along[0],
+                 dz = m->size * moved->along[1];
+    double at[2] = {x + 0.22 * dx, z + 0.22 * dz}, of[2] = {x + 0.11 * dx, z + 0.11 * dz};
+    if (moved->turns) {
+        const double radius = torque_radius(m, k);
+        arc(m, k, INK_ACTUATOR, radius, moved->direction + 0.12, moved->direction + 0.7);
+        place_at(m, k, radius + 0.05 * m->size, moved->direction + 0.6, at);
+        place_at(m, k, radius, moved->direction + 0.5, of);
+    } else {
+        GNUPLOT_ROW(m->g, x, z, 0.18 * dx, 0.18 * dz, INK_ACTUATOR, 1);
     }
+    label(m, INK_ACTUATOR, at[0], at[1], of, m->scene->actuator_name[a]);
+}
+
+static void put_contact(struct model *m, int k)
+{
+    const double slope = m->c->robot[STANCE_ROBOT_SLOPE], length = 0.13 * m->size;
     const double rest[STANCE_MAX_COORDINATES] = {0};
-    const int grounded = plot_case_grounded(m->scene);
-    for (int k = 0; k < grounded; k++) {
-        double point[2], speed[2];
-        m->scene->contact_point(m->scene, m->c->robot, m->c->position, rest, k, point, speed);
-        label(m, INK_CONTACT, point[0], point[1] - 0.06 * m->size, point,
-              m->scene->contact_name[k]);
-    }
+    double p[2], speed[2];
+    m->scene->contact_point(m->scene, m->c->robot, m->c->position, rest, k, p, speed);
+    GNUPLOT_ROW(m->g, p[0], p[1], length * sin(slope), length * cos(slope), INK_CONTACT, 1);
+    GNUPLOT_ROW(m->g, p[0], p[1], length * cos(slope), -length * sin(slope), INK_CONTACT, 1);
+    label(m, INK_CONTACT, p[0], p[1] - 0.06 * m->size, p, m->scene->contact_name[k]);
+}
+
+/* The arrows of all things and, after them, their labels. */
+static void put_things(struct model *m)
+{
+    gnuplot_block(m->g, "arrows");
+    for (int k = 0; k < m->scene->coordinates; k++)
+        put_coordinate(m, k);
+    for (int a = 0; a < m->scene->actuators; a++)
+        put_actuator(m, a);
+    for (int k = 0; k < plot_case_grounded(m->scene); k++)
+        put_contact(m, k);
+    gnuplot_arrays(m->g, MOST_LABELS, "label_text label_x label_y label_ink of_x of_y");
     gnuplot_set(m->g, "labels = %d", m->labels);
+    for (int k = 0; k < m->labels; k++) {
+        const struct label *const l = &m->label[k];
+        gnuplot_text(m->g, look_label(m->g->plot->look, l->text), "label_text[%d]", k + 1);
+        gnuplot_set(m->g,
+                    "k = %d; label_x[k] = %#.9g; label_y[k] = %#.9g; label_ink[k] = %d; "
+                    "of_x[k] = %#.9g; of_y[k] = %#.9g",
+                    k + 1, l->x, l->z, l->ink, l->of[0], l->of[1]);
+    }
 }
 
 /* Which way a slide goes, seen from where the robot stands. */
@@ -385,8 +377,7 @@ static bool draw_model(const struct plot *plot, const struct scenario *s, const 
                     is_place(m, 0), c->position[0], c->position[1],
                     tan(c->robot[STANCE_ROBOT_SLOPE]));
         put_lines(m);
-        put_arrows(m);
-        put_labels(m);
+        put_things(m);
         put_words(m);
     }
     return gnuplot_end(&g);

@@ -16,109 +16,79 @@ _Static_assert(MOST_OUTLINES <= DASHES * sizeof marks / sizeof marks[0], "outlin
 
 struct page {
     struct gnuplot g;
-    const struct plot *plots; /* [files] */
+    const struct plot *plots;                 /* [files] */
+    struct plot_layout layout[MOST_OUTLINES]; /* [files] */
+    struct plot_frame frame;                  /* with scales that all files can have */
+    const char *swept; /* the one axis that outlines differ in, beside files; NULL: none, several */
     int files, outlines;
     enum results_kind of;
-    enum plot_scale scale[2]; /* that all files can have */
-    double low[2], high[2];
-    bool cross;
-    const char *swept; /* the one axis that outlines differ in, beside files; NULL: none, several */
 };
 
-static const struct results_axis *axis_of(const struct results *r, const struct plot_layout *layout,
-                                          int k)
+static const struct results_axis *axis_of(const struct page *page, int f, int k)
 {
-    return &r->axis[k == 0 ? layout->x : layout->y];
+    const struct plot_layout *const layout = &page->layout[f];
+    return &layout->r->axis[k == 0 ? layout->x : layout->y];
 }
 
 /* ---- axes --------------------------------------------------------------------------------- */
 
 /* Whether a file has a map, over the axes of the first one. */
-static bool check_file(const struct page *page, int f, const struct plot_layout *first)
+static bool check_file(struct page *page, int f)
 {
     stance_message *const message = page->plots[0].message;
-    const struct results *const r = page->plots[f].r, *const r0 = page->plots[0].r;
-    struct plot_layout layout;
+    const struct results *const r = page->plots[f].r;
     if (r->single || r->axes < 2 || r->sample >= 0)
         return complain(message, "%.150s: has no outline: it is no sweep over a grid of two axes",
                         r->file);
-    plot_layout_make(&layout, r, MOST_OUTLINES);
+    plot_layout_make(&page->layout[f], r, MOST_OUTLINES / page->files);
     for (int k = 0; k < 2; k++) {
-        const struct results_axis *const own = axis_of(r, &layout, k), *const of =
-                                                                           axis_of(r0, first, k);
+        const struct results_axis *const own = axis_of(page, f, k), *const of = axis_of(page, 0, k);
         bool same = strcmp(own->name, of->name) == 0 && !own->word == !of->word &&
                     (!own->word || own->count == of->count);
         for (size_t i = 0; same && own->word && i < own->count; i++)
             same = strcmp(own->word[i], of->word[i]) == 0;
         if (!same)
             return complain(message, "%.70s: its map is over %.30s, that of %.70s over %.30s",
-                            r->file, own->name, r0->file, of->name);
+                            r->file, own->name, page->plots[0].r->file, of->name);
     }
     return true;
 }
 
 /* An axis of a file's map on the page's scale. */
-static struct plot_axis on_page(const struct page *page, const struct results_axis *axis, int k)
+static struct plot_axis on_page(const struct page *page, int f, int k)
 {
     struct plot_axis along;
-    plot_axis_make_curve(&along, axis);
-    along.scale = page->scale[k];
-    along.low = page->low[k];
-    along.high = page->high[k];
+    plot_axis_make_curve(&along, axis_of(page, f, k));
+    along.scale = page->frame.scale[k];
+    along.low = page->frame.low[k];
+    along.high = page->frame.high[k];
     return along;
 }
 
-/* The scales and ranges that hold all maps. */
-static void choose_scales(struct page *page)
+/* The scale and the range that hold all maps. */
+static void choose_scale(struct page *page, int k)
 {
-    const struct results_axis *axis[MOST_OUTLINES][2];
+    struct plot_range range = PLOT_NOTHING;
+    page->frame.scale[k] = PLOT_LOG;
     for (int f = 0; f < page->files; f++) {
-        struct plot_layout layout;
-        plot_layout_make(&layout, page->plots[f].r, MOST_OUTLINES);
-        for (int k = 0; k < 2; k++)
-            axis[f][k] = axis_of(page->plots[f].r, &layout, k);
+        struct plot_axis along;
+        plot_axis_make_curve(&along, axis_of(page, f, k));
+        page->frame.scale[k] = along.scale == PLOT_LOG ? page->frame.scale[k] : along.scale;
     }
-    for (int k = 0; k < 2; k++) {
-        page->scale[k] = PLOT_LOG;
-        for (int f = 0; f < page->files; f++) {
-            struct plot_axis along;
-            plot_axis_make_curve(&along, axis[f][k]);
-            page->scale[k] = along.scale == PLOT_LOG ? page->scale[k] : along.scale;
-        }
-        page->low[k] = INFINITY;
-        page->high[k] = -INFINITY;
-        for (int f = 0; f < page->files; f++) {
-            const struct plot_axis along = on_page(page, axis[f][k], k);
-            for (size_t i = 0; i < axis[f][k]->count; i++) {
-                page->low[k] = fmin(page->low[k], plot_axis_place(&along, i));
-                page->high[k] = fmax(page->high[k], plot_axis_place(&along, i));
-            }
-        }
-        if (!(page->low[k] < page->high[k])) {
-            page->low[k] -= 0.5;
-            page->high[k] += 0.5;
-        }
+    for (int f = 0; f < page->files; f++) {
+        const struct plot_axis along = on_page(page, f, k);
+        for (size_t i = 0; i < along.axis->count; i++)
+            plot_widen(&range, plot_axis_place(&along, i));
     }
-}
-
-static void put_axes(struct page *page, const struct plot_layout *layout)
-{
-    const struct results *const r = page->plots[0].r;
-    page->cross = true;
-    for (int k = 0; k < 2; k++) {
-        const struct plot_axis along = on_page(page, axis_of(r, layout, k), k);
-        plot_axis_write(&along, &page->g, k == 0 ? 'x' : 'y');
-        page->cross = page->cross && along.axis->offset && along.scale == PLOT_LINEAR &&
-                      along.low < 0 && along.high > 0;
-    }
-    gnuplot_set(&page->g, "cross = %d", page->cross);
+    range = plot_roomy(range, 0);
+    page->frame.low[k] = range.low;
+    page->frame.high[k] = range.high;
 }
 
 /* ---- outlines ----------------------------------------------------------------------------- */
 
 /* A panel of a file, whose cases are counted from left to right and from below. */
 struct panel {
-    const struct results *r;
     const struct plot_layout *layout;
     int number;
     struct statistics_place *points[2];
@@ -149,7 +119,7 @@ static void put_lines(struct page *page, const struct boundary *b, const struct 
 /* Which cases of a panel are inside; NULL: no memory. */
 static uint8_t *find_inside(struct page *page, const struct panel *panel, double *share)
 {
-    const struct results *const r = panel->r;
+    const struct results *const r = panel->layout->r;
     uint8_t *const inside = gnuplot_room(&page->g, panel->count[0] * panel->count[1], 1);
     size_t sum = 0, done = 0;
     for (size_t j = 0; inside && j < panel->count[1]; j++) {
@@ -175,19 +145,21 @@ static void put_legend(struct page *page, const struct panel *panel, double shar
     if (page->files == 1)
         snprintf(name, sizeof name, "%s", values[0] ? values : results_kind_names[page->of]);
     else
-        snprintf(name, sizeof name, "%s%s%s", look_label(page->g.plot->look, panel->r->name),
-                 values[0] ? ", " : "", values);
+        snprintf(name, sizeof name, "%s%s%s",
+                 look_label(page->g.plot->look, panel->layout->r->name), values[0] ? ", " : "",
+                 values);
     snprintf(more, sizeof more, "%.1f %%", share);
     gnuplot_legend(&page->g, gnuplot_hue(k), (int)k % DASHES + 1, marks[k / DASHES], name, more);
 }
 
-static void put_outline(struct page *page, struct panel panel)
+static void put_outline(struct page *page, int f, int number)
 {
     struct gnuplot *const g = &page->g;
+    struct panel panel = {.layout = &page->layout[f], .number = number};
     struct boundary b = {0};
     double share;
     for (int k = 0; k < 2; k++) {
-        const struct plot_axis along = on_page(page, axis_of(panel.r, panel.layout, k), k);
+        const struct plot_axis along = on_page(page, f, k);
         panel.count[k] = along.axis->count;
         panel.points[k] = plot_axis_points(&along, g);
     }
@@ -205,21 +177,16 @@ static void put_outline(struct page *page, struct panel panel)
 /* ---- what linear theory allows -------------------------------------------------------------- */
 
 /* A line in the colour of each outline, or one for all where that is the same. */
-static void put_allowed(struct page *page, int most)
+static void put_allowed(struct page *page)
 {
-    const struct plot_frame frame = {{page->scale[0], page->scale[1]},
-                                     {page->low[0], page->low[1]},
-                                     {page->high[0], page->high[1]}};
     struct plot_allowed_panel panel[MOST_OUTLINES];
     int count = 0;
     bool same = true;
     for (int f = 0; f < page->files; f++) {
-        struct plot_layout layout;
         struct plot_allowed allowed;
-        plot_layout_make(&layout, page->plots[f].r, most);
-        if (!plot_allowed_make(&allowed, &page->g, &layout, &frame))
+        if (!plot_allowed_make(&allowed, &page->g, &page->layout[f], &page->frame))
             return;
-        for (int k = 0; k < layout.panels; k++)
+        for (int k = 0; k < page->layout[f].panels; k++)
             panel[count++] =
                 allowed.panels > 0 ? allowed.panel[k] : (struct plot_allowed_panel){.share = NAN};
     }
@@ -237,62 +204,60 @@ static const char *find_swept(const struct page *page)
 {
     const char *swept = NULL;
     for (int f = 0; f < page->files; f++) {
-        const struct results *const r = page->plots[f].r;
-        struct plot_layout layout;
-        plot_layout_make(&layout, r, MOST_OUTLINES);
-        const char *const own = layout.others > 0 ? r->axis[layout.other[0]].name : NULL;
-        if (layout.others > 1 || (swept && own && strcmp(swept, own) != 0))
+        const struct plot_layout *const layout = &page->layout[f];
+        const char *const own = layout->others > 0 ? layout->r->axis[layout->other[0]].name : NULL;
+        if (layout->others > 1 || (swept && own && strcmp(swept, own) != 0))
             return NULL;
         swept = own ? own : swept;
     }
     return swept;
 }
 
-static void put(struct page *page, const struct plot_layout *first)
+static void put(struct page *page)
 {
     struct gnuplot *const g = &page->g;
-    const int most = MOST_OUTLINES / page->files; /* files are fewer: command_plot.c */
-    char head[200];
+    bool cross = true;
     gnuplot_say(g, "Outlines of where the outcome is: %s; beside them its share of cases",
                 results_kind_names[page->of]);
-    put_axes(page, first);
+    for (int k = 0; k < 2; k++) {
+        choose_scale(page, k);
+        const struct plot_axis along = on_page(page, 0, k);
+        plot_axis_write(&along, g, k == 0 ? 'x' : 'y');
+        cross = cross && along.axis->offset && along.scale == PLOT_LINEAR && along.low < 0 &&
+                along.high > 0;
+    }
     page->swept = find_swept(page); /* what the values in the legend are of */
-    snprintf(head, sizeof head, "%s%s", page->swept && page->files > 1 ? "file, " : "",
-             page->swept ? look_label(g->plot->look, page->swept) : "");
+    const char *const swept = page->swept ? look_label(g->plot->look, page->swept) : "";
+    char head[200];
+    snprintf(head, sizeof head, "%s%s", swept[0] && page->files > 1 ? "file, " : "", swept);
     gnuplot_text(g, head, "legend_head");
     for (int f = 0; f < page->files; f++) {
-        struct plot_layout layout;
-        plot_layout_make(&layout, page->plots[f].r, most);
-        for (int p = 0; p < layout.panels; p++)
-            put_outline(page, (struct panel){page->plots[f].r, &layout, p, {NULL}, {0}});
-        plot_layout_note(&layout, g);
+        for (int p = 0; p < page->layout[f].panels; p++)
+            put_outline(page, f, p);
+        plot_layout_note(&page->layout[f], g);
     }
-    put_allowed(page, most);
-    gnuplot_set(g, "outlines = %d", page->outlines);
-    if (page->cross)
+    put_allowed(page);
+    gnuplot_set(g, "outlines = %d; cross = %d", page->outlines, cross);
+    if (cross)
         gnuplot_legend(g, "0x000000", 0, 1, "equilibrium", "");
 }
 
 bool plot_outline(const struct plot *plots, int files, enum results_kind of)
 {
     struct page page = {.plots = plots, .files = files};
-    struct plot_layout layout = {0};
     struct plot plot = plots[0];
     char title[40];
     bool same = true;
-    if (!plots[0].r->single && plots[0].r->axes >= 2)
-        plot_layout_make(&layout, plots[0].r, MOST_OUTLINES);
     for (int f = 0; f < files; f++) {
-        if (!check_file(&page, f, &layout))
+        if (!check_file(&page, f))
             return false;
         same = same && strcmp(plots[f].r->title, plots[0].r->title) == 0;
     }
     page.of = of == RESULTS_KIND_COUNT ? statistics_judged(plots[0].r) : of;
-    choose_scales(&page);
     snprintf(title, sizeof title, "Domains of %d files", files);
     plot.title = same ? NULL : title;
     if (!gnuplot_begin(&page.g, &plot, "outline", plot_outline_gp))
         return false;
-    put(&page, &layout);
+    put(&page);
     return gnuplot_end(&page.g);
 }
