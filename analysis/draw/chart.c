@@ -132,6 +132,14 @@ void plot_widen(struct plot_range *range, double value)
     }
 }
 
+bool plot_range_of(struct plot_range *range, const double *values, size_t n)
+{
+    *range = PLOT_NOTHING;
+    for (size_t i = 0; i < n; i++)
+        plot_widen(range, values[i]);
+    return range->low <= range->high;
+}
+
 struct plot_range plot_roomy(struct plot_range range, double part)
 {
     const double room = range.high > range.low ? part * (range.high - range.low) : 0.5;

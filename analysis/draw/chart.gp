@@ -1,9 +1,7 @@
 # chart.gp - a chart: panels over the axis x one under the other, each with an axis y of its own, or a strip without
 # one, which has its name beside it. Their series are drawn in the order in which the data have them.
-headed = 0
-do for [p=1:panels] { headed = headed || panel_heading[p] ne '' }
 between = headed ? 24 : 14
-foot = headed ? 62 : 84
+foot = headed ? 56 : 84
 own_sum = sum [p=1:panels] panel_own[p]
 width = wide(chart_width, 1, left + legend_room)
 
@@ -24,7 +22,7 @@ do for [p=1:panels] {
     if (panel_y[p] eq '') { set label chart_beside at screen X(left - 10), Y(middle) right font ',12' front } \
     else { eval y_label(axis_label(panel_y[p], panel_high[p] + between), 24, middle) }
 }
-eval x_label(left + 0.5*width, bottom + (headed ? 40 : 46))
+eval x_label(left + 0.5*width, bottom + (headed ? 42 : 46))
 eval column_legend
 load 'panels.gp'
 

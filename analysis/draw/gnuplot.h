@@ -113,6 +113,8 @@ struct plot_range {
 #define PLOT_NOTHING ((struct plot_range){INFINITY, -INFINITY})
 /* Widens it to a value; what is not finite is passed over. */
 void plot_widen(struct plot_range *range, double value);
+/* The range of values[n], those that are finite; false: there are none. */
+bool plot_range_of(struct plot_range *range, const double *values, size_t n);
 /* With that part of its width as room at both ends; of one value half of 1. */
 struct plot_range plot_roomy(struct plot_range range, double part);
 

@@ -77,8 +77,6 @@ bool plot_answer_find(const char *name, struct plot_answer *answer);
  * a message, which the picture then lacks, also when there are none. */
 double *plot_answer_numbers(struct gnuplot *g, const struct plot_answer *answer,
                             struct plot_range *range);
-/* The range of values[n], those that are finite; false: there are none. */
-bool plot_range_of(struct plot_range *range, const double *values, size_t n);
 /* "friction_used: largest ratio |rT|/rN of a contact, of the stabilised cases", to the line under
  * the title. */
 void plot_say_answer(struct gnuplot *g, const struct plot_answer *answer);

@@ -82,21 +82,18 @@ void plot_axis_make_curve(struct plot_axis *along, const struct results_axis *ax
     if (along->scale == PLOT_LIST && !axis->word && axis->count > 1) {
         const bool logarithm =
             is_positive(axis) && unevenness(axis, true) < 0.5 * unevenness(axis, false);
-        double low = INFINITY, high = -INFINITY;
-        for (size_t i = 0; i < axis->count; i++) {
-            low = fmin(low, raw(axis, logarithm, i));
-            high = fmax(high, raw(axis, logarithm, i));
-        }
-        const double margin = high > low ? 0.03 * (high - low) : 0.5;
+        struct plot_range range = PLOT_NOTHING;
+        for (size_t i = 0; i < axis->count; i++)
+            plot_widen(&range, raw(axis, logarithm, i));
+        range = plot_roomy(range, 0.03);
         along->scale = logarithm ? PLOT_LOG : PLOT_LINEAR;
-        along->low = low - margin;
-        along->high = high + margin;
+        along->low = range.low;
+        along->high = range.high;
     }
     /* A time is not negative, nor has an axis of times room for that. */
-    double lowest = INFINITY;
-    for (size_t i = 0; i < axis->count; i++)
-        lowest = fmin(lowest, axis->value[i]);
-    if (along->scale == PLOT_LINEAR && along->low < 0 && lowest >= 0)
+    struct plot_range values;
+    plot_range_of(&values, axis->value, axis->count);
+    if (along->scale == PLOT_LINEAR && along->low < 0 && values.low >= 0)
         along->low = 0;
 }
 

@@ -95,6 +95,7 @@ array panel_own[40]; array panel_heading[40]; array panel_y[40]; array panel_plo
 panels = 0
 left = 104
 chart_width = 620 # px, of a panel
+headed = 0        # panels have room for headings
 
 # ---- legends: marks with texts, and notes under them; the data add theirs. A mark is a line where it has a type of
 # dashes, a point where it has a type of points, or a filled box ----

@@ -28,14 +28,6 @@ bool plot_answer_find(const char *name, struct plot_answer *answer)
     return k < STANCE_ANSWER_COUNT;
 }
 
-bool plot_range_of(struct plot_range *range, const double *values, size_t n)
-{
-    *range = PLOT_NOTHING;
-    for (size_t i = 0; i < n; i++)
-        plot_widen(range, values[i]);
-    return range->low <= range->high;
-}
-
 double *plot_answer_numbers(struct gnuplot *g, const struct plot_answer *answer,
                             struct plot_range *range)
 {

@@ -16,55 +16,6 @@ static size_t grounded(const struct plot_case *c)
     return c->readable ? (size_t)plot_case_grounded(c->scenario.scene) : c->t->contacts;
 }
 
-/* ---- ranges ------------------------------------------------------------------------------- */
-
-/* What of some columns fits the frame. */
-struct range {
-    struct plot_range of;
-    size_t beyond;  /* rows left outside */
-    double largest; /* of them, by magnitude */
-};
-
-/* Of columns first, first + every ... before `end`, of `width`. With `robust`, single peaks (the
- * impulses of impacts) may stick out: the frame ends at half as much again as 98 % of the loaded
- * rows need. */
-static struct range range_of(const struct results_trajectory *t, const double *values, size_t width,
-                             size_t first, size_t every, size_t end, bool robust)
-{
-    struct range range = {PLOT_NOTHING, 0, 0};
-    double *loaded = robust ? malloc(t->rows * width * sizeof *loaded) : NULL, limit = INFINITY;
-    size_t n = 0;
-
-    for (size_t k = 0; k < t->rows && loaded; k++)
-        for (size_t c = first; c < end; c += every)
-            if (isfinite(values[k * width + c]) && values[k * width + c] != 0)
-                loaded[n++] = fabs(values[k * width + c]);
-    if (n > 0) {
-        struct statistics_numbers numbers;
-        statistics_summarise(loaded, n, &numbers);
-        double usual = 1.5 * statistics_quantile(loaded, n, 0.98);
-        limit = numbers.high > 1.5 * usual ? usual : INFINITY;
-    }
-    free(loaded);
-    for (size_t k = 0; k < t->rows; k++) {
-        bool beyond = false;
-        for (size_t c = first; c < end; c += every) {
-            const double value = values[k * width + c];
-            if (!isfinite(value))
-                continue;
-            plot_widen(&range.of, fmax(-limit, fmin(limit, value)));
-            if (fabs(value) > limit) {
-                beyond = true;
-                range.largest = fabs(value) > fabs(range.largest) ? value : range.largest;
-            }
-        }
-        range.beyond += beyond;
-    }
-    if (!(range.of.low <= range.of.high))
-        range.of.low = range.of.high = 0;
-    return range;
-}
-
 /* ---- pages -------------------------------------------------------------------------------- */
 
 /* What a page shows of trajectories. */
@@ -86,21 +37,63 @@ static const double *shown_of(const struct page *page, const struct results_traj
     return values[page->of];
 }
 
-/* Of all cases: see range_of. */
-static struct range range_of_all(const struct page *page, size_t first, size_t every, size_t end,
-                                 bool robust)
+/* Columns first, first + every ... before `end` of what a page shows. */
+struct columns {
+    size_t first, every, end;
+    bool robust; /* single peaks (the impulses of impacts) may stick out of the frame */
+};
+
+/* What of some columns fits the frame. */
+struct range {
+    struct plot_range of;
+    size_t beyond;  /* rows left outside */
+    double largest; /* of them, by magnitude */
+};
+
+/* The frame ends at half as much again as 98 % of the loaded rows need. */
+static double limit_of(const double *values, size_t rows, size_t width, struct columns columns)
 {
-    struct range all = {PLOT_NOTHING, 0, 0};
+    double *const loaded = malloc(rows * width * sizeof *loaded), limit = INFINITY;
+    size_t n = 0;
+    for (size_t k = 0; k < rows * width && loaded; k += width)
+        for (size_t c = columns.first; c < columns.end; c += columns.every)
+            if (isfinite(values[k + c]) && values[k + c] != 0)
+                loaded[n++] = fabs(values[k + c]);
+    if (n > 0) {
+        struct statistics_numbers numbers;
+        statistics_summarise(loaded, n, &numbers);
+        const double usual = 1.5 * statistics_quantile(loaded, n, 0.98);
+        limit = numbers.high > 1.5 * usual ? usual : INFINITY;
+    }
+    free(loaded);
+    return limit;
+}
+
+/* Of all cases. */
+static struct range range_of(const struct page *page, struct columns columns)
+{
+    struct range range = {PLOT_NOTHING, 0, 0};
     for (const struct plot_case *c = page->c; c; c = c->other) {
         size_t width;
-        const double *values = shown_of(page, c->t, &width);
-        const struct range own = range_of(c->t, values, width, first, every, end, robust);
-        plot_widen(&all.of, own.of.low);
-        plot_widen(&all.of, own.of.high);
-        all.beyond += own.beyond;
-        all.largest = fabs(own.largest) > fabs(all.largest) ? own.largest : all.largest;
+        const double *const values = shown_of(page, c->t, &width);
+        const double limit =
+            columns.robust ? limit_of(values, c->t->rows, width, columns) : INFINITY;
+        for (size_t k = 0; k < c->t->rows * width; k += width) {
+            bool beyond = false;
+            for (size_t i = k + columns.first; i < k + columns.end; i += columns.every) {
+                if (!isfinite(values[i]))
+                    continue;
+                plot_widen(&range.of, fmax(-limit, fmin(limit, values[i])));
+                beyond = beyond || fabs(values[i]) > limit;
+                if (fabs(values[i]) > fmax(limit, fabs(range.largest)))
+                    range.largest = values[i];
+            }
+            range.beyond += beyond;
+        }
     }
-    return all;
+    if (!(range.of.low <= range.of.high))
+        range.of.low = range.of.high = 0;
+    return range;
 }
 
 /* Value i of the first path of an axis, for people. */
@@ -188,7 +181,7 @@ static bool begin_page(struct page *page, const char *name, const char *what)
     }
     if (!(page->time.high > page->time.low))
         page->time.high = page->time.low + 1;
-    gnuplot_set(g, "chart_width = 700");
+    gnuplot_set(g, "chart_width = 700; headed = 1");
     gnuplot_axis(g, 'x', PLOT_LINEAR, page->time, "time", "s");
     if (page->c->other)
         gnuplot_note(g, "dashed: the second case");
@@ -310,7 +303,7 @@ static bool draw_coordinates(const struct plot_case *c)
         return false;
     for (size_t i = 0; i < t->coordinates; i++) {
         const stance_quantity *q = c->readable ? &c->scenario.scene->coordinate[i] : &unknown;
-        struct range range = range_of_all(&page, i, t->coordinates, t->coordinates, false);
+        struct range range = range_of(&page, (struct columns){i, 1, i + 1, false});
         const double target = target_of(c, i);
         struct ramp setpoint;
         const bool leads = setpoint_of(c, i, &setpoint);
@@ -358,7 +351,7 @@ static bool draw_forces(const struct plot_case *c)
     if (!begin_page(&page, "forces", "Forces of the ground on the contacts"))
         return false;
     for (size_t k = 0; k < 2; k++) {
-        const struct range range = range_of_all(&page, k, 2, 2 * count, true);
+        const struct range range = range_of(&page, (struct columns){k, 2, 2 * count, true});
         snprintf(text, sizeof text, "%s", names[k][0]);
         if (t->rows > 1)
             add_text(text, sizeof text, " (means over %.4g s)", t->time[1] - t->time[0]);
@@ -435,7 +428,7 @@ static bool draw_torques(const struct plot_case *c)
 {
     const struct results_trajectory *t = c->t;
     struct page page = {.c = c, .of = TORQUES};
-    struct range range = range_of_all(&page, 0, 1, t->actuators, true);
+    struct range range = range_of(&page, (struct columns){0, 1, t->actuators, true});
     const double extent = 4 * fmax(fabs(range.of.low), fabs(range.of.high));
     const char *unit, *const label = torque_label(c, &unit);
     struct torque_level level[STANCE_MAX_ACTUATORS];
@@ -467,7 +460,7 @@ static bool draw_gaps(const struct plot_case *c)
     const struct results_trajectory *t = c->t;
     const size_t count = grounded(c);
     struct page page = {.c = c, .of = GAPS};
-    struct range range = range_of_all(&page, 0, 1, count, false);
+    struct range range = range_of(&page, (struct columns){0, 1, count, false});
 
     if (!begin_page(&page, "gaps", "Heights of the contact points above the ground"))
         return false;

@@ -44,7 +44,8 @@ struct model {
     double point[STANCE_MAX_POINTS][2];
     double velocity[STANCE_MAX_COORDINATES][STANCE_MAX_POINTS][2]; /* at unit rates */
     struct moved moved[STANCE_MAX_COORDINATES];
-    double low[2], high[2], size; /* m: of the figure */
+    struct plot_range range[2]; /* m: of the figure, x and z */
+    double size;
     struct gnuplot *g;
     int labels, words; /* so far */
     struct label label[MOST_LABELS];
@@ -107,15 +108,13 @@ static void find_motion(struct model *m, int k)
 static void make_model(struct model *m)
 {
     m->points = m->scene->figure(m->scene, m->c->robot, m->c->position, m->point);
+    m->size = 1e-6;
     for (int i = 0; i < 2; i++) {
-        m->low[i] = INFINITY;
-        m->high[i] = -INFINITY;
-        for (int p = 0; p < m->points; p++) {
-            m->low[i] = fmin(m->low[i], m->point[p][i]);
-            m->high[i] = fmax(m->high[i], m->point[p][i]);
-        }
+        m->range[i] = PLOT_NOTHING;
+        for (int p = 0; p < m->points; p++)
+            plot_widen(&m->range[i], m->point[p][i]);
+        m->size = fmax(m->size, m->range[i].high - m->range[i].low);
     }
-    m->size = fmax(fmax(m->high[0] - m->low[0], m->high[1] - m->low[1]), 1e-6);
     for (int k = 0; k < m->scene->coordinates; k++) {
         static const double step = 1e-6;
         double position[STANCE_MAX_COORDINATES], ahead[STANCE_MAX_POINTS][2];
@@ -372,7 +371,7 @@ static bool draw_model(const struct plot *plot, const struct scenario *s, const 
         make_model(m);
         gnuplot_set(&g,
                     "low_x = %#.9g; high_x = %#.9g; low_y = %#.9g; high_y = %#.9g; size = %#.9g",
-                    m->low[0], m->high[0], m->low[1], m->high[1], m->size);
+                    m->range[0].low, m->range[0].high, m->range[1].low, m->range[1].high, m->size);
         gnuplot_set(&g, "has_place = %d; place_x = %#.9g; place_y = %#.9g; fall = %#.9g",
                     is_place(m, 0), c->position[0], c->position[1],
                     tan(c->robot[STANCE_ROBOT_SLOPE]));

@@ -71,7 +71,8 @@ static void find_span(const struct page *page, int k)
     const struct results *r = page->r;
     const struct results_varied *v = &r->vary[k];
     struct span *const span = &page->span[k];
-    double low = INFINITY, high = -INFINITY, sum = 0, sum_log = 0, n = 0;
+    struct plot_range of;
+    double sum = 0, sum_log = 0, n = 0;
 
     for (size_t i = 0; i < v->of.count; i++) {
         const double value = v->of.value[i];
@@ -79,14 +80,12 @@ static void find_span(const struct page *page, int k)
             span->none[value > 0] = true;
             continue;
         }
-        low = fmin(low, value);
-        high = fmax(high, value);
         sum += value;
         sum_log += value > 0 ? log(value) : 0;
         n++;
     }
-    if (n == 0)
-        low = high = 0;
+    const bool any = plot_range_of(&of, v->of.value, v->of.count);
+    double low = any ? of.low : 0, high = any ? of.high : 0;
     span->logarithmic = !v->word && low > 0 && high > 3 * low &&
                         fabs((sum_log / n - log(low)) / log(high / low) - 0.5) <
                             fabs((sum / n - low) / (high - low) - 0.5);

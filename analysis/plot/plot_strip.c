@@ -49,16 +49,14 @@ static double measure_figures(struct strip *strip)
 /* Where and how large the figures are drawn. */
 static void measure(struct strip *strip)
 {
-    double low = INFINITY, high = -INFINITY;
+    struct plot_range centre = PLOT_NOTHING;
     measure_figures(strip);
-    for (int i = 0; i < strip->count; i++) {
-        low = fmin(low, strip->figure[i].centre);
-        high = fmax(high, strip->figure[i].centre);
-    }
+    for (int i = 0; i < strip->count; i++)
+        plot_widen(&centre, strip->figure[i].centre);
     /* Places stay put unless the figures travel further than they are tall. */
-    strip->follows = high - low > strip->high - strip->low;
+    strip->follows = centre.high - centre.low > strip->high - strip->low;
     for (int i = 0; i < strip->count && !strip->follows; i++)
-        strip->figure[i].centre = 0.5 * (low + high);
+        strip->figure[i].centre = 0.5 * (centre.low + centre.high);
     const double half = measure_figures(strip), tall = strip->high - strip->low;
     strip->spacing = 2.1 * fmax(half, 0.1 * tall);
     strip->low = fmin(strip->low, -0.5 * fabs(strip->fall) * strip->spacing) - 0.05 * tall;
