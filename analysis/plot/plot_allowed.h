@@ -15,8 +15,8 @@ struct plot_frame {
 };
 
 struct plot_allowed_point {
-    double place[2];
-    bool edge; /* the picture ends before the set does */
+    double place[2], angle; /* of the ray from inside */
+    bool edge;              /* the picture ends before the set does */
 };
 
 /* Of a panel: around the section, counter-clockwise; points 0: there is none. */
