@@ -55,32 +55,27 @@ static void put_maps(struct maps *maps, const void *values, size_t size)
 
 /* ---- verdicts ----------------------------------------------------------------------------- */
 
-/* "painleve 12 %, events 1 %": why cases gave up, the two most frequent reasons. */
-static void reasons_text(const struct failure_row *row, uint64_t cells, char text[2][32])
+/* "painleve 12 %", "events 1 %": why cases of row k gave up, the two most frequent reasons. */
+static void put_reasons(struct gnuplot *g, const struct failure *f, size_t k)
 {
-    uint64_t last = UINT64_MAX;
-    int previous = -1;
-    text[0][0] = text[1][0] = '\0';
-    for (int line = 0; line < 2; line++) {
-        int best = -1;
-        for (int k = 0; k < STANCE_FAILURE_COUNT; k++) {
-            const bool below = row->reason[k] < last || (row->reason[k] == last && k > previous);
-            if (below && row->reason[k] > 0 && (best < 0 || row->reason[k] > row->reason[best]))
-                best = k;
-        }
-        if (best < 0)
-            return;
-        snprintf(text[line], sizeof text[line], "%s %.2g %%", stance_failure_name[best],
-                 100 * (double)row->reason[best] / (double)cells);
-        last = row->reason[best];
-        previous = best;
+    uint64_t left[STANCE_FAILURE_COUNT];
+    char text[64];
+    memcpy(left, f->row[k].reason, sizeof left);
+    for (size_t line = 0; line < 2; line++) {
+        int most = 0;
+        for (int reason = 1; reason < STANCE_FAILURE_COUNT; reason++)
+            most = left[reason] > left[most] ? reason : most;
+        snprintf(text, sizeof text, "%s %.2g %%", stance_failure_name[most],
+                 100 * (double)left[most] / (double)f->cells);
+        gnuplot_text(g, left[most] > 0 ? text : "", "reason[%zu]", 2 * k + line + 1);
+        left[most] = 0;
     }
 }
 
 /* Verdicts against methods: shares of the cells; the reasons in two lines. */
 static void put_table(struct gnuplot *g, const struct failure *f)
 {
-    char text[64], reasons[2][32];
+    char text[64];
     int verdicts = 0;
     gnuplot_arrays(g, FAILURE_VERDICT_COUNT, "verdict_colour");
     gnuplot_arrays(g, FAILURE_VERDICT_COUNT * f->rows, "share");
@@ -105,11 +100,8 @@ static void put_table(struct gnuplot *g, const struct failure *f)
         }
         verdicts++;
     }
-    for (size_t k = 0; k < f->rows; k++) {
-        reasons_text(&f->row[k], f->cells, reasons);
-        for (size_t line = 0; line < 2; line++)
-            gnuplot_text(g, reasons[line], "reason[%zu]", 2 * k + line + 1);
-    }
+    for (size_t k = 0; k < f->rows; k++)
+        put_reasons(g, f, k);
 }
 
 static bool draw_verdicts(struct maps *maps, const struct plot *plot)

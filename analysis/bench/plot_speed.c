@@ -42,8 +42,8 @@ static void put_chart(struct gnuplot *g, const struct chart *c, const char *whic
     gnuplot_set(g, "array %s_group[%d]; array %s_within[%d]", which, MOST_GROUPS, which,
                 MOST_GROUPS);
     for (size_t i = 0; i < c->groups; i++) {
-        plot_tic_text(g, c->group[i], "%s_group[%zu]", which, i + 1);
-        plot_tic_text(g, c->within[i] ? c->within[i] : "", "%s_within[%zu]", which, i + 1);
+        gnuplot_tic(g, c->group[i], "%s_group[%zu]", which, i + 1);
+        gnuplot_tic(g, c->within[i] ? c->within[i] : "", "%s_within[%zu]", which, i + 1);
     }
     for (size_t s = 0; s < c->series; s++) {
         bool any = false;

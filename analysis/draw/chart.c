@@ -74,13 +74,33 @@ void gnuplot_arrays(struct gnuplot *g, size_t size, const char *names)
     }
 }
 
+static void put_text(struct gnuplot *g, const char *text)
+{
+    fputs(" = ", g->data);
+    gnuplot_quote(g->data, text);
+    putc('\n', g->data);
+}
+
 void gnuplot_text(struct gnuplot *g, const char *text, const char *name, ...)
 {
     close_block(g);
     PUT_FORMATTED(g, name);
-    fputs(" = ", g->data);
-    gnuplot_quote(g->data, text);
-    putc('\n', g->data);
+    put_text(g, text);
+}
+
+void gnuplot_tic(struct gnuplot *g, const char *text, const char *name, ...)
+{
+    char escaped[160];
+    size_t n = 0;
+    for (; *text && n + 3 < sizeof escaped; text++) {
+        escaped[n++] = *text;
+        if (*text == '%')
+            escaped[n++] = '%';
+    }
+    escaped[n] = '\0';
+    close_block(g);
+    PUT_FORMATTED(g, name);
+    put_text(g, escaped);
 }
 
 void gnuplot_number(struct gnuplot *g, double value, const char *name, ...)

@@ -82,39 +82,22 @@ static void note_failure(struct gnuplot *g)
     g->error = g->error ? g->error : errno;
 }
 
-static FILE *open_scratch(struct gnuplot *g, const char *name)
+static void put_file(struct gnuplot *g, const char *name, const void *bytes, size_t size)
 {
     char path[320];
     scratch_path(g, name, path);
-    FILE *file = fopen(path, "wb");
-    if (!file) {
+    FILE *const file = fopen(path, "wb");
+    if (!file || fwrite(bytes, 1, size, file) != size)
         note_failure(g);
-        file = g->sink;
-    }
-    return file;
-}
-
-void gnuplot_close_cells(struct gnuplot *g, FILE *file)
-{
-    if (file == g->sink)
-        return;
-    bool bad = ferror(file) != 0;
-    if (fclose(file) != 0 || bad)
+    if (file && fclose(file) != 0)
         note_failure(g);
 }
 
-FILE *gnuplot_cells(struct gnuplot *g)
+void gnuplot_cells(struct gnuplot *g, const void *cells, size_t size)
 {
     char name[32];
     snprintf(name, sizeof name, "cells%d", ++g->files);
-    return open_scratch(g, name);
-}
-
-static void put_script(struct gnuplot *g, const char *name, const char *text)
-{
-    FILE *file = open_scratch(g, name);
-    fputs(text, file);
-    gnuplot_close_cells(g, file);
+    put_file(g, name, cells, size);
 }
 
 /* Where scratch directories are made, and stay: see gnuplot.h. */
@@ -173,6 +156,26 @@ static void put_titles(struct gnuplot *g)
     put_prose(g, look->bare ? "" : g->subtitle, "subtitle");
 }
 
+/* A piece of memory of a picture, and what there was before it. */
+struct gnuplot_room {
+    struct gnuplot_room *before;
+    void *piece;
+};
+
+/* Ends what is not the scratch directory. */
+static void leave(struct gnuplot *g)
+{
+    while (g->room) {
+        struct gnuplot_room *const room = g->room;
+        g->room = room->before;
+        free(room->piece);
+        free(room);
+    }
+    if (g->data)
+        fclose(g->data);
+    free(g->text);
+}
+
 bool gnuplot_begin(struct gnuplot *g, const struct plot *plot, const char *name, const char *script)
 {
     const char *base = kept_in() ? kept_in() : getenv("TMPDIR");
@@ -180,27 +183,20 @@ bool gnuplot_begin(struct gnuplot *g, const struct plot *plot, const char *name,
     snprintf(g->stem, sizeof g->stem, "%.400s%s%.100s", plot->stem, name[0] ? "-" : "", name);
     snprintf(g->scratch, sizeof g->scratch, "%s/stance-plot-XXXXXX",
              base && base[0] && strlen(base) < 200 ? base : "/tmp");
-    g->sink = fopen("/dev/null", "wb");
-    if (!g->sink || !mkdtemp(g->scratch)) {
+    g->data = open_memstream(&g->text, &g->size);
+    if (!g->data || !mkdtemp(g->scratch)) {
         complain(plot->message, "%.150s: cannot make a directory%s: %s", g->scratch,
                  kept_in() ? " (STANCE_SCRIPTS)" : "", strerror(errno));
-        if (g->sink)
-            fclose(g->sink);
+        leave(g);
         return false;
     }
     for (size_t k = 0; k < sizeof shared / sizeof *shared; k++)
-        put_script(g, shared[k].name, shared[k].text);
-    put_script(g, "picture.gp", script ? script : chart_gp);
-    g->data = open_scratch(g, "data.gp");
+        put_file(g, shared[k].name, shared[k].text, strlen(shared[k].text));
+    script = script ? script : chart_gp;
+    put_file(g, "picture.gp", script, strlen(script));
     put_look(g);
     return true;
 }
-
-/* A piece of memory of a picture, and what there was before it. */
-struct gnuplot_room {
-    struct gnuplot_room *before;
-    void *piece;
-};
 
 void *gnuplot_keep(struct gnuplot *g, void *piece)
 {
@@ -302,25 +298,21 @@ static void say_missing(const struct look *look, const struct fonts *fonts, cons
  * of their own. Returns whether there is need of it. */
 static bool replace_letters(struct gnuplot *g)
 {
-    char path[320], missing[80] = "", *drawn = NULL;
-    size_t size = 0;
+    char missing[80] = "", *drawn = NULL;
     struct fonts fonts;
-    scratch_path(g, "data.gp", path);
-    char *text = read_file(path, &size);
     bool ascii = true;
-    for (size_t i = 0; text && i < size; i++)
-        ascii = ascii && (unsigned char)text[i] < 0x80;
-    if (text && (!ascii || strcmp(g->plot->look->font, LOOK_FONT) != 0)) {
+    for (size_t i = 0; i < g->size; i++)
+        ascii = ascii && (unsigned char)g->text[i] < 0x80;
+    if (!ascii || strcmp(g->plot->look->font, LOOK_FONT) != 0) {
         fonts_find(&fonts, g->plot->look->font);
         if (fonts.has) {
-            drawn = fonts_replace(&fonts, text, size, missing, sizeof missing);
+            drawn = fonts_replace(&fonts, g->text, g->size, missing, sizeof missing);
             say_missing(g->plot->look, &fonts, missing);
             fonts_free(&fonts);
         }
     }
     if (drawn)
-        put_script(g, "drawn.gp", drawn);
-    free(text);
+        put_file(g, "drawn.gp", drawn, strlen(drawn));
     free(drawn);
     return drawn != NULL;
 }
@@ -328,17 +320,18 @@ static bool replace_letters(struct gnuplot *g)
 /* The picture is drawn from the same data in each format. */
 static void put_formats(struct gnuplot *g)
 {
+    char script[800] = "";
+    if (fflush(g->data) != 0)
+        note_failure(g);
+    put_file(g, "data.gp", g->text, g->size);
     const bool replaced = replace_letters(g);
-    FILE *file = open_scratch(g, "script");
-    for (int f = 0; f < LOOK_FORMAT_COUNT; f++) {
-        if (!g->plot->look->format[f])
-            continue;
-        fprintf(file,
-                "drawing = '%s'\nload 'style.gp'\nload '%s'\nload 'legend.gp'\n"
-                "load 'picture.gp'\nunset multiplot; unset output; reset\n",
-                look_endings[f], replaced && f != LOOK_SVG ? "drawn.gp" : "data.gp");
-    }
-    gnuplot_close_cells(g, file);
+    for (int f = 0; f < LOOK_FORMAT_COUNT; f++)
+        if (g->plot->look->format[f])
+            add_text(script, sizeof script,
+                     "drawing = '%s'\nload 'style.gp'\nload '%s'\nload 'legend.gp'\n"
+                     "load 'picture.gp'\nunset multiplot; unset output; reset\n",
+                     look_endings[f], replaced && f != LOOK_SVG ? "drawn.gp" : "data.gp");
+    put_file(g, "script", script, strlen(script));
 }
 
 /* ---- fetching ----------------------------------------------------------------------------- */
@@ -519,21 +512,8 @@ static bool draw(const struct gnuplot *g)
                     complaint);
 }
 
-/* Ends what is not the scratch directory. */
-static void leave(struct gnuplot *g)
-{
-    while (g->room) {
-        struct gnuplot_room *const room = g->room;
-        g->room = room->before;
-        free(room->piece);
-        free(room);
-    }
-    fclose(g->sink);
-}
-
 void gnuplot_abandon(struct gnuplot *g)
 {
-    gnuplot_close_cells(g, g->data);
     leave(g);
     remove_picture(g->scratch);
 }
@@ -550,7 +530,6 @@ bool gnuplot_end(struct gnuplot *g)
         return !missing;
     }
     put_titles(g);
-    gnuplot_close_cells(g, g->data);
     put_formats(g);
     const bool good = draw(g);
     leave(g);

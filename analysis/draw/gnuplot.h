@@ -36,8 +36,9 @@ struct plot {
 struct gnuplot {
     const struct plot *plot;
     struct gnuplot_room *room;
-    FILE *data;          /* variables and data blocks are appended here */
-    FILE *sink;          /* takes what has no file */
+    FILE *data; /* variables and data blocks are appended here */
+    char *text; /* so far, of `size` */
+    size_t size;
     char axis[16];       /* the last one's name */
     char stem[520];      /* of the files */
     char scratch[256];   /* directory */
@@ -83,6 +84,10 @@ void gnuplot_arrays(struct gnuplot *g, size_t size, const char *names);
 /* NAME = 'text' and NAME = value (NAN: NaN); the name as printf makes it. */
 void gnuplot_text(struct gnuplot *g, const char *text, const char *name, ...)
     __attribute__((format(printf, 3, 4)));
+/* The same of a text that becomes the label of a tic, where a per cent sign would begin a format.
+ */
+void gnuplot_tic(struct gnuplot *g, const char *text, const char *name, ...)
+    __attribute__((format(printf, 3, 4)));
 void gnuplot_number(struct gnuplot *g, double value, const char *name, ...)
     __attribute__((format(printf, 3, 4)));
 /* $NAME << EOD; rows of numbers follow, NAN for a gap, up to the next of anything else. A block
@@ -94,9 +99,8 @@ void gnuplot_row(struct gnuplot *g, const double *values, size_t count);
                 sizeof((const double[]){__VA_ARGS__}) / sizeof(double))
 /* What follows in the block is apart from what was before. */
 void gnuplot_gap(struct gnuplot *g);
-/* The next binary file: cells1, cells2 ... Never NULL. */
-FILE *gnuplot_cells(struct gnuplot *g);
-void gnuplot_close_cells(struct gnuplot *g, FILE *file);
+/* The next binary file: cells1, cells2 ... */
+void gnuplot_cells(struct gnuplot *g, const void *cells, size_t size);
 
 /* ---- charts ------------------------------------------------------------------------------- */
 

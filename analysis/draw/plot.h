@@ -35,9 +35,6 @@ size_t plot_axis_index(const struct plot_axis *along, size_t k);
 const char *plot_axis_write(const struct plot_axis *along, struct gnuplot *g, char which);
 /* What an axis is called, x_text and x_path, with its unit, alone. */
 void plot_label_write(const struct results_axis *axis, struct gnuplot *g, const char *which);
-/* A text that becomes the label of a tic, where a per cent sign would begin a format. */
-void plot_tic_text(struct gnuplot *g, const char *text, const char *name, ...)
-    __attribute__((format(printf, 3, 4)));
 
 /* A map over two axes: cell (i, j) shows value first + i stride[0] + j stride[1] of an array. */
 struct plot_cells {

@@ -5,7 +5,6 @@
 #include "runner/base/message.h"
 
 #include <math.h>
-#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -132,25 +131,8 @@ static void put_words(const struct plot_axis *along, struct gnuplot *g, const ch
         char text[64];
         results_value_text(along->axis, k * every, false, text, sizeof text);
         gnuplot_set(g, "%s_at[%zu] = %zu", which, k + 1, k * every);
-        plot_tic_text(g, text, "%s_word[%zu]", which, k + 1);
+        gnuplot_tic(g, text, "%s_word[%zu]", which, k + 1);
     }
-}
-
-void plot_tic_text(struct gnuplot *g, const char *text, const char *name, ...)
-{
-    char escaped[160], whole[64];
-    size_t n = 0;
-    for (; *text && n + 3 < sizeof escaped; text++) {
-        escaped[n++] = *text;
-        if (*text == '%')
-            escaped[n++] = '%';
-    }
-    escaped[n] = '\0';
-    va_list arguments;
-    va_start(arguments, name);
-    vsnprintf(whole, sizeof whole, name, arguments);
-    va_end(arguments);
-    gnuplot_text(g, escaped, "%s", whole);
 }
 
 void plot_label_write(const struct results_axis *axis, struct gnuplot *g, const char *which)
@@ -241,14 +223,16 @@ void plot_cells_write(struct gnuplot *g, const struct plot_cells *cells, const v
     const struct plot_axis *const across = cells->across, *const up = cells->up;
     const size_t nx = across->axis->count, ny = up->axis->count;
     const size_t twice_x = nx == 1 ? 2 : 1, twice_y = ny == 1 ? 2 : 1;
-    FILE *file = gnuplot_cells(g);
-    for (size_t j = 0; j < ny * twice_y; j++) {
-        for (size_t i = 0; i < nx * twice_x; i++) {
+    const size_t bytes = nx * twice_x * ny * twice_y * size;
+    char *const copy = gnuplot_room(g, bytes, 1), *at = copy;
+    for (size_t j = 0; copy && j < ny * twice_y; j++) {
+        for (size_t i = 0; i < nx * twice_x; i++, at += size) {
             const size_t index = cells->first +
                                  plot_axis_index(across, i / twice_x) * cells->stride[0] +
                                  plot_axis_index(up, j / twice_y) * cells->stride[1];
-            fwrite((const char *)values + index * size, size, 1, file);
+            memcpy(at, (const char *)values + index * size, size);
         }
     }
-    gnuplot_close_cells(g, file);
+    if (copy)
+        gnuplot_cells(g, copy, bytes);
 }

@@ -4,10 +4,11 @@
  * ranges: these are shares, not a section through the domain. */
 #include "search_pictures.h"
 
+#include "analysis/statistics/statistics.h"
+
 #include "runner/scenario/schema.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 GNUPLOT_SCRIPT(plot_starts_gp, "analysis/optimise/plot_starts.gp");
 
@@ -16,31 +17,11 @@ enum { PARTS = 12, LEAST = 20, MOST_PANELS = 18 }; /* starts in a part at least 
 struct page {
     struct gnuplot g;
     const struct search_study *study;
-    double *allowed; /* of each start; NULL: linear theory sets no bound */
-    size_t *order;
+    double *allowed;                /* of each start; NULL: linear theory sets no bound */
+    struct statistics_place *order; /* of the starts along a coordinate */
     size_t circumstance;
     double most; /* per cent */
 };
-
-static const struct search_file *by_file;
-static size_t by_column;
-
-static double coordinate(const struct search_file *f, size_t start, size_t column)
-{
-    return f->start_value[start * f->length[SEARCH_VARIED] + column];
-}
-
-/* NAN, which only a damaged file has, at the end. */
-static int compare(const void *a, const void *b)
-{
-    const size_t i = *(const size_t *)a, j = *(const size_t *)b;
-    const double x = coordinate(by_file, i, by_column), y = coordinate(by_file, j, by_column);
-    if (x < y || (isnan(y) && !isnan(x)))
-        return -1;
-    if (y < x || (isnan(x) && !isnan(y)))
-        return 1;
-    return i < j ? -1 : i > j;
-}
 
 static double recovered(const struct page *page, size_t k, size_t start)
 {
@@ -52,14 +33,14 @@ static double recovered(const struct page *page, size_t k, size_t start)
 }
 
 /* The middle of a part, and of each curve its share and interval. */
-static void put_part(struct page *page, size_t column, size_t from, size_t to)
+static void put_part(struct page *page, size_t from, size_t to)
 {
     const struct search_file *const f = &page->study->f;
     struct interval_draws draws[SEARCH_CURVES] = {{0}};
     double row[1 + 3 * SEARCH_CURVES] = {0};
     for (size_t i = from; i < to; i++) {
-        const size_t start = page->order[i];
-        row[0] += coordinate(f, start, column) / (double)(to - from);
+        const size_t start = page->order[i].index;
+        row[0] += page->order[i].value / (double)(to - from);
         interval_add(&draws[SEARCH_FIRST], recovered(page, 0, start), 1);
         interval_add(&draws[SEARCH_CHOSEN], recovered(page, (size_t)f->chosen, start), 1);
         if (page->allowed)
@@ -84,13 +65,12 @@ static void put_panel(struct page *page, size_t column)
     const char *const path = f->varied[column], *const label = look_label(page->g.plot->look, path);
     struct results_axis axis = {.unit = ""};
     char text[200];
-    for (size_t i = 0; i < n; i++)
-        page->order[i] = i;
-    by_file = f;
-    by_column = column;
-    qsort(page->order, n, sizeof *page->order, compare);
-    const double low = coordinate(f, page->order[0], column),
-                 high = coordinate(f, page->order[n - 1], column);
+    for (size_t i = 0; i < n; i++) {
+        const double at = f->start_value[i * f->length[SEARCH_VARIED] + column];
+        page->order[i] = (struct statistics_place){isnan(at) ? INFINITY : at, i}; /* damaged */
+    }
+    statistics_order(page->order, n);
+    const double low = page->order[0].value, high = page->order[n - 1].value;
     snprintf(axis.name, sizeof axis.name, "%s", path);
     search_describe(page->study, &axis);
     snprintf(text, sizeof text, "%.120s%s%s%s", label == path ? schema_last_name(path) : label,
@@ -102,7 +82,7 @@ static void put_panel(struct page *page, size_t column)
     gnuplot_block(&page->g, "parts%zu", column + 1);
     for (size_t p = 0; p < parts; p++)
         if (p * n / parts < (p + 1) * n / parts)
-            put_part(page, column, p * n / parts, (p + 1) * n / parts);
+            put_part(page, p * n / parts, (p + 1) * n / parts);
 }
 
 static void put_curves(struct page *page)

@@ -3,6 +3,7 @@
 
 #include "runner/base/message.h"
 
+#include <math.h>
 #include <string.h>
 
 enum { MAX_COLUMNS = 6 }; /* of a table */
@@ -71,7 +72,8 @@ size_t plot_layout_shown(const struct plot_layout *layout, int k, size_t m)
     return shown < 2 ? (count - 1) / 2 : m * (count - 1) / (shown - 1);
 }
 
-void plot_layout_point(const struct plot_layout *layout, int panel, size_t *point)
+/* Coordinates of a panel, 0 along the axes of the map. */
+static void point_of(const struct plot_layout *layout, int panel, size_t *point)
 {
     memset(point, 0, SCENARIO_MAX_AXES * sizeof *point);
     size_t rest = (size_t)panel;
@@ -85,7 +87,7 @@ uint64_t plot_layout_index(const struct plot_layout *layout, int panel, size_t i
 {
     size_t point[SCENARIO_MAX_AXES];
     uint64_t index = 0;
-    plot_layout_point(layout, panel, point);
+    point_of(layout, panel, point);
     point[layout->x] = i;
     point[layout->y] = j;
     for (int a = 0; a < layout->r->axes; a++)
@@ -93,20 +95,17 @@ uint64_t plot_layout_index(const struct plot_layout *layout, int panel, size_t i
     return index;
 }
 
-int plot_layout_panel(const struct plot_layout *layout, uint64_t index)
+double plot_layout_share(const struct plot_layout *layout, int panel, enum results_kind of)
 {
-    size_t point[SCENARIO_MAX_AXES];
-    int panel = 0;
-    results_point(layout->r, index, point);
-    for (int k = 0; k < layout->others; k++) {
-        size_t m = 0;
-        while (m < layout->shown[k] && plot_layout_shown(layout, k, m) != point[layout->other[k]])
-            m++;
-        if (m == layout->shown[k])
-            return -1;
-        panel = panel * (int)layout->shown[k] + (int)m;
+    size_t sum = 0, done = 0;
+    for (size_t i = 0; i < layout->across.axis->count; i++) {
+        for (size_t j = 0; j < layout->up.axis->count; j++) {
+            const uint8_t kind = layout->r->kind[plot_layout_index(layout, panel, i, j)];
+            sum += kind == of;
+            done += kind < RESULTS_FAILED;
+        }
     }
-    return panel;
+    return done > 0 ? 100 * (double)sum / (double)done : NAN;
 }
 
 void plot_layout_note(const struct plot_layout *layout, struct gnuplot *g)
@@ -168,7 +167,7 @@ void plot_panel_title(struct gnuplot *g, const struct plot_layout *layout, int p
 {
     size_t point[SCENARIO_MAX_AXES];
     char one[300];
-    plot_layout_point(layout, panel, point);
+    point_of(layout, panel, point);
     text[0] = '\0';
     for (int k = 0; k < layout->others; k++) {
         const int a = layout->other[k];

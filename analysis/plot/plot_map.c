@@ -57,20 +57,12 @@ static void put_titles(struct gnuplot *g, const struct plot_layout *layout)
 /* What stands of the cases drawn in each panel, of those that are done; of numbers nothing. */
 static void put_shares(struct gnuplot *g, const struct plot_layout *layout, bool measured)
 {
-    const struct results *const r = g->plot->r;
-    const uint8_t judged = (uint8_t)statistics_judged(r);
-    uint64_t(*const counts)[2] = gnuplot_room(g, (size_t)layout->panels, sizeof *counts);
+    const enum results_kind judged = statistics_judged(g->plot->r);
     char text[32];
-    for (uint64_t i = 0; counts && !measured && i < r->cases; i++) {
-        const int panel = plot_layout_panel(layout, i);
-        if (panel >= 0 && r->kind[i] < RESULTS_FAILED) {
-            counts[panel][0] += r->kind[i] == judged;
-            counts[panel][1]++;
-        }
-    }
-    for (int p = 0; counts && p < layout->panels; p++) {
-        snprintf(text, sizeof text, "%.1f %%", 100 * (double)counts[p][0] / (double)counts[p][1]);
-        gnuplot_text(g, counts[p][1] > 0 ? text : "", "share[%d]", p + 1);
+    for (int p = 0; p < layout->panels; p++) {
+        const double share = measured ? NAN : plot_layout_share(layout, p, judged);
+        snprintf(text, sizeof text, "%.1f %%", share);
+        gnuplot_text(g, isnan(share) ? "" : text, "share[%d]", p + 1);
     }
     if (layout->panels > 1 && !measured)
         gnuplot_note(g, "%%: %s", results_kind_names[judged]);

@@ -117,26 +117,22 @@ static void put_lines(struct page *page, const struct boundary *b, const struct 
 }
 
 /* Which cases of a panel are inside; NULL: no memory. */
-static uint8_t *find_inside(struct page *page, const struct panel *panel, double *share)
+static uint8_t *find_inside(struct page *page, const struct panel *panel)
 {
     const struct results *const r = panel->layout->r;
     uint8_t *const inside = gnuplot_room(&page->g, panel->count[0] * panel->count[1], 1);
-    size_t sum = 0, done = 0;
     for (size_t j = 0; inside && j < panel->count[1]; j++) {
         for (size_t i = 0; i < panel->count[0]; i++) {
             const uint64_t index = plot_layout_index(
                 panel->layout, panel->number, panel->points[0][i].index, panel->points[1][j].index);
             inside[j * panel->count[0] + i] = r->kind[index] == page->of;
-            sum += r->kind[index] == page->of;
-            done += r->kind[index] < RESULTS_FAILED;
         }
     }
-    *share = done > 0 ? 100 * (double)sum / (double)done : 0;
     return inside;
 }
 
 /* "place, friction = 0.2", or the file's name before it. */
-static void put_legend(struct page *page, const struct panel *panel, double share)
+static void put_legend(struct page *page, const struct panel *panel)
 {
     const size_t k = (size_t)page->outlines - 1;
     char values[300], name[400], more[32];
@@ -148,7 +144,8 @@ static void put_legend(struct page *page, const struct panel *panel, double shar
         snprintf(name, sizeof name, "%s%s%s",
                  look_label(page->g.plot->look, panel->layout->r->name), values[0] ? ", " : "",
                  values);
-    snprintf(more, sizeof more, "%.1f %%", share);
+    snprintf(more, sizeof more, "%.1f %%",
+             fmax(0, plot_layout_share(panel->layout, panel->number, page->of)));
     gnuplot_legend(&page->g, gnuplot_hue(k), (int)k % DASHES + 1, marks[k / DASHES], name, more);
 }
 
@@ -157,20 +154,19 @@ static void put_outline(struct page *page, int f, int number)
     struct gnuplot *const g = &page->g;
     struct panel panel = {.layout = &page->layout[f], .number = number};
     struct boundary b = {0};
-    double share;
     for (int k = 0; k < 2; k++) {
         const struct plot_axis along = on_page(page, f, k);
         panel.count[k] = along.axis->count;
         panel.points[k] = plot_axis_points(&along, g);
     }
     const uint8_t *const inside =
-        panel.points[0] && panel.points[1] ? find_inside(page, &panel, &share) : NULL;
+        panel.points[0] && panel.points[1] ? find_inside(page, &panel) : NULL;
     if (!inside || !gnuplot_needs(g, boundary_trace(&b, inside, panel.count[0], panel.count[1],
                                                     g->plot->message)))
         return;
     page->outlines++;
     put_lines(page, &b, &panel);
-    put_legend(page, &panel, share);
+    put_legend(page, &panel);
     boundary_free(&b);
 }
 

@@ -145,7 +145,7 @@ static void put_axis(struct page *page, int k, const char *which)
         char text[40];
         results_number_text(centre, 0, text, sizeof text);
         gnuplot_set(g, "%s_at[%zu] = %#.17g", which, ++words, place_of(page, k, centre));
-        plot_tic_text(g, v->word ? v->word[(int)centre] : text, "%s_word[%zu]", which, words);
+        gnuplot_tic(g, v->word ? v->word[(int)centre] : text, "%s_word[%zu]", which, words);
     }
     gnuplot_set(g, "%s_words = %zu", which, words);
 }
