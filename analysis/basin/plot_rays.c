@@ -8,7 +8,6 @@
 #include "runner/base/message.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 GNUPLOT_SCRIPT(plot_rays_gp, "analysis/basin/plot_rays.gp");
 
@@ -55,35 +54,23 @@ static bool is_found(const struct basin_nearest *nearest)
 
 /* ---- in the plane ------------------------------------------------------------------------- */
 
-struct direction {
-    double angle;
-    size_t ray;
-};
-
-static int by_angle(const void *a, const void *b)
-{
-    const double x = ((const struct direction *)a)->angle, y = ((const struct direction *)b)->angle;
-    return (x > y) - (x < y);
-}
-
 /* The rays of the sample by their direction; NULL: no memory. */
-static struct direction *sort_directions(struct page *page)
+static struct statistics_place *sort_directions(struct page *page)
 {
     const struct basin_sample *const sample = &page->rays->sample;
-    struct direction *const list = gnuplot_room(&page->g, sample->points, sizeof *list);
+    struct statistics_place *const list = gnuplot_room(&page->g, sample->points, sizeof *list);
     double half[2];
     for (int k = 0; k < 2; k++) { /* angles in units of the ranges */
         half[k] = isfinite(sample->factor[k].from)
                       ? 0.5 * fabs(sample->factor[k].to - sample->factor[k].from)
                       : 1;
     }
-    for (size_t p = 0; list && p < sample->points; p++) {
-        list[p].angle = atan2(sample->factor[1].of->value[p] / half[1],
-                              sample->factor[0].of->value[p] / half[0]);
-        list[p].ray = p;
-    }
+    for (size_t p = 0; list && p < sample->points; p++)
+        list[p] = (struct statistics_place){atan2(sample->factor[1].of->value[p] / half[1],
+                                                  sample->factor[0].of->value[p] / half[0]),
+                                            p};
     if (list)
-        qsort(list, sample->points, sizeof *list, by_angle);
+        statistics_order(list, sample->points);
     return list;
 }
 
@@ -101,7 +88,7 @@ static void put_end(struct page *page, size_t p, double scale)
 }
 
 /* The curve, those rays that were not followed to an end, and the shortest ray. */
-static void put_curve(struct page *page, size_t curve, const struct direction *order)
+static void put_curve(struct page *page, size_t curve, const struct statistics_place *order)
 {
     struct gnuplot *const g = &page->g;
     const size_t points = page->rays->sample.points;
@@ -113,7 +100,7 @@ static void put_curve(struct page *page, size_t curve, const struct direction *o
         return;
     gnuplot_block(g, "curve%zu", curve + 1);
     for (size_t i = 0; i <= points; i++)
-        put_end(page, order[i % points].ray, ray_end(&ray[order[i % points].ray]));
+        put_end(page, order[i % points].index, ray_end(&ray[order[i % points].index]));
     gnuplot_block(g, "open%zu", curve + 1);
     for (size_t p = 0; p < points; p++)
         put_end(page, p, ray[p].end == RAY_OPEN ? ray[p].low : NAN);
@@ -142,7 +129,7 @@ static void put_range(struct page *page, int k, const char *which)
 
 static void put_plane(struct page *page)
 {
-    const struct direction *const order = sort_directions(page);
+    const struct statistics_place *const order = sort_directions(page);
     put_range(page, 0, "x");
     put_range(page, 1, "y");
     for (size_t c = 0; order && c < page->curves; c++)

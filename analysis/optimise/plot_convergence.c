@@ -8,6 +8,8 @@
  */
 #include "search_pictures.h"
 
+#include "analysis/statistics/statistics.h"
+
 #include "runner/scenario/schema.h"
 
 #include <math.h>
@@ -53,10 +55,8 @@ static void put_stages(struct page *page)
     const struct search_file *const f = &page->study->f;
     size_t last[MOST_STAGES];
     const size_t stages = search_stages(page->study, last, MOST_STAGES);
-    gnuplot_set(&page->g,
-                "stages = %zu\narray stage_from[%zu]\narray stage_to[%zu]\n"
-                "array stage_text[%zu]",
-                stages, stages, stages, stages);
+    gnuplot_set(&page->g, "stages = %zu", stages);
+    gnuplot_arrays(&page->g, stages, "stage_from stage_to stage_text");
     for (size_t i = 0; i < stages; i++) {
         char text[40];
         snprintf(text, sizeof text, "%lld starts", (long long)f->starts[last[i]]);
@@ -157,21 +157,19 @@ static void put_ends(struct page *page)
 {
     const struct search_file *const f = &page->study->f;
     const size_t n = f->length[SEARCH_PARAMETER];
-    const size_t last = f->length[SEARCH_GENERATION] - 1;
-    gnuplot_set(&page->g,
-                "numbers = %zu; named = %d\narray end_number[%zu]\narray end_at[%zu]\n"
-                "array end_text[%zu]",
-                n, n <= MOST_NAMED, n, n, n);
-    for (size_t k = 0; k < n; k++) {
-        size_t rank = 1;
+    struct statistics_place *const end = gnuplot_room(&page->g, n, sizeof *end);
+    for (size_t k = 0; end && k < n; k++)
+        end[k] = (struct statistics_place){change(f, f->length[SEARCH_GENERATION] - 1, k), k};
+    if (end)
+        statistics_order(end, n);
+    gnuplot_set(&page->g, "numbers = %zu; named = %d", n, n <= MOST_NAMED);
+    gnuplot_arrays(&page->g, n, "end_number end_at end_text");
+    for (size_t k = 0; end && k < n; k++) {
         char text[100];
-        for (size_t other = 0; other < n; other++)
-            rank += change(f, last, other) < change(f, last, k) ||
-                    (change(f, last, other) == change(f, last, k) && other < k);
-        name_number(page->study, k, text, sizeof text);
-        gnuplot_set(&page->g, "end_number[%zu] = %zu", rank, k + 1);
-        gnuplot_number(&page->g, change(f, last, k), "end_at[%zu]", rank);
-        gnuplot_text(&page->g, look_label(page->g.plot->look, text), "end_text[%zu]", rank);
+        name_number(page->study, end[k].index, text, sizeof text);
+        gnuplot_set(&page->g, "end_number[%zu] = %zu", k + 1, end[k].index + 1);
+        gnuplot_number(&page->g, end[k].value, "end_at[%zu]", k + 1);
+        gnuplot_text(&page->g, look_label(page->g.plot->look, text), "end_text[%zu]", k + 1);
     }
 }
 

@@ -10,15 +10,6 @@ GNUPLOT_SCRIPT(plot_animation_gp, "analysis/plot/plot_animation.gp");
 
 static const double frame_time = 0.04; /* s, at the least */
 
-/* Row of a trajectory at a time: the last one from its end on. */
-static size_t row_at(const struct results_trajectory *t, double time)
-{
-    size_t row = 0;
-    while (row + 1 < t->rows && t->time[row + 1] <= time + 1e-9)
-        row++;
-    return row;
-}
-
 static double end_of(const struct plot_case *c)
 {
     double end = 0;
@@ -99,7 +90,7 @@ bool plot_animation(const struct plot_case *c)
     for (const struct plot_case *k = c; k; k = k->other) {
         struct figure *const figure = gnuplot_room(&a.g, (size_t)a.frames, sizeof *figure);
         for (int f = 0; figure && f < a.frames; f++)
-            figure_make(&figure[f], k, row_at(k->t, f * step));
+            figure_make(&figure[f], k, figure_row(k->t, f * step));
         a.figure[cases++] = figure;
     }
     const int contacts = figure_names(&a.g, c->scenario.scene);

@@ -42,6 +42,8 @@ struct figure {
     double centre; /* m, what stands in the middle of its place */
     double base;   /* m, height of the ground below it */
 };
+/* Row of a trajectory at a time: the last one from its end on. */
+size_t figure_row(const struct results_trajectory *t, double time);
 void figure_make(struct figure *figure, const struct plot_case *c, size_t row);
 /* The ground's fall along x: a slope's tangent. */
 double figure_fall(const struct plot_case *c);

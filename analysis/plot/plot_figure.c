@@ -13,6 +13,14 @@ int plot_case_grounded(const stance_scene *scene)
     return count;
 }
 
+size_t figure_row(const struct results_trajectory *t, double time)
+{
+    size_t row = 0;
+    while (row + 1 < t->rows && t->time[row + 1] <= time + 1e-9)
+        row++;
+    return row;
+}
+
 double figure_fall(const struct plot_case *c)
 {
     return tan(c->values.robot[STANCE_ROBOT_SLOPE]);
