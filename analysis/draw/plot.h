@@ -16,7 +16,7 @@ struct plot_axis {
     enum plot_scale scale;
     bool falling; /* the values fall: cell k is value count - 1 - k */
     double first, step;
-    double low, high; /* outer edges of the first and the last cell */
+    struct plot_range range; /* to the outer edges of the first and the last cell */
 };
 
 void plot_axis_make(struct plot_axis *along, const struct results_axis *axis);

@@ -54,8 +54,8 @@ void plot_axis_make_ladder(struct plot_axis *along, const struct results_axis *a
         else if (axis->count > 2 && is_positive(axis) && is_even(axis, true, part))
             make_even(along, true);
     }
-    along->low = along->first - 0.5 * along->step;
-    along->high = along->first + ((double)axis->count - 0.5) * along->step;
+    along->range.low = along->first - 0.5 * along->step;
+    along->range.high = along->first + ((double)axis->count - 0.5) * along->step;
 }
 
 void plot_axis_make(struct plot_axis *along, const struct results_axis *axis)
@@ -84,16 +84,14 @@ void plot_axis_make_curve(struct plot_axis *along, const struct results_axis *ax
         struct plot_range range = PLOT_NOTHING;
         for (size_t i = 0; i < axis->count; i++)
             plot_widen(&range, raw(axis, logarithm, i));
-        range = plot_roomy(range, 0.03);
+        along->range = plot_roomy(range, 0.03);
         along->scale = logarithm ? PLOT_LOG : PLOT_LINEAR;
-        along->low = range.low;
-        along->high = range.high;
     }
     /* A time is not negative, nor has an axis of times room for that. */
     struct plot_range values;
     plot_range_of(&values, axis->value, axis->count);
-    if (along->scale == PLOT_LINEAR && along->low < 0 && values.low >= 0)
-        along->low = 0;
+    if (along->scale == PLOT_LINEAR && along->range.low < 0 && values.low >= 0)
+        along->range.low = 0;
 }
 
 double plot_axis_place(const struct plot_axis *along, size_t i)
@@ -161,8 +159,7 @@ void plot_label_write(const struct results_axis *axis, struct gnuplot *g, const 
 
 const char *plot_axis_write(const struct plot_axis *along, struct gnuplot *g, char which)
 {
-    const char *const axis =
-        gnuplot_axis(g, which, along->scale, (struct plot_range){along->low, along->high}, "", "");
+    const char *const axis = gnuplot_axis(g, which, along->scale, along->range, "", "");
     plot_label_write(along->axis, g, axis);
     gnuplot_set(g, "%s_step = %#.17g; %s_count = %zu", axis, along->step, axis, along->axis->count);
     if (along->scale == PLOT_LIST)

@@ -20,8 +20,7 @@ enum { RAYS = 32, DEEPEST = 9, HALVINGS = 20, MOST_POINTS = RAYS << DEEPEST };
 
 struct picture {
     const struct plot_layout *layout;
-    const struct results_axis *axis[2];
-    struct plot_frame frame;
+    struct plot_axis along[2];
     size_t end[2][2]; /* of each axis: places of its least and its largest value */
     struct scenario s;
     struct scenario_values values; /* of the start that is looked at */
@@ -36,7 +35,7 @@ struct picture {
 static bool check_axes(struct picture *p, stance_message *why)
 {
     for (int k = 0; k < 2; k++) {
-        const struct results_axis *const axis = p->axis[k];
+        const struct results_axis *const axis = p->along[k].axis;
         const struct scenario_axis *const of = &p->s.axis[k == 0 ? p->layout->x : p->layout->y];
         for (int i = 0; i < of->paths; i++)
             if (!scenario_is_start(of->path[i]))
@@ -48,7 +47,7 @@ static bool check_axes(struct picture *p, stance_message *why)
                     p->end[k][end] = i;
         if (p->end[k][0] == p->end[k][1])
             return complain(why, "%.90s has one value", axis->name);
-        if (p->frame.scale[k] == PLOT_LIST)
+        if (p->along[k].scale == PLOT_LIST)
             return complain(why, "the values of %.90s are not even", axis->name);
     }
     return true;
@@ -57,16 +56,16 @@ static bool check_axes(struct picture *p, stance_message *why)
 /* Where a value of an axis is between the picture's edges, 0 ... 1. */
 static double part_of(const struct picture *p, int k, double value)
 {
-    const bool log = p->frame.scale[k] == PLOT_LOG;
-    const double low = log ? pow(10, p->frame.low[k]) : p->frame.low[k],
-                 high = log ? pow(10, p->frame.high[k]) : p->frame.high[k];
+    const bool log = p->along[k].scale == PLOT_LOG;
+    const double low = log ? pow(10, p->along[k].range.low) : p->along[k].range.low,
+                 high = log ? pow(10, p->along[k].range.high) : p->along[k].range.high;
     return (value - low) / (high - low);
 }
 
 static double place_of(const struct picture *p, int k, double part)
 {
-    const double low = p->frame.low[k], high = p->frame.high[k];
-    if (p->frame.scale[k] == PLOT_LOG)
+    const double low = p->along[k].range.low, high = p->along[k].range.high;
+    if (p->along[k].scale == PLOT_LOG)
         return log10(pow(10, low) + part * (pow(10, high) - pow(10, low)));
     return low + part * (high - low);
 }
@@ -96,8 +95,8 @@ static void start_of(struct picture *p, size_t i, size_t j, double *x)
 /* How far a start is off the plane, as a part of the largest coordinates. */
 static double off_plane(struct picture *p, size_t i, size_t j)
 {
-    const double part[2] = {part_of(p, 0, p->axis[0]->value[i]),
-                            part_of(p, 1, p->axis[1]->value[j])};
+    const double part[2] = {part_of(p, 0, p->along[0].axis->value[i]),
+                            part_of(p, 1, p->along[1].axis->value[j])};
     double x[DESIGN_STATES], on[DESIGN_STATES], largest = 0, off = 0;
     start_of(p, i, j, x);
     state_at(p, part, on);
@@ -115,8 +114,8 @@ static bool make_plane(struct picture *p, stance_message *why)
     start_of(p, p->end[0][0], p->end[1][0], first);
     memcpy(p->origin, first, sizeof first);
     for (int k = 0; k < 2; k++) {
-        const double begin = part_of(p, k, p->axis[k]->value[p->end[k][0]]),
-                     end = part_of(p, k, p->axis[k]->value[p->end[k][1]]);
+        const double begin = part_of(p, k, p->along[k].axis->value[p->end[k][0]]),
+                     end = part_of(p, k, p->along[k].axis->value[p->end[k][1]]);
         start_of(p, p->end[0][k == 0], p->end[1][k == 1], x);
         for (int c = 0; c < p->n; c++) {
             p->side[k][c] = (x[c] - first[c]) / (end - begin);
@@ -124,9 +123,9 @@ static bool make_plane(struct picture *p, stance_message *why)
         }
     }
     double off = off_plane(p, p->end[0][1], p->end[1][1]);
-    for (size_t i = 0; i < p->axis[0]->count; i++)
+    for (size_t i = 0; i < p->along[0].axis->count; i++)
         off = fmax(off, off_plane(p, i, p->end[1][0]));
-    for (size_t j = 0; j < p->axis[1]->count; j++)
+    for (size_t j = 0; j < p->along[1].axis->count; j++)
         off = fmax(off, off_plane(p, p->end[0][0], j));
     return off <= PLANE || complain(why, "the starts of the map are no plane");
 }
@@ -178,12 +177,12 @@ static void keep(struct picture *p, struct plot_allowed_point a, struct plot_all
 /* The share of the panel's starts that are in the set; their mean is then inside. */
 static double find_inside(struct picture *p)
 {
-    const size_t count[2] = {p->axis[0]->count, p->axis[1]->count};
+    const size_t count[2] = {p->along[0].axis->count, p->along[1].axis->count};
     double inside = 0, sum[2] = {0};
     for (size_t i = 0; i < count[0]; i++)
         for (size_t j = 0; j < count[1]; j++) {
-            const double part[2] = {part_of(p, 0, p->axis[0]->value[i]),
-                                    part_of(p, 1, p->axis[1]->value[j])};
+            const double part[2] = {part_of(p, 0, p->along[0].axis->value[i]),
+                                    part_of(p, 1, p->along[1].axis->value[j])};
             const bool holds = holds_at(p, part);
             inside += holds;
             for (int k = 0; k < 2; k++)
@@ -242,7 +241,7 @@ static bool make_panel(struct picture *p, stance_message *why, stance_message *m
 }
 
 bool plot_allowed_make(struct plot_allowed *allowed, struct gnuplot *g,
-                       const struct plot_layout *layout, const struct plot_frame *frame)
+                       const struct plot_layout *layout, const struct plot_axis along[2])
 {
     const struct results *const r = layout->r;
     *allowed = (struct plot_allowed){0};
@@ -252,8 +251,8 @@ bool plot_allowed_make(struct plot_allowed *allowed, struct gnuplot *g,
     allowed->panel = gnuplot_room(g, (size_t)layout->panels, sizeof *allowed->panel);
     if (!p || !allowed->panel || !gnuplot_needs(g, results_swept(r, &p->s, g->plot->message)))
         return false;
-    p->layout = layout, p->frame = *frame;
-    p->axis[0] = &r->axis[layout->x], p->axis[1] = &r->axis[layout->y];
+    p->layout = layout;
+    memcpy(p->along, along, sizeof p->along);
     stance_message first = {""};
     int without = 0;
     bool good = true;

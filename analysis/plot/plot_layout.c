@@ -131,7 +131,7 @@ bool plot_zero_place(const struct plot_axis *along, double *place)
         return false;
     if (along->scale == PLOT_LINEAR) {
         *place = 0;
-        return along->low < 0 && along->high > 0;
+        return along->range.low < 0 && along->range.high > 0;
     }
     size_t nearest = statistics_nearest_zero(along->axis);
     *place = (double)nearest;

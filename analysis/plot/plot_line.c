@@ -16,7 +16,7 @@ static void put_runs(struct line *line)
 {
     const uint8_t *const kind = line->g.plot->r->kind;
     const struct statistics_place *const p = line->points;
-    double low = line->along.low;
+    double low = line->along.range.low;
     gnuplot_panel(&line->g, 30, "");
     gnuplot_set(&line->g, "chart_beside = 'outcome'");
     gnuplot_series(&line->g,
@@ -26,7 +26,7 @@ static void put_runs(struct line *line)
         const bool last = i + 1 == line->count;
         if (!last && kind[p[i + 1].index] == kind[p[i].index])
             continue;
-        const double high = last ? line->along.high : 0.5 * (p[i].value + p[i + 1].value);
+        const double high = last ? line->along.range.high : 0.5 * (p[i].value + p[i + 1].value);
         GNUPLOT_ROW(&line->g, low, high, kind[p[i].index]);
         low = high;
     }

@@ -109,13 +109,11 @@ static void put(struct map *map, const void *values, size_t size, const char *no
     struct gnuplot *const g = &map->g;
     const struct plot_layout *const layout = &map->layout;
     const struct plot_axis *const across = &layout->across, *const up = &layout->up;
-    const struct plot_frame frame = {
-        {across->scale, up->scale}, {across->low, up->low}, {across->high, up->high}};
     struct plot_cells cells = {across, up, 0, {0, 0}};
     const bool measured = values != g->plot->r->kind;
     double x, y;
 
-    if (!plot_allowed_make(&map->allowed, g, layout, &frame))
+    if (!plot_allowed_make(&map->allowed, g, layout, (const struct plot_axis[]){*across, *up}))
         return;
     say_others(g, layout);
     plot_axis_write(across, g, 'x');

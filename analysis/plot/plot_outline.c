@@ -18,7 +18,8 @@ struct page {
     struct gnuplot g;
     const struct plot *plots;                 /* [files] */
     struct plot_layout layout[MOST_OUTLINES]; /* [files] */
-    struct plot_frame frame;                  /* with scales that all files can have */
+    struct plot_range range[2];               /* that hold all maps */
+    enum plot_scale scale[2];                 /* that all files can have */
     const char *swept; /* the one axis that outlines differ in, beside files; NULL: none, several */
     int files, outlines;
     enum results_kind of;
@@ -59,9 +60,8 @@ static struct plot_axis on_page(const struct page *page, int f, int k)
 {
     struct plot_axis along;
     plot_axis_make_curve(&along, axis_of(page, f, k));
-    along.scale = page->frame.scale[k];
-    along.low = page->frame.low[k];
-    along.high = page->frame.high[k];
+    along.scale = page->scale[k];
+    along.range = page->range[k];
     return along;
 }
 
@@ -69,20 +69,18 @@ static struct plot_axis on_page(const struct page *page, int f, int k)
 static void choose_scale(struct page *page, int k)
 {
     struct plot_range range = PLOT_NOTHING;
-    page->frame.scale[k] = PLOT_LOG;
+    page->scale[k] = PLOT_LOG;
     for (int f = 0; f < page->files; f++) {
         struct plot_axis along;
         plot_axis_make_curve(&along, axis_of(page, f, k));
-        page->frame.scale[k] = along.scale == PLOT_LOG ? page->frame.scale[k] : along.scale;
+        page->scale[k] = along.scale == PLOT_LOG ? page->scale[k] : along.scale;
     }
     for (int f = 0; f < page->files; f++) {
         const struct plot_axis along = on_page(page, f, k);
         for (size_t i = 0; i < along.axis->count; i++)
             plot_widen(&range, plot_axis_place(&along, i));
     }
-    range = plot_roomy(range, 0);
-    page->frame.low[k] = range.low;
-    page->frame.high[k] = range.high;
+    page->range[k] = plot_roomy(range, 0);
 }
 
 /* ---- outlines ----------------------------------------------------------------------------- */
@@ -180,7 +178,8 @@ static void put_allowed(struct page *page)
     bool same = true;
     for (int f = 0; f < page->files; f++) {
         struct plot_allowed allowed;
-        if (!plot_allowed_make(&allowed, &page->g, &page->layout[f], &page->frame))
+        const struct plot_axis along[] = {on_page(page, f, 0), on_page(page, f, 1)};
+        if (!plot_allowed_make(&allowed, &page->g, &page->layout[f], along))
             return;
         for (int k = 0; k < page->layout[f].panels; k++)
             panel[count++] =
@@ -219,8 +218,8 @@ static void put(struct page *page)
         choose_scale(page, k);
         const struct plot_axis along = on_page(page, 0, k);
         plot_axis_write(&along, g, k == 0 ? 'x' : 'y');
-        cross = cross && along.axis->offset && along.scale == PLOT_LINEAR && along.low < 0 &&
-                along.high > 0;
+        cross = cross && along.axis->offset && along.scale == PLOT_LINEAR && along.range.low < 0 &&
+                along.range.high > 0;
     }
     page->swept = find_swept(page); /* what the values in the legend are of */
     const char *const swept = page->swept ? look_label(g->plot->look, page->swept) : "";

@@ -25,7 +25,8 @@ enum {
 struct span {
     bool logarithmic;
     bool none[2]; /* some values are -infinity, infinity: limits that there are not */
-    double low, high, absent[2]; /* the places of these */
+    struct plot_range shown;
+    double absent[2]; /* the places of these */
 };
 
 struct page {
@@ -100,11 +101,9 @@ static void find_span(const struct page *page, int k)
     const double width = high > low ? high - low : 1;
     span->absent[0] = low - 0.3 * width;
     span->absent[1] = high + 0.3 * width;
-    span->low = span->none[0] ? span->absent[0] : low;
-    span->high = span->none[1] ? span->absent[1] : high;
-    const double margin = span->high > span->low ? 0.03 * (span->high - span->low) : 0.5;
-    span->low -= margin;
-    span->high += margin;
+    const double ends[] = {span->none[0] ? span->absent[0] : low,
+                           span->none[1] ? span->absent[1] : high};
+    span->shown = plot_roomy((struct plot_range){ends[0], ends[1]}, 0.03);
 }
 
 /* Where a value of a path stands; what is infinite, an absent limit, beside all others. */
@@ -131,8 +130,8 @@ static void put_axis(struct page *page, int k, const char *which)
     plot_label_write(&v->of, g, which);
     gnuplot_text(g, listed ? "list" : span->logarithmic ? "log" : "linear", "%s_scale", which);
     gnuplot_set(g, "%s_low = %#.17g; %s_high = %#.17g; %s_wordy = %d", which,
-                v->word ? ceil(span->low) - 0.5 : span->low, which,
-                v->word ? floor(span->high) + 0.5 : span->high, which, v->word != NULL);
+                v->word ? ceil(span->shown.low) - 0.5 : span->shown.low, which,
+                v->word ? floor(span->shown.high) + 0.5 : span->shown.high, which, v->word != NULL);
     if (!listed)
         return;
     gnuplot_set(g, "array %s_word[%zu]\narray %s_at[%zu]", which, bins.count + 2, which,

@@ -219,8 +219,8 @@ static void put_extent(struct page *page, int axis, int number)
     gnuplot_text(g, dot ? dot + 1 : of->name, "extent_name[%d]", number);
     gnuplot_text(g, of->unit, "extent_unit[%d]", number);
     plot_axis_make_curve(&range, of);
-    gnuplot_set(g, "extent_low[%d] = %#.17g; extent_high[%d] = %#.17g", number, range.low, number,
-                range.high);
+    gnuplot_set(g, "extent_low[%d] = %#.17g; extent_high[%d] = %#.17g", number, range.range.low,
+                number, range.range.high);
     gnuplot_block(g, "extent%d", number);
     for (size_t i = 0; i < page->values; i++) {
         point[0] = page->points[i].index;
