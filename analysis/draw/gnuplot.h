@@ -1,9 +1,8 @@
 /* gnuplot.h - a picture, drawn by gnuplot in the formats and sizes of a look.
  *
- * A picture is data: panels one under the other or side by side, axes, series of rows of numbers, a
- * legend, notes. chart.gp draws most of them; what has a form of its own (maps, figures of robots)
- * has a script NAME.gp beside the NAME.c that hands it the data. What they share stands in
- * style.gp, legend.gp, page.gp and panels.gp here; all are embedded in the program. In a scratch
+ * A picture is data: axes, rows of numbers, a legend, notes. chart.gp draws panels of curves one
+ * under the other; what has a form of its own (maps, figures of robots) has a script NAME.gp beside
+ * the NAME.c that hands it the data. What they share stands in style.gp, legend.gp, page.gp and panels.gp here; all are embedded in the program. In a scratch
  * directory gnuplot loads style.gp, the data (variables, data blocks), legend.gp and the script, so
  * that no path of the user's enters a script; the finished files are copied to where they belong.
  * No text is interpreted: see gnuplot_quote. STANCE_SCRIPTS=DIR in the environment keeps scripts

@@ -15,6 +15,9 @@ colour_failed = 0x000000
 colour_pending = 0xe4e4e4
 # Of curves side by side.
 array hue[7] = [0x0072b2, 0xd55e00, 0x009e73, 0xcc79a7, 0xe69f00, 0x56b4e9, 0x000000]
+# Of the first candidate of a search, of the chosen one, of what linear theory allows.
+curve_colour(k) = hue[int(word('2 1 3', k))]
+curve_dash(k) = int(word('2 1 4', k))
 grey = 0x8a8a8a
 no_number = 0xd9d9d9
 

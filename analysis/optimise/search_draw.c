@@ -12,13 +12,9 @@ void search_curves_write(struct gnuplot *g, const char *const more[SEARCH_CURVES
     } curve[SEARCH_CURVES] = {{"hue[2]", "first candidate", 2},
                               {"hue[1]", "chosen", 1},
                               {"hue[3]", "allowed by linear theory", 4}};
-    gnuplot_arrays(g, SEARCH_CURVES, "curve_colour curve_dash");
-    for (int k = 0; k < SEARCH_CURVES; k++) {
+    for (int k = 0; k < SEARCH_CURVES; k++)
         if (more[k])
             gnuplot_legend(g, curve[k].colour, curve[k].dash, 0, curve[k].name, more[k]);
-        gnuplot_set(g, "curve_colour[%d] = %s; curve_dash[%d] = %d", k + 1, curve[k].colour, k + 1,
-                    curve[k].dash);
-    }
     if (glued && more[SEARCH_ALLOWED])
         gnuplot_note(g, "allowed: " ALLOWED_GLUED);
 }

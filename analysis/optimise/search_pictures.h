@@ -23,11 +23,10 @@
 SEARCH_PICTURES(SEARCH_PICTURE)
 #undef SEARCH_PICTURE
 
-/* Their curves: the first candidate, the chosen one, what linear theory allows; each a colour of
- * style.gp and a type of dashes. */
+/* Their curves: the first candidate, the chosen one, what linear theory allows. */
 enum search_curve { SEARCH_FIRST, SEARCH_CHOSEN, SEARCH_ALLOWED, SEARCH_CURVES };
-/* Tells the script curve_colour[3] and curve_dash[3], and the legend, a text behind each name;
- * NULL: that curve is not drawn. glued: what is allowed is so for contacts as if glued. */
+/* Their legend, as style.gp draws them, a text behind each name; NULL: that curve is not drawn.
+ * glued: what is allowed is so for contacts as if glued. */
 void search_curves_write(struct gnuplot *g, const char *const more[SEARCH_CURVES], bool glued);
 
 struct search_front;

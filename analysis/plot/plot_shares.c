@@ -198,10 +198,6 @@ static void put_share(struct page *page, int k)
     gnuplot_legend(g, apart ? gnuplot_hue((size_t)k) : colour,
                    apart && !page->along.axis->word ? k + 1 : 0, apart ? types[k] : 0,
                    apart ? label : results_kind_names[share->kind], "");
-    gnuplot_set(
-        g,
-        "k = %d; share_colour[k] = legend_colour[legends]; share_dash[k] = %d; share_type[k] = %d",
-        k + 1, apart ? k + 1 : 1, apart ? types[k] : 7);
 }
 
 /* ---- extents ------------------------------------------------------------------------------ */
@@ -278,7 +274,6 @@ static void put(struct page *page)
     gnuplot_set(g,
                 "words = %d; volumes = %d; bounded = %d; most = %#.10g; shares = %d; extents = %d",
                 words, page->measured, page->bounded, find_most(page), page->count, extent_count);
-    gnuplot_arrays(g, (size_t)page->count, "share_colour share_dash share_type");
     gnuplot_arrays(g, MAX_EXTENTS, "extent_name extent_unit extent_low extent_high");
     for (int k = 0; k < page->count; k++)
         put_share(page, k);
