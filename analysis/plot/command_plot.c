@@ -216,7 +216,7 @@ static int run(int argc, char **argv)
         return command_usage(&command_plot,
                              "stance replay draws animations; pictures are svg, png or pdf");
     if (request.model)
-        return plot_model(files->text[0], request.sets.text, request.sets.count, &request.look);
+        return plot_model(&command_plot, files->text[0], &request.sets, &request.look);
     return sandbox(draw, &request,
                    word_list(names, sizeof names, (const char *const *)files->text, files->count));
 }

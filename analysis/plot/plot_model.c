@@ -8,7 +8,7 @@
 #include "plot_model.h"
 #include "plot_case.h"
 
-#include "runner/plan/plan.h"
+#include "runner/plan/asked.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -357,18 +357,26 @@ static void put_words(struct model *m)
     gnuplot_set(m->g, "words_shown = %d", m->words);
 }
 
-static bool draw_model(const struct plot *plot, const struct scenario *s, const stance_case *c)
+static int draw_model(const struct scenario *s, const stance_case *c, void *asked)
 {
+    struct look *const look = asked;
+    stance_message message;
+    const struct plot plot = {.title = s->title[0] ? s->title : s->name,
+                              .directory = look->directory ? look->directory : ".",
+                              .stem = s->name,
+                              .look = look,
+                              .message = &message};
     struct gnuplot g;
-    if (!gnuplot_begin(&g, plot, "model", plot_model_gp))
-        return false;
-    struct model *const m = gnuplot_room(&g, 1, sizeof *m);
-    gnuplot_say(&g, "The model in its first posture, scene %.60s", s->scene->name);
+    if (!look->file && !gnuplot_directory(plot.directory))
+        return EXIT_IO;
+    bool good = gnuplot_begin(&g, &plot, "model", plot_model_gp);
+    struct model *const m = good ? gnuplot_room(&g, 1, sizeof *m) : NULL;
     if (m) {
         m->scene = s->scene;
         m->c = c;
         m->g = &g;
         make_model(m);
+        gnuplot_say(&g, "The model in its first posture, scene %.60s", s->scene->name);
         gnuplot_set(&g,
                     "low_x = %#.9g; high_x = %#.9g; low_y = %#.9g; high_y = %#.9g; size = %#.9g",
                     m->range[0].low, m->range[0].high, m->range[1].low, m->range[1].high, m->size);
@@ -379,43 +387,21 @@ static bool draw_model(const struct plot *plot, const struct scenario *s, const 
         put_things(m);
         put_words(m);
     }
-    return gnuplot_end(&g);
+    good = good && gnuplot_end(&g);
+    if (!good)
+        fprintf(stderr, "%s\n", message.text);
+    return good ? EXIT_DONE : EXIT_IO;
 }
 
-int plot_model(const char *file, const char *const *sets, size_t set_count, struct look *look)
+int plot_model(const struct command *command, const char *file, const struct option_texts *sets,
+               struct look *look)
 {
-    const struct parallel alone = parallel_alone();
-    struct scenario s;
-    struct plan plan;
-    struct plan_error error = {0};
-    stance_message message = {""};
-    int method, code = EXIT_USAGE;
-    stance_case *const c = calloc(1, sizeof *c);
-    if (!c || !scenario_read(&s, file, NULL, sets, set_count, stderr)) {
-        free(c);
-        return EXIT_USAGE;
+    struct scenario *const s = calloc(1, sizeof *s);
+    int code = EXIT_USAGE;
+    if (s && scenario_read(s, file, NULL, sets->text, sets->count, stderr)) {
+        code = asked_first(command, s, draw_model, look);
+        scenario_free(s);
     }
-    const struct plot plot = {.title = s.title[0] ? s.title : s.name,
-                              .directory = look->directory ? look->directory : ".",
-                              .stem = s.name,
-                              .look = look,
-                              .message = &message};
-    if (!plan_make(&plan, &s, true, 0, false, &error)) {
-        fprintf(stderr, "stance plot: %s\n", error.message.text);
-    } else {
-        if (!plan_compute_designs(&plan, &alone, &error) || !plan_check_cases(&plan, &error))
-            fprintf(stderr, "stance plot: %s\n", error.message.text);
-        else if (!plan_resolve(&plan, 0, c, &method))
-            fprintf(stderr, "stance plot: the first case does not exist\n");
-        else if (!look->file && !gnuplot_directory(plot.directory))
-            code = EXIT_IO;
-        else
-            code = draw_model(&plot, &s, c) ? EXIT_DONE : EXIT_IO;
-        plan_free(&plan);
-    }
-    if (message.text[0])
-        fprintf(stderr, "%s\n", message.text);
-    scenario_free(&s);
-    free(c);
+    free(s);
     return code;
 }
