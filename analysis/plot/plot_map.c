@@ -172,7 +172,9 @@ static bool draw_times(const struct plot *plot)
     for (uint64_t i = 0; good && i < r->cases; i++)
         if (r->kind[i] != RESULTS_STABILISED && r->kind[i] != RESULTS_RESTED)
             values[i] = NAN;
-    if (!map.g.missing && (!good || !plot_range_of(&range, values, r->cases))) {
+    if (map.g.missing)
+        return gnuplot_end(&map.g);
+    if (!good || !plot_range_of(&range, values, r->cases)) {
         fputs("no picture of settle_time: no case has one\n", stderr);
         gnuplot_abandon(&map.g);
         return true;

@@ -80,17 +80,19 @@ static void choose_parameters(struct page *page)
  * values of stabilised cases, or where there are none of rested ones. */
 static void make_shares(struct page *page)
 {
-    const size_t stride = page->second < 0 ? 1 : page->r->axis[page->second].count;
+    const bool pair = page->second >= 0;
+    const size_t stride = pair ? page->r->axis[page->second].count : 1;
     enum results_kind kinds[2];
     const int found = choose_kinds(page->counts, page->values * stride, kinds);
-    page->count = page->second < 0 ? found : (int)stride;
-    for (int k = 0; k < page->count; k++) {
+    const int count = pair ? (int)stride : found;
+    page->count = count;
+    for (int k = 0; k < count; k++) {
         struct share *const share = &page->share[k];
-        share->kind = kinds[page->second < 0 ? k : 0];
+        share->kind = kinds[pair ? 0 : k];
         share->part = gnuplot_room(&page->g, page->values, sizeof *share->part);
         for (size_t i = 0; share->part && i < page->values; i++) {
             const struct statistics_counts *const c =
-                &page->counts[page->second < 0 ? i : i * stride + (size_t)k];
+                &page->counts[pair ? i * stride + (size_t)k : i];
             double *const part = share->part[i];
             part[SHARE] = part[LOW] = part[HIGH] =
                 c->done > 0 ? (double)c->kind[share->kind] / (double)c->done : NAN;
