@@ -38,14 +38,10 @@ static const struct {
 
 bool gnuplot_directory(const char *directory)
 {
-    struct stat information;
-    bool good =
-        (mkdir(directory, 0777) == 0 || errno == EEXIST) && stat(directory, &information) == 0;
-    if (good && !S_ISDIR(information.st_mode)) {
-        errno = ENOTDIR;
-        good = false;
-    }
-    good = good && access(directory, W_OK | X_OK) == 0;
+    char inside[4200];
+    snprintf(inside, sizeof inside, "%s/.", directory);
+    const bool good =
+        (mkdir(directory, 0777) == 0 || errno == EEXIST) && access(inside, W_OK | X_OK) == 0;
     if (!good)
         fprintf(stderr, "%s: pictures cannot be written there: %s\n", directory, strerror(errno));
     return good;
@@ -274,47 +270,14 @@ static char *read_file(const char *path, size_t *size)
     return text;
 }
 
-/* Once in a process. */
-static void say_missing(const struct look *look, const struct fonts *fonts, const char *missing)
+/* The data without letters that cannot be drawn, where there is need of them; SVG is drawn by its
+ * readers, with fonts of their own. */
+static char *drawable(const struct gnuplot *g)
 {
-    static bool said_font, said_letters;
-    if (!fonts->family && !said_font) {
-        fprintf(stderr,
-                "no font is called %s: another one takes its place (fc-list : family "
-                "lists fonts)\n",
-                look->font);
-        said_font = true;
-    }
-    if (missing[0] && !said_letters) {
-        fprintf(stderr,
-                "no font has %s: boxes stand for them in all but SVG; on Debian: apt-get "
-                "install fonts-noto-cjk, or another font that has them\n",
-                missing);
-        said_letters = true;
-    }
-}
-
-/* drawn.gp: the data without letters that cannot be drawn; SVG is drawn by its readers, with fonts
- * of their own. Returns whether there is need of it. */
-static bool replace_letters(struct gnuplot *g)
-{
-    char missing[80] = "", *drawn = NULL;
-    struct fonts fonts;
-    bool ascii = true;
+    bool plain = strcmp(g->plot->look->font, LOOK_FONT) == 0;
     for (size_t i = 0; i < g->size; i++)
-        ascii = ascii && (unsigned char)g->text[i] < 0x80;
-    if (!ascii || strcmp(g->plot->look->font, LOOK_FONT) != 0) {
-        fonts_find(&fonts, g->plot->look->font);
-        if (fonts.has) {
-            drawn = fonts_replace(&fonts, g->text, g->size, missing, sizeof missing);
-            say_missing(g->plot->look, &fonts, missing);
-            fonts_free(&fonts);
-        }
-    }
-    if (drawn)
-        put_file(g, "drawn.gp", drawn, strlen(drawn));
-    free(drawn);
-    return drawn != NULL;
+        plain = plain && (unsigned char)g->text[i] < 0x80;
+    return plain ? NULL : fonts_replace(g->plot->look->font, g->text, g->size);
 }
 
 /* The picture is drawn from the same data in each format. */
@@ -324,14 +287,17 @@ static void put_formats(struct gnuplot *g)
     if (fflush(g->data) != 0)
         note_failure(g);
     put_file(g, "data.gp", g->text, g->size);
-    const bool replaced = replace_letters(g);
+    char *const drawn = drawable(g);
+    if (drawn)
+        put_file(g, "drawn.gp", drawn, strlen(drawn));
     for (int f = 0; f < LOOK_FORMAT_COUNT; f++)
         if (g->plot->look->format[f])
             add_text(script, sizeof script,
                      "drawing = '%s'\nload 'style.gp'\nload '%s'\nload 'legend.gp'\n"
                      "load 'picture.gp'\nunset multiplot; unset output; reset\n",
-                     look_endings[f], replaced && f != LOOK_SVG ? "drawn.gp" : "data.gp");
+                     look_endings[f], drawn && f != LOOK_SVG ? "drawn.gp" : "data.gp");
     put_file(g, "script", script, strlen(script));
+    free(drawn);
 }
 
 /* ---- fetching ----------------------------------------------------------------------------- */

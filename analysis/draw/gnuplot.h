@@ -2,11 +2,12 @@
  *
  * A picture is data: axes, rows of numbers, a legend, notes. chart.gp draws panels of curves one
  * under the other; what has a form of its own (maps, figures of robots) has a script NAME.gp beside
- * the NAME.c that hands it the data. What they share stands in style.gp, legend.gp, page.gp and panels.gp here; all are embedded in the program. In a scratch
- * directory gnuplot loads style.gp, the data (variables, data blocks), legend.gp and the script, so
- * that no path of the user's enters a script; the finished files are copied to where they belong.
- * No text is interpreted: see gnuplot_quote. STANCE_SCRIPTS=DIR in the environment keeps scripts
- * and data in DIR/STEM, where `gnuplot script` draws the picture anew.
+ * the NAME.c that hands it the data. What they share stands in style.gp, legend.gp, page.gp and
+ * panels.gp here; all are embedded in the program. In a scratch directory gnuplot loads style.gp,
+ * the data (variables, data blocks), legend.gp and the script, so that no path of the user's enters
+ * a script; the finished files are copied to where they belong. No text is interpreted: see
+ * gnuplot_quote. STANCE_SCRIPTS=DIR in the environment keeps scripts and data in DIR/STEM, where
+ * `gnuplot script` draws the picture anew.
  */
 #ifndef STANCE_DRAW_GNUPLOT_H
 #define STANCE_DRAW_GNUPLOT_H
