@@ -137,8 +137,9 @@ void __wrap_sandbox_limit(bool begin)
 bool __wrap_gnuplot_end(struct gnuplot *g);
 bool __wrap_gnuplot_end(struct gnuplot *g)
 {
+    const bool good = !g->missing;
     gnuplot_abandon(g);
-    return true;
+    return good;
 }
 
 /* ---- findings inside a worker --------------------------------------------------------------- */
