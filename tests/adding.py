@@ -74,24 +74,23 @@ static int by_value(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-bool plot_ends(const struct plot *plot, stance_message *message)
+bool plot_ends(const struct plot *plot)
 {
     const struct results *r = plot->r;
-    double *end;
+    double *end = NULL;
     struct gnuplot g;
-    if (!results_answer(r, "end_time", &end, message))
+    if (!gnuplot_begin(&g, plot, "ends", plot_ends_gp))
         return false;
-    const bool good = end && plot_begin(plot, &g, plot_ends_gp, "How many have ended by each time", message);
-    if (good) {
+    gnuplot_say(&g, "How many have ended by each time");
+    if (gnuplot_needs(&g, results_answer(r, "end_time", &end, plot->message)) && end &&
+        gnuplot_keep(&g, end)) {
         qsort(end, r->cases, sizeof *end, by_value);
         gnuplot_block(&g, "ends");
         for (uint64_t i = 0; i < r->cases; i++)
             GNUPLOT_ROW(&g, end[i], (double)(i + 1));
-        gnuplot_end_block(&g);
         gnuplot_set(&g, "cases = %llu", (unsigned long long)r->cases);
     }
-    free(end);
-    return !end || (good && plot_end(plot, &g, "ends", message));
+    return gnuplot_end(&g);
 }
 """
 

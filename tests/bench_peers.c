@@ -437,7 +437,6 @@ static void put_series(struct gnuplot *g, const struct series *s, size_t m, int 
         if (belongs(&lines[k], s))
             put_point(g, &lines[k], panel);
     GNUPLOT_ROW(g, NAN, NAN, 1, 0);
-    gnuplot_end_block(g);
     gnuplot_block(g, "line%zu_%d", m, panel + 1);
     double last = 0;
     for (size_t k = 0; k < count; k++) {
@@ -454,7 +453,6 @@ static void put_series(struct gnuplot *g, const struct series *s, size_t m, int 
             put_point(g, next, panel);
     }
     GNUPLOT_ROW(g, NAN, NAN, 1, 0);
-    gnuplot_end_block(g);
 }
 
 static void put_legend(struct gnuplot *g, const struct series *s, size_t m)
@@ -486,14 +484,12 @@ static void put_legend(struct gnuplot *g, const struct series *s, size_t m)
     gnuplot_text(g, failed > 0 ? text : "", "about[%zu]", 2 * m);
 }
 
-static bool plot(const struct results *r, struct look *look, const char *directory,
-                 const char *stem, stance_message *message)
+static bool draw(const struct plot *plot)
 {
     enum { MOST = ACCURACY_METHODS + 2 * PEERS };
     struct series series[MOST];
     size_t style[MOST], n = 0;
     struct gnuplot g;
-    char subtitle[300];
     for (size_t m = 0; stance_methods()[m]; m++)
         for (size_t k = 0; k < a.rows; k++)
             if (lines[k].row.method == stance_methods()[m] && k != a.truth) {
@@ -505,14 +501,14 @@ static bool plot(const struct results *r, struct look *look, const char *directo
         style[n] = 6 + p / 2 % 2;
         series[n++] = (struct series){.peer = &peers[p / 2], .usual = p % 2};
     }
-    snprintf(subtitle, sizeof subtitle,
-             "Error against cost. Reference: %s, tolerance %g. A cross marks points where cases "
-             "were given up%s",
-             a.row[a.truth].method->name, a.row[a.truth].tolerance,
-             a.labels ? "; open symbols: none unlike, drawn where one cell is."
-                      : ". Errors of exactly zero are not drawn.");
-    if (!gnuplot_begin(&g, look, plot_peers_gp, r->title, subtitle, message))
+    if (!gnuplot_begin(&g, plot, "", plot_peers_gp))
         return false;
+    gnuplot_say(&g,
+                "Error against cost. Reference: %s, tolerance %g. A cross marks points where cases "
+                "were given up%s",
+                a.row[a.truth].method->name, a.row[a.truth].tolerance,
+                a.labels ? "; open symbols: none unlike, drawn where one cell is."
+                         : ". Errors of exactly zero are not drawn.");
     gnuplot_set(&g, "panels = %d; labels = %d; series = %zu", a.labels ? 1 : 2, a.labels, n);
     gnuplot_set(&g,
                 "array series_name[%zu]\narray style[%zu]\narray peer[%zu]\narray about[%zu]\n"
@@ -544,7 +540,7 @@ static bool plot(const struct results *r, struct look *look, const char *directo
         for (int p = 0; p < (a.labels ? 1 : 2); p++)
             put_series(&g, s, m, p);
     }
-    return gnuplot_end(&g, directory, stem, message);
+    return gnuplot_end(&g);
 }
 
 /* ---- the program -------------------------------------------------------------------------- */
@@ -586,17 +582,17 @@ static bool ask_all(const struct results *r, const char *stem, stance_message *m
     return good;
 }
 
-static bool study(const struct results *r, struct look *look, const char *directory,
-                  const char *stem, json_t **object, stance_message *message)
+static bool study(const struct plot *plot, json_t **object)
 {
+    const struct results *const r = plot->r;
     struct table t = {0};
-    if (!accuracy_make(&a, r, budget, message))
+    if (!accuracy_make(&a, r, budget, plot->message))
         return false;
     count = a.rows;
     lines = peer_room(count, sizeof *lines);
     for (size_t k = 0; k < count; k++)
         lines[k].row = a.row[k];
-    bool good = ask_all(r, stem, message);
+    bool good = ask_all(r, plot->stem, plot->message);
     mark_fronts();
     for (size_t k = 0; k < count; k++)
         if (object || !lines[k].peer || lines[k].front || lines[k].usual)
@@ -604,7 +600,7 @@ static bool study(const struct results *r, struct look *look, const char *direct
     if (good && object)
         *object = study_json(r, &t);
     else if (good)
-        good = print_text(r, &t) && plot(r, look, directory, stem, message);
+        good = print_text(r, &t) && draw(plot);
     table_free(&t);
     for (size_t p = 0; p < asked; p++)
         peer_forget(&peers[p]);

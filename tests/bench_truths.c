@@ -429,37 +429,36 @@ static bool report(bool json, const char *csv)
 }
 
 /* Errors, a line of the picture for each truth. */
-static bool plot(struct look *look, stance_message *message)
+static bool draw(struct look *look, stance_message *message)
 {
     static const double least = 1e-16, most = 1e2; /* others are drawn there */
+    const struct plot plot = {.title = "Held against what is known from outside",
+                              .directory = look->directory,
+                              .stem = "truth",
+                              .look = look,
+                              .message = message};
     struct gnuplot g;
-    if (!gnuplot_directory(look->directory) ||
-        !gnuplot_begin(&g, look, plot_truths_gp, "Held against what is known from outside",
-                       "Error of each method; grey: within the error bar of what is known. A cross "
-                       "at the right end: no number",
-                       message))
+    if (!gnuplot_directory(look->directory) || !gnuplot_begin(&g, &plot, "", plot_truths_gp))
         return false;
+    gnuplot_say(&g, "Error of each method; grey: within the error bar of what is known. A cross at "
+                    "the right end: no number");
     gnuplot_set(&g, "rows = %zu; methods = %zu\narray name[%zu]", rows, methods, rows);
     gnuplot_block(&g, "bars");
     for (size_t i = 0; i < rows; i++)
         GNUPLOT_ROW(&g, truths[i].bar > 0 ? truths[i].bar : NAN, (double)(i + 1));
-    gnuplot_end_block(&g);
     for (size_t i = 0; i < rows; i++)
         gnuplot_text(&g, truths[i].name, "name[%zu]", i + 1);
     for (size_t m = 0; m < methods; m++) {
         static const int markers[] = {7, 5, 9, 11, 13, 15, 2};
-        char colour[32];
-        snprintf(colour, sizeof colour, "hue[%zu]", m + 1);
-        gnuplot_legend_mark(&g, colour, 0, markers[m % 7], method[m]->name, "");
+        gnuplot_legend(&g, gnuplot_hue(m), 0, markers[m % 7], method[m]->name, "");
         gnuplot_block(&g, "errors%zu", m + 1);
         for (size_t i = 0; i < rows; i++) {
             const double error = fabs(reached[i * methods + m].value - truths[i].value);
             GNUPLOT_ROW(&g, isnan(error) ? NAN : fmin(fmax(error, least), most), (double)(i + 1),
                         isnan(error));
         }
-        gnuplot_end_block(&g);
     }
-    return gnuplot_end(&g, look->directory, "truth", message);
+    return gnuplot_end(&g);
 }
 
 /* ---- the program ---------------------------------------------------------------------------- */
@@ -519,7 +518,7 @@ int main(int argc, char **argv)
     }
     stance_message message = {""};
     if (!report(request.json, request.csv) ||
-        (request.look.directory && !request.json && !plot(&request.look, &message)))
+        (request.look.directory && !request.json && !draw(&request.look, &message)))
         die(EXIT_IO, NULL, "cannot be written: %s", message.text);
     free(truths);
     free(reached);

@@ -134,14 +134,12 @@ void __wrap_sandbox_limit(bool begin)
     (void)begin; /* the timer of the worker is stricter */
 }
 
-bool __wrap_gnuplot_end(struct gnuplot *g, const char *where, const char *stem,
-                        stance_message *message);
-bool __wrap_gnuplot_end(struct gnuplot *g, const char *where, const char *stem,
-                        stance_message *message)
+bool __wrap_gnuplot_end(struct gnuplot *g);
+bool __wrap_gnuplot_end(struct gnuplot *g)
 {
-    (void)where, (void)stem, (void)message;
+    const bool good = !g->missing;
     gnuplot_abandon(g);
-    return true;
+    return good;
 }
 
 /* ---- findings inside a worker --------------------------------------------------------------- */

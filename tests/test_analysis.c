@@ -740,12 +740,12 @@ static void test_scales(void **state)
     assert_int_equal(along.scale, PLOT_LINEAR);
     assert_true(along.falling);
     assert_int_equal(plot_axis_index(&along, 0), 2); /* the lowest cell is the last value */
-    assert_near(along.low, 0.05, 1e-15);
-    assert_near(along.high, 0.35, 1e-15);
+    assert_near(along.range.low, 0.05, 1e-15);
+    assert_near(along.range.high, 0.35, 1e-15);
     axis = axis_of(decades, 4);
     plot_axis_make(&along, &axis);
     assert_int_equal(along.scale, PLOT_LOG);
-    assert_near(along.low, -2.5, 1e-12);
+    assert_near(along.range.low, -2.5, 1e-12);
     axis = axis_of(odd, 4);
     plot_axis_make(&along, &axis);
     assert_int_equal(along.scale, PLOT_LIST);

@@ -8,7 +8,7 @@
 #ifndef STANCE_BENCH_ACCURACY_H
 #define STANCE_BENCH_ACCURACY_H
 
-#include "analysis/draw/look.h"
+#include "analysis/draw/gnuplot.h"
 #include "analysis/table/table.h"
 #include "measure.h"
 
@@ -71,8 +71,7 @@ size_t accuracy_cases(const struct accuracy *a, const struct results *r);
  * none. */
 void accuracy_errors(struct table *t, const struct accuracy_row *row, bool reference, bool labels);
 
-/* DIRECTORY/STEM.svg and .png: error against cost, a line for each method. */
-bool accuracy_plot(const struct accuracy *a, const struct results *r, struct look *look,
-                   const char *directory, const char *stem, stance_message *message);
+/* STEM: error against cost, a line for each method. */
+bool accuracy_plot(const struct accuracy *a, const struct plot *plot);
 
 #endif

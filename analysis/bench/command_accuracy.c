@@ -97,19 +97,19 @@ static const char text[] =
 
 /* ---- the command --------------------------------------------------------------------------- */
 
-static bool study(const struct results *r, struct look *look, const char *directory,
-                  const char *stem, json_t **object, stance_message *message)
+static bool study(const struct plot *plot, json_t **object)
 {
+    const struct results *const r = plot->r;
     struct accuracy a;
-    if (!accuracy_make(&a, r, measuring_budget, message))
+    if (!accuracy_make(&a, r, measuring_budget, plot->message))
         return false;
     json_t *const facts = study_facts(&a, r);
     bool good = true;
     if (object)
         *object = facts;
     else
-        good = say_facts(facts, false, text, stdout) && fflush(stdout) == 0 &&
-               accuracy_plot(&a, r, look, directory, stem, message);
+        good =
+            say_facts(facts, false, text, stdout) && fflush(stdout) == 0 && accuracy_plot(&a, plot);
     accuracy_free(&a);
     return good;
 }

@@ -109,11 +109,11 @@ static const char text[] =
 
 /* ---- the command --------------------------------------------------------------------------- */
 
-static bool study(const struct results *r, struct look *look, const char *directory,
-                  const char *stem, json_t **object, stance_message *message)
+static bool study(const struct plot *plot, json_t **object)
 {
+    const struct results *const r = plot->r;
     struct failure f;
-    if (!failure_make(&f, r, message))
+    if (!failure_make(&f, r, plot->message))
         return false;
     json_t *const facts = study_facts(&f, r);
     bool good = give_shares(facts, &f);
@@ -121,7 +121,7 @@ static bool study(const struct results *r, struct look *look, const char *direct
         *object = facts;
     else
         good = say_facts(facts, false, text, stdout) && good && fflush(stdout) == 0 &&
-               failure_plot(&f, r, look, directory, stem, message);
+               failure_plot(&f, plot);
     failure_free(&f);
     return good;
 }

@@ -31,9 +31,13 @@ static int run(int argc, char **argv)
     const char *slash = strrchr(file, '/'), *name = slash ? slash + 1 : file;
     char stem[128], own[1024];
     snprintf(stem, sizeof stem, "%.*s", (int)strcspn(name, "."), name);
-    const char *const directory = look_directory(&request.look, file, own, sizeof own);
-    const bool there = gnuplot_directory(directory);
-    const bool good = there && speed_plot(&table, &request.look, directory, stem, &message);
+    const struct plot plot = {.title = "Speed of the stepping kernels",
+                              .directory = look_directory(&request.look, file, own, sizeof own),
+                              .stem = stem,
+                              .look = &request.look,
+                              .message = &message};
+    const bool there = gnuplot_directory(plot.directory);
+    const bool good = there && speed_plot(&table, &plot);
     if (there && !good)
         fprintf(stderr, "stance bench plot: %s\n", message.text);
     speed_free(&table);

@@ -8,7 +8,7 @@
 #ifndef STANCE_BENCH_FAILURE_H
 #define STANCE_BENCH_FAILURE_H
 
-#include "analysis/draw/look.h"
+#include "analysis/draw/gnuplot.h"
 #include "runner/store/results.h"
 
 /* Worst first; a cell gets the first that applies. */
@@ -91,8 +91,7 @@ const char *failure_row_name(const struct failure_row *row, char text[40]);
  *   accelerations (Painleve). */
 bool failure_theory(struct failure_line *line, const struct scenario *s, stance_message *message);
 
-/* DIRECTORY/STEM.svg and .png: a map for each row. DIRECTORY/STEM-energy: the energy gained. */
-bool failure_plot(const struct failure *f, const struct results *r, struct look *look,
-                  const char *directory, const char *stem, stance_message *message);
+/* STEM: a map for each row. STEM-energy: the energy gained. */
+bool failure_plot(const struct failure *f, const struct plot *plot);
 
 #endif

@@ -9,22 +9,17 @@ GNUPLOT_SCRIPT(plot_accuracy_gp, "analysis/bench/plot_accuracy.gp");
 
 /* What a panel shows of a row. */
 enum shown { POSITION, VELOCITY, LABELS };
-enum { LINES = 8 }; /* under a method's name, at most */
 
-struct range {
-    double low, high;
-};
-
-static void widen(struct range *range, double value)
+/* What there is no place for on a logarithmic axis is passed over. */
+static void widen(struct plot_range *range, double value)
 {
-    if (value > 0 && isfinite(value)) {
-        range->low = fmin(range->low, value);
-        range->high = fmax(range->high, value);
-    }
+    if (value > 0)
+        plot_widen(range, value);
 }
 
 /* Tells the script; of nothing any range will do. */
-static void put_range(struct gnuplot *g, const struct range *range, const char *name, int panel)
+static void put_range(struct gnuplot *g, const struct plot_range *range, const char *name,
+                      int panel)
 {
     const bool any = range->low <= range->high;
     gnuplot_number(g, any ? range->low : 0.2, "%s_low[%d]", name, panel);
@@ -39,7 +34,7 @@ static bool belongs(const struct accuracy *a, size_t k, const stance_method *met
 /* Rows of a method in a panel: cost, value, whether that is more than none, cases given up. No
  * cell unlike is fewer than one: so it is drawn at the share of one. */
 static void put_rows(struct gnuplot *g, const struct accuracy *a, const stance_method *method,
-                     enum shown shown, struct range *cost, struct range *error)
+                     enum shown shown, struct plot_range *cost, struct plot_range *error)
 {
     for (size_t k = 0; k < a->rows; k++) {
         const struct accuracy_row *row = &a->row[k];
@@ -58,15 +53,12 @@ static void put_rows(struct gnuplot *g, const struct accuracy *a, const stance_m
     }
 }
 
-/* Orders, failures and residuals in words under the name of the m-th method. */
+/* Orders, failures and residuals in words under the name of a method. */
 static void put_legend(struct gnuplot *g, const struct accuracy *a, const stance_method *method,
-                       size_t m)
+                       size_t style)
 {
-    char text[100];
     double residual = 0;
     uint64_t failed = 0, cases = 0;
-    int line = 0;
-#define PUT_LINE gnuplot_text(g, text, "about[%zu]", (m - 1) * LINES + (size_t)++line)
     for (size_t k = 0; k < a->rows; k++) {
         const struct accuracy_row *row = &a->row[k];
         if (belongs(a, k, method)) {
@@ -74,27 +66,20 @@ static void put_legend(struct gnuplot *g, const struct accuracy *a, const stance
             residual = fmax(residual, fmax(row->signorini, fmax(row->coulomb, row->dissipation)));
         }
     }
-    gnuplot_text(g, method->name, "method_name[%zu]", m);
-    for (size_t k = 0; k < a->orders && line + 2 < LINES; k++) {
+    gnuplot_legend(g, gnuplot_hue(style - 1), 0, 0, method->name, "");
+    for (size_t k = 0; k < a->orders; k++) {
         const struct accuracy_order *order = &a->order[k];
-        if (order->method == method && !isnan(order->position)) {
-            snprintf(text, sizeof text, "order %.2f of %s %.0e ... %.0e", order->position,
-                     order->by_tolerance ? "tolerance" : "step", order->from, order->to);
-            PUT_LINE;
-        }
+        if (order->method == method && !isnan(order->position))
+            gnuplot_about(g, "order %.2f of %s %.0e ... %.0e", order->position,
+                          order->by_tolerance ? "tolerance" : "step", order->from, order->to);
     }
     if (residual > 0)
-        snprintf(text, sizeof text, "contact laws broken by at most %.0e", residual);
+        gnuplot_about(g, "contact laws broken by at most %.0e", residual);
     else
-        snprintf(text, sizeof text, "contact laws never broken");
-    PUT_LINE;
-    if (failed > 0) {
-        snprintf(text, sizeof text, "gave up in %llu of %llu cases", (unsigned long long)failed,
-                 (unsigned long long)cases);
-        PUT_LINE;
-    }
-#undef PUT_LINE
-    gnuplot_set(g, "about_lines[%zu] = %d", m, line);
+        gnuplot_about(g, "contact laws never broken");
+    if (failed > 0)
+        gnuplot_about(g, "gave up in %llu of %llu cases", (unsigned long long)failed,
+                      (unsigned long long)cases);
 }
 
 /* Those of which there are rows beside the truth; style[]: colours stay with a method. */
@@ -112,46 +97,38 @@ static size_t list_methods(const struct accuracy *a, const stance_method **metho
     return n;
 }
 
-bool accuracy_plot(const struct accuracy *a, const struct results *r, struct look *look,
-                   const char *directory, const char *stem, stance_message *message)
+bool accuracy_plot(const struct accuracy *a, const struct plot *plot)
 {
     const int panels = a->labels ? 1 : 2;
     const struct accuracy_row *truth = &a->row[a->truth];
     struct gnuplot g;
-    char subtitle[400];
     const stance_method *method[ACCURACY_METHODS + 1];
     size_t style[ACCURACY_METHODS + 1];
     const size_t methods = list_methods(a, method, style);
-    struct range cost = {INFINITY, 0}, error[2] = {{INFINITY, 0}, {INFINITY, 0}};
+    struct plot_range cost = PLOT_NOTHING, error[2] = {PLOT_NOTHING, PLOT_NOTHING};
 
-    snprintf(subtitle, sizeof subtitle,
-             "Error against cost. Reference: %s, tolerance %g. %llu cases per point; a cross marks "
-             "points where cases were given up%s",
-             truth->method->name, truth->tolerance, (unsigned long long)truth->cases,
-             a->labels ? "; open symbols: none unlike, drawn where one cell is."
-                       : ". Errors of exactly zero are not drawn.");
-    if (!gnuplot_begin(&g, look, plot_accuracy_gp, r->title, subtitle, message))
+    if (!gnuplot_begin(&g, plot, "", plot_accuracy_gp))
         return false;
-    gnuplot_set(&g, "panels = %d; labels = %d; lines_each = %d", panels, a->labels, LINES);
-    gnuplot_set(&g,
-                "array method_name[%zu]\narray method_style[%zu]\narray about_lines[%zu]\narray "
-                "about[%zu]\n"
-                "array cost_low[1]\narray cost_high[1]\narray error_low[2]\narray error_high[2]",
-                methods, methods, methods, methods * LINES);
+    gnuplot_say(&g,
+                "Error against cost. Reference: %s, tolerance %g. %llu cases per point; a cross "
+                "marks points where cases were given up%s",
+                truth->method->name, truth->tolerance, (unsigned long long)truth->cases,
+                a->labels ? "; open symbols: none unlike, drawn where one cell is."
+                          : ". Errors of exactly zero are not drawn.");
+    gnuplot_set(&g, "panels = %d; labels = %d", panels, a->labels);
+    gnuplot_arrays(&g, methods, "method_style");
+    gnuplot_arrays(&g, 2, "cost_low cost_high error_low error_high");
     for (size_t m = 1; m <= methods; m++) {
-        put_legend(&g, a, method[m - 1], m);
+        put_legend(&g, a, method[m - 1], style[m - 1]);
         gnuplot_set(&g, "method_style[%zu] = %zu", m, style[m - 1]);
         for (int p = 0; p < panels; p++) {
             const enum shown shown = a->labels ? LABELS : p == 0 ? POSITION : VELOCITY;
             gnuplot_block(&g, "errors%zu_%d", m, p + 1);
             put_rows(&g, a, method[m - 1], shown, &cost, &error[p]);
-            GNUPLOT_ROW(&g, NAN, NAN, 1, 0);
-            gnuplot_end_block(&g);
         }
     }
-    gnuplot_set(&g, "methods = %zu", methods);
     put_range(&g, &cost, "cost", 1);
     for (int p = 0; p < panels; p++)
         put_range(&g, &error[p], "error", p + 1);
-    return gnuplot_end(&g, directory, stem, message);
+    return gnuplot_end(&g);
 }

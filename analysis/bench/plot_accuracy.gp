@@ -2,26 +2,18 @@
 # than none, cases given up.
 left = 108
 gap = 108
-legend = 300
-width = wide(400, panels, left + (panels - 1)*gap + legend)
+width = wide(400, panels, left + (panels - 1)*gap + legend_room)
 panel_left(p) = left + (p - 1)*(width + gap)
 array what[2] = ['largest error of a coordinate (m, rad)', 'mean over time of the velocity error (m/s, rad/s)']
 array marker[5] = [7, 5, 9, 11, 13] # filled; one less is the open one
 
-page_width = panel_left(panels) + width + legend
+page_width = panel_left(panels) + width + legend_room
 top = title_height(0)
 height = high(380, 1, top + 78)
 page_height = top + height + 78
 load 'page.gp'
-line = top + 10
-do for [m=1:methods] {
-    eval box(page_width - legend + 24, line, hue[method_style[m]])
-    set label method_name[m] at screen X(page_width - legend + 46), Y(line) left font ',12' front
-    do for [k=1:about_lines[m]] {
-        set label about[(m-1)*lines_each + k] at screen X(page_width - legend + 46), Y(line + 3 + 14*k) left font ',9' front
-    }
-    line = line + 25 + 14*about_lines[m]
-}
+legend_x = panel_left(panels) + width + 20
+legend_y = top + 10
 load 'panels.gp'
 
 eval grid
@@ -37,11 +29,11 @@ do for [p=1:panels] {
     eval log_tics('x', log10(0.6*cost_low[1]), log10(1.7*cost_high[1]), 6, 1, 1)
     eval log_tics('y', log10(0.6*error_low[p]), log10(1.7*error_high[p]), 10, 1, 1)
     errors(m) = sprintf('$errors%d_%d', m, p)
-    plot NaN notitle, for [m=1:methods] errors(m) using 1:2 with lines lc rgb hue[method_style[m]] lw 1.6 notitle, \
-        for [m=1:methods] errors(m) using 1:($3 > 0 ? NaN : $2) with points lc rgb hue[method_style[m]] \
+    plot NaN notitle, for [m=1:legends] errors(m) using 1:2 with lines lc rgb legend_colour[m] lw 1.6 notitle, \
+        for [m=1:legends] errors(m) using 1:($3 > 0 ? NaN : $2) with points lc rgb legend_colour[m] \
             pt marker[method_style[m]]-1 ps 1 notitle, \
-        for [m=1:methods] errors(m) using 1:($3 > 0 ? $2 : NaN) with points lc rgb hue[method_style[m]] \
+        for [m=1:legends] errors(m) using 1:($3 > 0 ? $2 : NaN) with points lc rgb legend_colour[m] \
             pt marker[method_style[m]] ps 0.9 notitle, \
-        for [m=1:methods] errors(m) using 1:($4 > 0 ? $2 : NaN) with points lc rgb '#b00000' pt 2 ps 1.6 lw 1.6 notitle
+        for [m=1:legends] errors(m) using 1:($4 > 0 ? $2 : NaN) with points lc rgb '#b00000' pt 2 ps 1.6 lw 1.6 notitle
     unset logscale
 }

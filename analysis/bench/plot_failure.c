@@ -3,49 +3,24 @@
 #include "failure.h"
 
 #include "analysis/draw/plot.h"
-#include "runner/base/message.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 GNUPLOT_SCRIPT(plot_failure_gp, "analysis/bench/plot_failure.gp");
 
 static const double lowest_share = 1e-16, highest_share = 10;
 
-/* Steps that divide a time evenly are a ladder but for rounding: such an axis counts as even when
- * no value is further than a third of a cell from where it is drawn. */
-static void make_axis(struct plot_axis *along, const struct results_axis *axis)
-{
-    plot_axis_make(along, axis);
-    if (along->scale != PLOT_LIST || axis->word || axis->count < 3 || !(axis->value[0] > 0) ||
-        !(axis->value[axis->count - 1] > 0))
-        return;
-    const size_t n = axis->count;
-    const double first = log10(axis->value[0]), last = log10(axis->value[n - 1]);
-    const double step = (last - first) / (double)(n - 1);
-    for (size_t i = 0; i < n; i++)
-        if (!(axis->value[i] > 0) ||
-            !(fabs(log10(axis->value[i]) - first - (double)i * step) < fabs(step) / 3))
-            return;
-    along->scale = PLOT_LOG;
-    along->falling = last < first;
-    along->first = fmin(first, last);
-    along->step = fabs(step);
-    along->low = along->first - 0.5 * along->step;
-    along->high = along->first + ((double)n - 0.5) * along->step;
-}
-
 /* What both pictures show: axes 1 and 2 of the file, the rows' names, and the line of theory. */
 struct maps {
+    struct gnuplot g;
     const struct failure *f;
-    const struct results *r;
-    struct look *look;
     struct plot_axis across, up;
 };
 
-static void put_line(struct gnuplot *g, const struct maps *maps)
+static void put_line(struct maps *maps)
 {
+    struct gnuplot *const g = &maps->g;
     const struct failure *f = maps->f;
     const struct plot_axis *along = f->line.axis == 1 ? &maps->across : &maps->up;
     const struct plot_axis *other = f->line.axis == 1 ? &maps->up : &maps->across;
@@ -58,63 +33,53 @@ static void put_line(struct gnuplot *g, const struct maps *maps)
         const double there = other->scale == PLOT_LOG ? log10(value) : value;
         GNUPLOT_ROW(g, f->line.axis == 1 ? here : there, f->line.axis == 1 ? there : here);
     }
-    if (!any)
-        GNUPLOT_ROW(g, NAN, NAN);
-    gnuplot_end_block(g);
 }
 
-static bool begin_page(struct gnuplot *g, const struct maps *maps, const char *subtitle,
-                       const void *values, size_t size, stance_message *message)
+static void put_maps(struct maps *maps, const void *values, size_t size)
 {
+    struct gnuplot *const g = &maps->g;
     const struct failure *f = maps->f;
-    const size_t ny = maps->up.axis->count;
-    struct plot_cells cells = {&maps->across, &maps->up, 0, {ny, 1}};
+    struct plot_cells cells = {&maps->across, &maps->up, 0, {maps->up.axis->count, 1}};
     char text[40];
-    if (!gnuplot_begin(g, maps->look, plot_failure_gp, maps->r->title, subtitle, message))
-        return false;
-    plot_axis_write(&maps->across, g, "x");
-    plot_axis_write(&maps->up, g, "y");
-    gnuplot_set(g, "panels = %zu\narray name[%zu]", f->rows, f->rows);
+    plot_axis_write(&maps->across, g, 'x');
+    plot_axis_write(&maps->up, g, 'y');
+    gnuplot_set(g, "panels = %zu", f->rows);
+    gnuplot_arrays(g, f->rows, "name");
     for (size_t k = 0; k < f->rows; k++) {
         gnuplot_text(g, failure_row_name(&f->row[k], text), "name[%zu]", k + 1);
         cells.first = k * f->cells;
         plot_cells_write(g, &cells, values, size);
     }
-    put_line(g, maps);
-    return true;
+    put_line(maps);
 }
 
 /* ---- verdicts ----------------------------------------------------------------------------- */
 
-/* "painleve 12 %, events 1 %": why cases gave up, the two most frequent reasons. */
-static void reasons_text(const struct failure_row *row, uint64_t cells, char text[2][32])
+/* "painleve 12 %", "events 1 %": why cases of row k gave up, the two most frequent reasons. */
+static void put_reasons(struct gnuplot *g, const struct failure *f, size_t k)
 {
-    uint64_t last = UINT64_MAX;
-    int previous = -1;
-    text[0][0] = text[1][0] = '\0';
-    for (int line = 0; line < 2; line++) {
-        int best = -1;
-        for (int k = 0; k < STANCE_FAILURE_COUNT; k++) {
-            const bool below = row->reason[k] < last || (row->reason[k] == last && k > previous);
-            if (below && row->reason[k] > 0 && (best < 0 || row->reason[k] > row->reason[best]))
-                best = k;
-        }
-        if (best < 0)
-            return;
-        snprintf(text[line], sizeof text[line], "%s %.2g %%", stance_failure_name[best],
-                 100 * (double)row->reason[best] / (double)cells);
-        last = row->reason[best];
-        previous = best;
+    uint64_t left[STANCE_FAILURE_COUNT];
+    char text[64];
+    memcpy(left, f->row[k].reason, sizeof left);
+    for (size_t line = 0; line < 2; line++) {
+        int most = 0;
+        for (int reason = 1; reason < STANCE_FAILURE_COUNT; reason++)
+            most = left[reason] > left[most] ? reason : most;
+        snprintf(text, sizeof text, "%s %.2g %%", stance_failure_name[most],
+                 100 * (double)left[most] / (double)f->cells);
+        gnuplot_text(g, left[most] > 0 ? text : "", "reason[%zu]", 2 * k + line + 1);
+        left[most] = 0;
     }
 }
 
 /* Verdicts against methods: shares of the cells; the reasons in two lines. */
 static void put_table(struct gnuplot *g, const struct failure *f)
 {
-    char text[64], reasons[2][32];
+    char text[64];
     int verdicts = 0;
-    gnuplot_set(g, "array verdict_colour[%d]\narray share[%zu]\narray reason[%zu]",
-                FAILURE_VERDICT_COUNT, FAILURE_VERDICT_COUNT * f->rows, 2 * f->rows);
+    gnuplot_arrays(g, FAILURE_VERDICT_COUNT, "verdict_colour");
+    gnuplot_arrays(g, FAILURE_VERDICT_COUNT * f->rows, "share");
+    gnuplot_arrays(g, 2 * f->rows, "reason");
     for (enum failure_verdict v = 0; v < FAILURE_VERDICT_COUNT; v++) {
         snprintf(text, sizeof text, "0x%s", failure_styles[v].colour + 1);
         gnuplot_set(g, "verdict_colour[%d] = %s", v + 1, text);
@@ -123,7 +88,7 @@ static void put_table(struct gnuplot *g, const struct failure *f)
             cells += f->row[k].count[v];
         if (cells == 0)
             continue;
-        gnuplot_legend(g, text, failure_styles[v].text, "");
+        gnuplot_legend(g, text, 0, 0, failure_styles[v].text, "");
         for (size_t k = 0; k < f->rows; k++) {
             const double share = 100 * (double)f->row[k].count[v] / (double)f->cells;
             snprintf(text, sizeof text,
@@ -135,71 +100,61 @@ static void put_table(struct gnuplot *g, const struct failure *f)
         }
         verdicts++;
     }
-    for (size_t k = 0; k < f->rows; k++) {
-        reasons_text(&f->row[k], f->cells, reasons);
-        for (size_t line = 0; line < 2; line++)
-            gnuplot_text(g, reasons[line], "reason[%zu]", 2 * k + line + 1);
-    }
+    for (size_t k = 0; k < f->rows; k++)
+        put_reasons(g, f, k);
 }
 
-static bool draw_verdicts(const struct maps *maps, const char *directory, const char *stem,
-                          stance_message *message)
+static bool draw_verdicts(struct maps *maps, const struct plot *plot)
 {
     const struct failure *f = maps->f;
-    struct gnuplot g;
-    char subtitle[400];
     const bool step = strcmp(maps->across.axis->name, "method.step") == 0 ||
                       strcmp(maps->up.axis->name, "method.step") == 0;
-    snprintf(subtitle, sizeof subtitle,
-             "%zu cases per map, each with the worst verdict that applies. Reference: "
-             "event-driven%s; where that gave up, capturing. Inaccurate: a coordinate is off by "
-             "more than %g m or rad at the end.",
-             f->cells, step ? " at the smallest step" : "", FAILURE_POSITION);
-    if (!begin_page(&g, maps, subtitle, f->verdict, sizeof *f->verdict, message))
+    if (!gnuplot_begin(&maps->g, plot, "", plot_failure_gp))
         return false;
-    gnuplot_set(&g, "energy = 0");
-    put_table(&g, f);
-    return gnuplot_end(&g, directory, stem, message);
+    gnuplot_say(&maps->g,
+                "%zu cases per map, each with the worst verdict that applies. Reference: "
+                "event-driven%s; where that gave up, capturing. Inaccurate: a coordinate is off by "
+                "more than %g m or rad at the end.",
+                f->cells, step ? " at the smallest step" : "", FAILURE_POSITION);
+    put_maps(maps, f->verdict, sizeof *f->verdict);
+    gnuplot_set(&maps->g, "energy = 0");
+    put_table(&maps->g, f);
+    return gnuplot_end(&maps->g);
 }
 
 /* ---- energy -------------------------------------------------------------------------------- */
 
-static bool draw_energy(const struct maps *maps, const char *directory, const char *stem,
-                        stance_message *message)
+static bool draw_energy(struct maps *maps, const struct plot *plot)
 {
-    static const char subtitle[] =
-        "Energy that the method created: the largest rise above the energy at the start and the "
-        "work done since, as a share of the energy at the start. Less than 1e-16 is drawn as "
-        "1e-16.";
     const struct failure *f = maps->f;
-    struct gnuplot g;
-    char path[300], text[64];
-    double *power = malloc(f->rows * f->cells * sizeof *power);
-    if (!power)
-        return complain(message, "stance bench: not enough memory");
-    for (size_t i = 0; i < f->rows * f->cells; i++)
+    struct gnuplot *const g = &maps->g;
+    char text[64];
+    if (!gnuplot_begin(g, plot, "energy", plot_failure_gp))
+        return false;
+    gnuplot_say(g, "Energy that the method created: the largest rise above the energy at the start "
+                   "and the work done since, as a share of the energy at the start. Less than "
+                   "1e-16 is drawn as 1e-16.");
+    double *const power = gnuplot_room(g, f->rows * f->cells, sizeof *power);
+    for (size_t i = 0; power && i < f->rows * f->cells; i++)
         power[i] =
             isnan(f->share[i]) ? NAN : log10(fmin(fmax(f->share[i], lowest_share), highest_share));
-    const bool good = begin_page(&g, maps, subtitle, power, sizeof *power, message);
-    free(power);
-    if (!good)
-        return false;
-    gnuplot_set(&g, "energy = 1; lowest = %#.10g; highest = %#.10g\narray largest[%zu]",
-                log10(lowest_share), log10(highest_share), f->rows);
+    if (power)
+        put_maps(maps, power, sizeof *power);
+    gnuplot_set(g, "energy = 1; lowest = %#.10g; highest = %#.10g", log10(lowest_share),
+                log10(highest_share));
+    gnuplot_arrays(g, f->rows, "largest");
     for (size_t k = 0; k < f->rows; k++) {
         snprintf(text, sizeof text, "%.2g", f->row[k].energy_share);
-        gnuplot_text(&g, text, "largest[%zu]", k + 1);
+        gnuplot_text(g, text, "largest[%zu]", k + 1);
     }
-    snprintf(path, sizeof path, "%s-energy", stem);
-    return gnuplot_end(&g, directory, path, message);
+    return gnuplot_end(g);
 }
 
-bool failure_plot(const struct failure *f, const struct results *r, struct look *look,
-                  const char *directory, const char *stem, stance_message *message)
+bool failure_plot(const struct failure *f, const struct plot *plot)
 {
-    struct maps maps = {.f = f, .r = r, .look = look};
-    make_axis(&maps.across, &r->axis[1]);
-    make_axis(&maps.up, &r->axis[2]);
-    return draw_verdicts(&maps, directory, stem, message) &&
-           draw_energy(&maps, directory, stem, message);
+    struct maps maps = {.f = f};
+    /* Steps that divide a time evenly are a ladder but for rounding. */
+    plot_axis_make_ladder(&maps.across, &plot->r->axis[1], 1.0 / 3);
+    plot_axis_make_ladder(&maps.up, &plot->r->axis[2], 1.0 / 3);
+    return draw_verdicts(&maps, plot) && draw_energy(&maps, plot);
 }

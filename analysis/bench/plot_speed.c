@@ -37,13 +37,13 @@ static void put_chart(struct gnuplot *g, const struct chart *c, const char *whic
 {
     double low = INFINITY, most = 0;
     gnuplot_set(g, "%s_series = %zu\n%s_groups = %zu", which, c->series, which, c->groups);
-    gnuplot_set(g, "array %s_name[%d]\narray %s_colour[%d]\narray %s_drawn[%d]", which, MOST_SERIES,
+    gnuplot_set(g, "array %s_name[%d]; array %s_colour[%d]; array %s_drawn[%d]", which, MOST_SERIES,
                 which, MOST_SERIES, which, MOST_SERIES);
-    gnuplot_set(g, "array %s_group[%d]\narray %s_within[%d]", which, MOST_GROUPS, which,
+    gnuplot_set(g, "array %s_group[%d]; array %s_within[%d]", which, MOST_GROUPS, which,
                 MOST_GROUPS);
     for (size_t i = 0; i < c->groups; i++) {
-        plot_tic_text(g, c->group[i], "%s_group[%zu]", which, i + 1);
-        plot_tic_text(g, c->within[i] ? c->within[i] : "", "%s_within[%zu]", which, i + 1);
+        gnuplot_tic(g, c->group[i], "%s_group[%zu]", which, i + 1);
+        gnuplot_tic(g, c->within[i] ? c->within[i] : "", "%s_within[%zu]", which, i + 1);
     }
     for (size_t s = 0; s < c->series; s++) {
         bool any = false;
@@ -61,7 +61,6 @@ static void put_chart(struct gnuplot *g, const struct chart *c, const char *whic
                 GNUPLOT_ROW(g, (double)i, row->median, row->lowest, row->highest);
             }
         }
-        gnuplot_end_block(g);
     }
     gnuplot_set(g, "%s_low = %#.10g; %s_high = %#.10g", which, low < most ? low : 2, which,
                 low < most ? most : 5);
@@ -154,14 +153,19 @@ static const char *const map_names[] = {"basin full", "basin refined"};
 static void put_map(struct gnuplot *g, const struct speed_table *table)
 {
     int ranks = 0; /* the most */
-    double fewest = INFINITY, most = 0, shortest = INFINITY, longest = 0;
+    struct plot_range cases = PLOT_NOTHING, time = PLOT_NOTHING;
     char text[96] = "";
 
-    for (size_t k = 0; k < table->rows; k++)
-        if (strcmp(table->row[k].field[BENCH_QUANTITY], "wall time") == 0 &&
-            table->row[k].ranks > ranks)
-            ranks = table->row[k].ranks;
-    gnuplot_set(g, "map_ranks = %d\narray map_drawn[2]", ranks);
+    for (size_t k = 0; k < table->rows; k++) {
+        const struct speed_row *row = &table->row[k];
+        if (strcmp(row->field[BENCH_QUANTITY], "wall time") == 0 && row->ranks > ranks)
+            ranks = row->ranks;
+        if (strcmp(row->field[BENCH_QUANTITY], "parallel efficiency") == 0 && row->ranks > 1)
+            snprintf(text, sizeof text, "parallel efficiency of %d ranks: %.0f %% (%.0f ... %.0f)",
+                     row->ranks, 100 * row->median, 100 * row->lowest, 100 * row->highest);
+    }
+    gnuplot_text(g, text, "efficiency");
+    gnuplot_set(g, "map_ranks = %d; array map_drawn[2]", ranks);
     for (size_t m = 0; m < 2; m++) {
         bool any = false;
         gnuplot_block(g, "map%zu", m + 1);
@@ -171,48 +175,36 @@ static void put_map(struct gnuplot *g, const struct speed_table *table)
                 strcmp(row->field[BENCH_REGIME], map_names[m]) != 0 || row->ranks != ranks)
                 continue;
             GNUPLOT_ROW(g, row->cases, row->median, row->lowest, row->highest);
-            fewest = fmin(fewest, row->cases);
-            most = fmax(most, row->cases);
-            shortest = fmin(shortest, row->lowest);
-            longest = fmax(longest, row->highest);
+            plot_widen(&cases, row->cases);
+            plot_widen(&time, row->lowest);
+            plot_widen(&time, row->highest);
             any = true;
         }
-        gnuplot_end_block(g);
         gnuplot_set(g, "map_drawn[%zu] = %d", m + 1, any);
     }
-    gnuplot_set(g, "fewest = %#.10g; most = %#.10g; shortest = %#.10g; longest = %#.10g",
-                most > 0 ? fewest : 1, most > 0 ? most : 1, most > 0 ? shortest : 1,
-                most > 0 ? longest : 1);
-    for (size_t k = 0; k < table->rows; k++) {
-        const struct speed_row *row = &table->row[k];
-        if (strcmp(row->field[BENCH_QUANTITY], "parallel efficiency") == 0 && row->ranks > 1) {
-            snprintf(text, sizeof text, "parallel efficiency of %d ranks: %.0f %% (%.0f ... %.0f)",
-                     row->ranks, 100 * row->median, 100 * row->lowest, 100 * row->highest);
-        }
-    }
-    gnuplot_text(g, text, "efficiency");
+    if (!(cases.low <= cases.high))
+        cases = time = (struct plot_range){1, 1};
+    gnuplot_set(g, "fewest = %#.10g; most = %#.10g; shortest = %#.10g; longest = %#.10g", cases.low,
+                cases.high, time.low, time.high);
 }
 
-bool speed_plot(const struct speed_table *table, struct look *look, const char *directory,
-                const char *stem, stance_message *message)
+bool speed_plot(const struct speed_table *table, const struct plot *plot)
 {
     struct chart rivals, methods;
     struct gnuplot g;
-    char subtitle[400];
     const struct speed_row *row = &table->row[0];
 
-    snprintf(
-        subtitle, sizeof subtitle,
-        "Steps of 1 ms. Medians; bars from the lowest to the highest. %s, %s, revision %s, %s.",
+    if (!gnuplot_begin(&g, plot, "", plot_speed_gp))
+        return false;
+    gnuplot_say(
+        &g, "Steps of 1 ms. Medians; bars from the lowest to the highest. %s, %s, revision %s, %s.",
         row->field[BENCH_PROCESSOR], row->field[BENCH_COMPILER], row->field[BENCH_REVISION],
         row->field[BENCH_DATE]);
-    if (!gnuplot_begin(&g, look, plot_speed_gp, "Speed of the stepping kernels", subtitle, message))
-        return false;
     make_rivals(table, &rivals);
     make_methods(table, &methods);
     gnuplot_text(&g, rivals_scene(table)->name, "rivals_scene");
     put_chart(&g, &rivals, "rivals");
     put_chart(&g, &methods, "methods");
     put_map(&g, table);
-    return gnuplot_end(&g, directory, stem, message);
+    return gnuplot_end(&g);
 }

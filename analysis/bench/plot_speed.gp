@@ -94,7 +94,8 @@ if (map_ranks > 0) {
     set xrange [0.5*fewest:2*most]
     set xtics scale 0.6 ('' fewest)
     side(cases) = sprintf('%.0f²', sqrt(cases))
-    plot NaN notitle, for [m=1:2] '$map'.m using 1:2:xtic(side($1)) with lines lc rgb hue[m] lw 1.6 notitle, \
-        for [m=1:2] '$map'.m using 1:2:3:4 with yerrorbars lc rgb hue[m] pt 7 ps 0.8 lw 1 notitle, \
-        for [m=1:2] '$map'.m using 1:2:(digits($2)) with labels font ',9' right offset -0.8,0.7 notitle
+    drawn = map_drawn[1] && map_drawn[2] ? '1 2' : map_drawn[1] ? '1' : '2'
+    plot NaN notitle, for [m in drawn] '$map'.m using 1:2:xtic(side($1)) with lines lc rgb hue[m+0] lw 1.6 notitle, \
+        for [m in drawn] '$map'.m using 1:2:3:4 with yerrorbars lc rgb hue[m+0] pt 7 ps 0.8 lw 1 notitle, \
+        for [m in drawn] '$map'.m using 1:2:(digits($2)) with labels font ',9' right offset -0.8,0.7 notitle
 }

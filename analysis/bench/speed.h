@@ -4,7 +4,7 @@
 
 #include "bench.h"
 
-#include "analysis/draw/look.h"
+#include "analysis/draw/gnuplot.h"
 #include "engine/stance.h"
 
 /* A line: its texts, which point into the table's, and what of them are numbers. */
@@ -30,8 +30,7 @@ const struct speed_row *speed_find(const struct speed_table *table, const char *
                                    const char *scene, const char *regime, const char *method,
                                    const char *isa, const char *quantity);
 
-/* Writes DIRECTORY/STEM.svg and .png. */
-bool speed_plot(const struct speed_table *table, struct look *look, const char *directory,
-                const char *stem, stance_message *message);
+/* STEM: bars, and the wall time of a map. */
+bool speed_plot(const struct speed_table *table, const struct plot *plot);
 
 #endif

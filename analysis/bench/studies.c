@@ -197,8 +197,9 @@ static int one_study(const struct request *request, const char *scenario, json_t
     /* Into the list `all`, or as text and pictures. */
     bool good = results_open(&r, file, &message);
     if (good) {
-        good = request->kind->evaluate(&r, request->look, request->directory, stem,
-                                       request->json ? &object : NULL, &message);
+        const struct plot plot = {&r,       r.title, request->directory, stem, request->look,
+                                  &message, false};
+        good = request->kind->evaluate(&plot, request->json ? &object : NULL);
         results_close(&r);
     }
     if (good && object)

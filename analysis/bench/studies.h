@@ -6,15 +6,14 @@
 #ifndef STANCE_BENCH_STUDIES_H
 #define STANCE_BENCH_STUDIES_H
 
-#include "analysis/draw/look.h"
+#include "analysis/draw/gnuplot.h"
 #include "analysis/table/table.h"
 #include "runner/base/command.h"
 #include "runner/plan/plan.h"
 
-/* Evaluates one results file. With `object` NULL prints text and writes pictures into `directory`,
- * their names beginning with `stem`; else gives the same as JSON. false: one line in *message. */
-typedef bool (*study_function)(const struct results *r, struct look *look, const char *directory,
-                               const char *stem, json_t **object, stance_message *message);
+/* Evaluates one results file. With `object` NULL prints text and draws; else gives the same as
+ * JSON. false: one line in the plot's message. */
+typedef bool (*study_function)(const struct plot *plot, json_t **object);
 
 /* What all of one kind share. */
 struct study_kind {

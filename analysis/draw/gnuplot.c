@@ -9,9 +9,7 @@
 
 #include <ctype.h>
 #include <errno.h>
-#include <fcntl.h>
 #include <math.h>
-#include <spawn.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
@@ -19,27 +17,31 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-extern char **environ;
-
-enum { TOO_SMALL = 3 }; /* exit status of page.gp where the asked size has no room */
+/* Exit statuses: of page.gp where the asked size has no room, of sh. */
+enum { TOO_SMALL = 3, NOT_FOUND = 127 };
 
 GNUPLOT_SCRIPT(style_gp, "analysis/draw/style.gp");
 GNUPLOT_SCRIPT(legend_gp, "analysis/draw/legend.gp");
 GNUPLOT_SCRIPT(page_gp, "analysis/draw/page.gp");
 GNUPLOT_SCRIPT(panels_gp, "analysis/draw/panels.gp");
+GNUPLOT_SCRIPT(chart_gp, "analysis/draw/chart.gp");
+
+/* What stands beside the data and the picture's own script. */
+static const struct {
+    const char *name, *text;
+} shared[] = {{"style.gp", style_gp},
+              {"legend.gp", legend_gp},
+              {"page.gp", page_gp},
+              {"panels.gp", panels_gp}};
 
 /* ---- directories --------------------------------------------------------------------------- */
 
 bool gnuplot_directory(const char *directory)
 {
-    struct stat information;
-    bool good =
-        (mkdir(directory, 0777) == 0 || errno == EEXIST) && stat(directory, &information) == 0;
-    if (good && !S_ISDIR(information.st_mode)) {
-        errno = ENOTDIR;
-        good = false;
-    }
-    good = good && access(directory, W_OK | X_OK) == 0;
+    char inside[4200];
+    snprintf(inside, sizeof inside, "%s/.", directory);
+    const bool good =
+        (mkdir(directory, 0777) == 0 || errno == EEXIST) && access(inside, W_OK | X_OK) == 0;
     if (!good)
         fprintf(stderr, "%s: pictures cannot be written there: %s\n", directory, strerror(errno));
     return good;
@@ -55,13 +57,13 @@ static void scratch_path(const struct gnuplot *g, const char *name, char path[32
 /* Removes the directory of a picture that is over, with what can be in it. */
 static void remove_picture(const char *directory)
 {
-    static const char *const names[] = {"script",     "style.gp",    "legend.gp",   "page.gp",
-                                        "panels.gp",  "picture.gp",  "data.gp",     "drawn.gp",
-                                        "errors",     "picture.svg", "picture.png", "picture.pdf",
-                                        "picture.gif"};
+    static const char *const names[] = {"script",      "picture.gp",  "data.gp",
+                                        "drawn.gp",    "errors",      "picture.svg",
+                                        "picture.png", "picture.pdf", "picture.gif"};
     char path[1100];
-    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
-        snprintf(path, sizeof path, "%s/%s", directory, names[i]);
+    for (size_t i = 0; i < sizeof names / sizeof *names + sizeof shared / sizeof *shared; i++) {
+        const size_t own = sizeof names / sizeof *names;
+        snprintf(path, sizeof path, "%s/%s", directory, i < own ? names[i] : shared[i - own].name);
         unlink(path);
     }
     int cells = 0;
@@ -71,45 +73,27 @@ static void remove_picture(const char *directory)
     rmdir(directory);
 }
 
-static void remove_scratch(const struct gnuplot *g)
-{
-    fclose(g->sink);
-    remove_picture(g->scratch);
-}
-
 static void note_failure(struct gnuplot *g)
 {
-    if (!g->failed)
-        g->error = errno;
-    g->failed = true;
+    g->error = g->error ? g->error : errno;
 }
 
-static FILE *open_scratch(struct gnuplot *g, const char *name)
+static void put_file(struct gnuplot *g, const char *name, const void *bytes, size_t size)
 {
     char path[320];
     scratch_path(g, name, path);
-    FILE *file = fopen(path, "wb");
-    if (!file) {
+    FILE *const file = fopen(path, "wb");
+    if (!file || fwrite(bytes, 1, size, file) != size)
         note_failure(g);
-        file = g->sink;
-    }
-    return file;
-}
-
-void gnuplot_close_cells(struct gnuplot *g, FILE *file)
-{
-    if (file == g->sink)
-        return;
-    bool bad = ferror(file) != 0;
-    if (fclose(file) != 0 || bad)
+    if (file && fclose(file) != 0)
         note_failure(g);
 }
 
-static void put_script(struct gnuplot *g, const char *name, const char *text)
+void gnuplot_cells(struct gnuplot *g, const void *cells, size_t size)
 {
-    FILE *file = open_scratch(g, name);
-    fputs(text, file);
-    gnuplot_close_cells(g, file);
+    char name[32];
+    snprintf(name, sizeof name, "cells%d", ++g->files);
+    put_file(g, name, cells, size);
 }
 
 /* Where scratch directories are made, and stay: see gnuplot.h. */
@@ -147,9 +131,9 @@ static void put_prose(struct gnuplot *g, const char *text, const char *name)
 
 /* What the scripts must know of the look. A text of 12 pt in gnuplot's sense is 16 px high, so that
  * a px is 1/16 of the size of the text. */
-static void put_look(struct gnuplot *g, const char *title, const char *subtitle)
+static void put_look(struct gnuplot *g)
 {
-    const struct look *look = g->look;
+    const struct look *look = g->plot->look;
     const double points = look->points / 16, px = 72 / 25.4 / points; /* pt a px, px a mm */
     gnuplot_text(g, look->font, "font_name");
     gnuplot_set(g, "px_points = %.10g; asked_width = %.10g; asked_height = %.10g", points,
@@ -157,138 +141,82 @@ static void put_look(struct gnuplot *g, const char *title, const char *subtitle)
     gnuplot_set(g, "px_dots = %.10g", look->width > 0 ? 600 * points / 72 : 1.6 * look->points / 9);
     if (look->grey)
         gnuplot_set(g, "eval in_grey");
-    put_prose(g, look->title ? look->title : look->bare ? "" : title, "title");
-    put_prose(g, look->bare ? "" : subtitle, "subtitle");
 }
 
-bool gnuplot_begin(struct gnuplot *g, struct look *look, const char *picture, const char *title,
-                   const char *subtitle, stance_message *message)
+static void put_titles(struct gnuplot *g)
 {
-    static struct look plain;
-    const char *base = kept_in() ? kept_in() : getenv("TMPDIR");
+    const struct look *const look = g->plot->look;
+    const struct results *const r = g->plot->r;
+    const char *const title = g->plot->title ? g->plot->title : r->title[0] ? r->title : r->name;
+    put_prose(g, look->title ? look->title : look->bare ? "" : title, "title");
+    put_prose(g, look->bare ? "" : g->subtitle, "subtitle");
+}
 
-    if (!look)
-        look_begin(look = &plain);
-    *g = (struct gnuplot){.look = look};
+/* A piece of memory of a picture, and what there was before it. */
+struct gnuplot_room {
+    struct gnuplot_room *before;
+    void *piece;
+};
+
+/* Ends what is not the scratch directory. */
+static void leave(struct gnuplot *g)
+{
+    while (g->room) {
+        struct gnuplot_room *const room = g->room;
+        g->room = room->before;
+        free(room->piece);
+        free(room);
+    }
+    if (g->data)
+        fclose(g->data);
+    free(g->text);
+}
+
+bool gnuplot_begin(struct gnuplot *g, const struct plot *plot, const char *name, const char *script)
+{
+    const char *base = kept_in() ? kept_in() : getenv("TMPDIR");
+    *g = (struct gnuplot){.plot = plot, .rows = -1};
+    snprintf(g->stem, sizeof g->stem, "%.400s%s%.100s", plot->stem, name[0] ? "-" : "", name);
     snprintf(g->scratch, sizeof g->scratch, "%s/stance-plot-XXXXXX",
              base && base[0] && strlen(base) < 200 ? base : "/tmp");
-    g->sink = fopen("/dev/null", "wb");
-    if (!g->sink || !mkdtemp(g->scratch)) {
-        complain(message, "%.150s: cannot make a directory%s: %s", g->scratch,
+    g->data = open_memstream(&g->text, &g->size);
+    if (!g->data || !mkdtemp(g->scratch)) {
+        complain(plot->message, "%.150s: cannot make a directory%s: %s", g->scratch,
                  kept_in() ? " (STANCE_SCRIPTS)" : "", strerror(errno));
-        if (g->sink)
-            fclose(g->sink);
+        leave(g);
         return false;
     }
-    put_script(g, "style.gp", style_gp);
-    put_script(g, "legend.gp", legend_gp);
-    put_script(g, "page.gp", page_gp);
-    put_script(g, "panels.gp", panels_gp);
-    put_script(g, "picture.gp", picture);
-    g->data = open_scratch(g, "data.gp");
-    put_look(g, title, subtitle);
+    for (size_t k = 0; k < sizeof shared / sizeof *shared; k++)
+        put_file(g, shared[k].name, shared[k].text, strlen(shared[k].text));
+    script = script ? script : chart_gp;
+    put_file(g, "picture.gp", script, strlen(script));
+    put_look(g);
     return true;
 }
 
-void gnuplot_abandon(struct gnuplot *g)
+void *gnuplot_keep(struct gnuplot *g, void *piece)
 {
-    gnuplot_close_cells(g, g->data);
-    remove_scratch(g);
-}
-
-/* ---- data --------------------------------------------------------------------------------- */
-
-void gnuplot_set(struct gnuplot *g, const char *format, ...)
-{
-    va_list arguments;
-    va_start(arguments, format);
-    vfprintf(g->data, format, arguments);
-    va_end(arguments);
-    putc('\n', g->data);
-}
-
-void gnuplot_arrays(struct gnuplot *g, int size, const char *names)
-{
-    for (size_t length; *names; names += length + (names[length] == ' ')) {
-        length = strcspn(names, " ");
-        gnuplot_set(g, "array %.*s[%d]", (int)length, names, size);
+    struct gnuplot_room *const room = piece ? malloc(sizeof *room) : NULL;
+    if (!room) {
+        errno = ENOMEM;
+        note_failure(g);
+        free(piece);
+        return NULL;
     }
+    *room = (struct gnuplot_room){g->room, piece};
+    g->room = room;
+    return piece;
 }
 
-/* In single quotes gnuplot expands nothing; a quote itself is doubled. */
-void gnuplot_quote(FILE *out, const char *text)
+void *gnuplot_room(struct gnuplot *g, size_t count, size_t size)
 {
-    putc('\'', out);
-    while (*text) {
-        int length = results_letter(text);
-        if ((unsigned char)*text <= ' ' || *text == 0x7f)
-            putc(' ', out);
-        else if (length == 0)
-            putc('?', out);
-        else if (*text == '\'')
-            fputs("''", out);
-        else
-            fwrite(text, 1, (size_t)length, out);
-        text += length > 0 ? length : 1;
-    }
-    putc('\'', out);
+    return gnuplot_keep(g, calloc(count ? count : 1, size));
 }
 
-void gnuplot_text(struct gnuplot *g, const char *text, const char *name, ...)
+bool gnuplot_needs(struct gnuplot *g, bool had)
 {
-    va_list arguments;
-    va_start(arguments, name);
-    vfprintf(g->data, name, arguments);
-    va_end(arguments);
-    fputs(" = ", g->data);
-    gnuplot_quote(g->data, text);
-    putc('\n', g->data);
-}
-
-void gnuplot_number(struct gnuplot *g, double value, const char *name, ...)
-{
-    va_list arguments;
-    va_start(arguments, name);
-    vfprintf(g->data, name, arguments);
-    va_end(arguments);
-    if (isfinite(value))
-        fprintf(g->data, " = %#.17g\n", value); /* always real: gnuplot divides integers */
-    else
-        fputs(" = NaN\n", g->data);
-}
-
-void gnuplot_row(struct gnuplot *g, const double *values, size_t count)
-{
-    for (size_t i = 0; i < count; i++) {
-        fputs(i ? " " : "", g->data);
-        if (isfinite(values[i]))
-            fprintf(g->data, "%.16g", values[i]);
-        else
-            fputs("NaN", g->data);
-    }
-    putc('\n', g->data);
-}
-
-void gnuplot_block(struct gnuplot *g, const char *name, ...)
-{
-    va_list arguments;
-    va_start(arguments, name);
-    putc('$', g->data);
-    vfprintf(g->data, name, arguments);
-    va_end(arguments);
-    fputs(" << EOD\n", g->data);
-}
-
-void gnuplot_end_block(struct gnuplot *g)
-{
-    fputs("EOD\n", g->data);
-}
-
-FILE *gnuplot_cells(struct gnuplot *g)
-{
-    char name[32];
-    snprintf(name, sizeof name, "cells%d", ++g->files);
-    return open_scratch(g, name);
+    g->missing = g->missing || !had;
+    return had;
 }
 
 void gnuplot_kind_colour(const char *kind, char colour[8])
@@ -301,60 +229,16 @@ void gnuplot_kind_colour(const char *kind, char colour[8])
         snprintf(colour, 8, "#%.6s", at + strlen(name));
 }
 
-void gnuplot_colour(struct gnuplot *g, const char *colour, const char *name)
-{
-    const char *value = look_colour(g->look, name);
-    if (value)
-        gnuplot_set(g, "%s = 0x%s", colour, value + 1);
-}
-
-void gnuplot_legend_mark(struct gnuplot *g, const char *colour, int dash, int point,
-                         const char *name, const char *more)
-{
-    char text[400];
-    gnuplot_colour(g, colour, name);
-    snprintf(text, sizeof text, "%s%s%s", look_label(g->look, name), more[0] ? "  " : "", more);
-    gnuplot_set(g,
-                "legends = legends + 1; legend_colour[legends] = %s; legend_dash[legends] = %d; "
-                "legend_point[legends] = %d",
-                colour, dash, point);
-    gnuplot_text(g, text, "legend_text[legends]");
-}
-
-void gnuplot_note(struct gnuplot *g, const char *text)
-{
-    gnuplot_text(g, text, "notes = notes + 1; note[notes]");
-}
-
 /* ---- running ------------------------------------------------------------------------------ */
 
-/* Runs gnuplot in the scratch directory; its exit status, or -1 with errno set. */
+/* Runs gnuplot in the scratch directory; its exit status, NOT_FOUND: there is none, or -1 with
+ * errno set. */
 static int run_gnuplot(const struct gnuplot *g)
 {
-    char *arguments[] = {"gnuplot", "-d", "script", NULL};
-    posix_spawn_file_actions_t actions;
-    pid_t child;
-    int status;
-
-    int error = posix_spawn_file_actions_init(&actions);
-    if (error == 0) {
-        error = posix_spawn_file_actions_addchdir_np(&actions, g->scratch);
-        error = error ? error : posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", 0, 0);
-        error = error ? error
-                      : posix_spawn_file_actions_addopen(&actions, 1, "errors",
-                                                         O_WRONLY | O_CREAT | O_TRUNC, 0600);
-        error = error ? error : posix_spawn_file_actions_adddup2(&actions, 1, 2);
-        error = error ? error : posix_spawnp(&child, "gnuplot", &actions, NULL, arguments, environ);
-        posix_spawn_file_actions_destroy(&actions);
-    }
-    if (error != 0) {
-        errno = error;
-        return -1;
-    }
-    while (waitpid(child, &status, 0) < 0)
-        if (errno != EINTR)
-            return -1;
-    return WIFEXITED(status) ? WEXITSTATUS(status) : 128;
+    setenv("STANCE_SCRATCH", g->scratch, 1);
+    const int status =
+        system("cd \"$STANCE_SCRATCH\" && exec gnuplot -d script </dev/null >errors 2>&1");
+    return status < 0 ? -1 : WIFEXITED(status) ? WEXITSTATUS(status) : 128;
 }
 
 /* The last line that gnuplot said. */
@@ -396,67 +280,34 @@ static char *read_file(const char *path, size_t *size)
     return text;
 }
 
-/* Once in a process. */
-static void say_missing(const struct look *look, const struct fonts *fonts, const char *missing)
+/* The data without letters that cannot be drawn, where there is need of them; SVG is drawn by its
+ * readers, with fonts of their own. */
+static char *drawable(const struct gnuplot *g)
 {
-    static bool said_font, said_letters;
-    if (!fonts->family && !said_font) {
-        fprintf(stderr,
-                "no font is called %s: another one takes its place (fc-list : family "
-                "lists fonts)\n",
-                look->font);
-        said_font = true;
-    }
-    if (missing[0] && !said_letters) {
-        fprintf(stderr,
-                "no font has %s: boxes stand for them in all but SVG; on Debian: apt-get "
-                "install fonts-noto-cjk, or another font that has them\n",
-                missing);
-        said_letters = true;
-    }
-}
-
-/* drawn.gp: the data without letters that cannot be drawn; SVG is drawn by its readers, with fonts
- * of their own. Returns whether there is need of it. */
-static bool replace_letters(struct gnuplot *g)
-{
-    char path[320], missing[80] = "", *drawn = NULL;
-    size_t size = 0;
-    struct fonts fonts;
-    scratch_path(g, "data.gp", path);
-    char *text = read_file(path, &size);
-    bool ascii = true;
-    for (size_t i = 0; text && i < size; i++)
-        ascii = ascii && (unsigned char)text[i] < 0x80;
-    if (text && (!ascii || strcmp(g->look->font, LOOK_FONT) != 0)) {
-        fonts_find(&fonts, g->look->font);
-        if (fonts.has) {
-            drawn = fonts_replace(&fonts, text, size, missing, sizeof missing);
-            say_missing(g->look, &fonts, missing);
-            fonts_free(&fonts);
-        }
-    }
-    if (drawn)
-        put_script(g, "drawn.gp", drawn);
-    free(text);
-    free(drawn);
-    return drawn != NULL;
+    bool plain = strcmp(g->plot->look->font, LOOK_FONT) == 0;
+    for (size_t i = 0; i < g->size; i++)
+        plain = plain && (unsigned char)g->text[i] < 0x80;
+    return plain ? NULL : fonts_replace(g->plot->look->font, g->text, g->size);
 }
 
 /* The picture is drawn from the same data in each format. */
 static void put_formats(struct gnuplot *g)
 {
-    const bool replaced = replace_letters(g);
-    FILE *file = open_scratch(g, "script");
-    for (int f = 0; f < LOOK_FORMAT_COUNT; f++) {
-        if (!g->look->format[f])
-            continue;
-        fprintf(file,
-                "drawing = '%s'\nload 'style.gp'\nload '%s'\nload 'legend.gp'\n"
-                "load 'picture.gp'\nunset multiplot; unset output; reset\n",
-                look_endings[f], replaced && f != LOOK_SVG ? "drawn.gp" : "data.gp");
-    }
-    gnuplot_close_cells(g, file);
+    char script[800] = "";
+    if (fflush(g->data) != 0)
+        note_failure(g);
+    put_file(g, "data.gp", g->text, g->size);
+    char *const drawn = drawable(g);
+    if (drawn)
+        put_file(g, "drawn.gp", drawn, strlen(drawn));
+    for (int f = 0; f < LOOK_FORMAT_COUNT; f++)
+        if (g->plot->look->format[f])
+            add_text(script, sizeof script,
+                     "drawing = '%s'\nload 'style.gp'\nload '%s'\nload 'legend.gp'\n"
+                     "load 'picture.gp'\nunset multiplot; unset output; reset\n",
+                     look_endings[f], drawn && f != LOOK_SVG ? "drawn.gp" : "data.gp");
+    put_file(g, "script", script, strlen(script));
+    free(drawn);
 }
 
 /* ---- fetching ----------------------------------------------------------------------------- */
@@ -526,41 +377,30 @@ static bool write_svg(FILE *out, const struct look *look, const char *text, size
     return !ferror(out);
 }
 
-static void join_path(const char *directory, const char *name, char *path, size_t size)
-{
-    snprintf(path, size, "%s%s%s", directory, directory[strlen(directory) - 1] == '/' ? "" : "/",
-             name);
-}
-
 static bool not_written(const char *path, stance_message *message)
 {
     return complain(message, "%.150s: cannot be written: %s", path, strerror(errno));
 }
 
-/* One file of a picture: drawn at `from`, belongs to `to`; complete at `part`, beside it, it takes
- * that place at once. No reader ever sees half a picture, and none is left by a full disk. */
-struct product {
-    const struct look *look;
-    const char *scratch; /* directory in which it was drawn */
-    int format;
-    bool parted; /* there is something at `part` */
-    char from[320], part[2048], to[2048];
-};
+/* A file of a picture is drawn in the scratch directory, and belongs into the plot's; whole as a
+ * part beside its place, it takes that place at once. No reader ever sees half a picture, and none
+ * is left by a full disk. */
+enum place { DRAWN, PART, PLACE };
+enum { PATH = 2048 };
 
-static struct product name_product(const struct gnuplot *g, int format, const char *directory,
-                                   const char *stem)
+static const char *path_of(const struct gnuplot *g, enum place place, int format, char path[PATH])
 {
-    struct product product = {g->look, g->scratch, format, false, "", "", ""};
-    char drawn[32], name[600];
-    snprintf(drawn, sizeof drawn, "picture.%s", look_endings[format]);
-    scratch_path(g, drawn, product.from);
-    snprintf(name, sizeof name, "%s.%s", stem, look_endings[format]);
-    join_path(directory, name, product.to, sizeof product.to);
-    if (g->look->file)
-        snprintf(product.to, sizeof product.to, "%s", g->look->file);
-    snprintf(name, sizeof name, ".stance-%ld.%s", (long)getpid(), look_endings[format]);
-    join_path(directory, name, product.part, sizeof product.part);
-    return product;
+    const char *const directory = place == DRAWN ? g->scratch : g->plot->directory;
+    const char *const slash = directory[strlen(directory) - 1] == '/' ? "" : "/";
+    if (place == PLACE && g->plot->look->file)
+        return g->plot->look->file;
+    if (place == PART)
+        snprintf(path, PATH, "%s%s.stance-%ld.%s", directory, slash, (long)getpid(),
+                 look_endings[format]);
+    else
+        snprintf(path, PATH, "%s%s%s.%s", directory, slash, place == DRAWN ? "picture" : g->stem,
+                 look_endings[format]);
+    return path;
 }
 
 /* gnuplot does not tell when the disk that it draws on is full: the last words of a file do. */
@@ -579,21 +419,20 @@ static bool is_complete(const char *text, size_t size, int format)
     return size >= whole && memcmp(text + size - whole, last[format].words, length) == 0;
 }
 
-static bool copy_product(struct product *product, stance_message *message)
+static bool copy_part(const struct gnuplot *g, int format)
 {
     size_t size = 0;
-    char *text = read_file(product->from, &size);
-    if (!text || !is_complete(text, size, product->format)) {
-        complain(message, "gnuplot drew %s for %.100s; is there room in %.60s?",
-                 text ? "half a picture" : "nothing", product->to, product->scratch);
+    char path[PATH], *text = read_file(path_of(g, DRAWN, format, path), &size);
+    if (!text || !is_complete(text, size, format)) {
+        complain(g->plot->message, "gnuplot drew %s for %.100s; is there room in %.60s?",
+                 text ? "half a picture" : "nothing", path_of(g, PLACE, format, path), g->scratch);
         free(text);
         return false;
     }
-    unlink(product->part); /* of a process of that number that was killed */
-    FILE *out = fopen(product->part, "wbx");
-    product->parted = out != NULL;
-    bool good = out && (product->format == LOOK_SVG ? write_svg(out, product->look, text, size)
-                                                    : fwrite(text, 1, size, out) == size);
+    unlink(path_of(g, PART, format, path)); /* of a process of that number that was killed */
+    FILE *out = fopen(path, "wbx");
+    bool good = out && (format == LOOK_SVG ? write_svg(out, g->plot->look, text, size)
+                                           : fwrite(text, 1, size, out) == size);
     int error = errno;
     if (out && fclose(out) != 0 && good) {
         error = errno;
@@ -601,47 +440,47 @@ static bool copy_product(struct product *product, stance_message *message)
     }
     free(text);
     errno = error;
-    return good || not_written(product->to, message);
+    return good || not_written(path_of(g, PLACE, format, path), g->plot->message);
 }
 
 /* Brings the pictures to where they belong: all, or where one cannot be written none. */
-static bool fetch(const struct gnuplot *g, const char *directory, const char *stem,
-                  stance_message *message)
+static bool fetch(const struct gnuplot *g)
 {
-    struct product product[LOOK_FORMAT_COUNT];
-    int count = 0;
+    const bool *const wanted = g->plot->look->format;
+    char part[PATH], path[PATH];
     bool good = true;
     for (int f = 0; f < LOOK_FORMAT_COUNT; f++)
-        if (g->look->format[f])
-            product[count++] = name_product(g, f, directory, stem);
-    for (int k = 0; k < count; k++)
-        good = good && copy_product(&product[k], message);
-    for (int k = 0; k < count; k++) {
-        const char *const to = product[k].to;
-        good = good && (rename(product[k].part, to) == 0 || not_written(to, message));
+        good = good && (!wanted[f] || copy_part(g, f));
+    for (int f = 0; f < LOOK_FORMAT_COUNT; f++) {
+        const char *const from = path_of(g, PART, f, part), *const to = path_of(g, PLACE, f, path);
+        if (!wanted[f])
+            continue;
+        good = good && (rename(from, to) == 0 || not_written(to, g->plot->message));
         if (good)
             puts(strncmp(to, "./", 2) == 0 ? to + 2 : to);
-        else if (product[k].parted)
-            unlink(product[k].part);
+        else
+            unlink(from);
     }
     return good;
 }
 
 /* Runs gnuplot and fetches what it drew. */
-static bool draw(const struct gnuplot *g, const char *directory, const char *stem,
-                 stance_message *message)
+static bool draw(const struct gnuplot *g)
 {
+    stance_message *const message = g->plot->message;
     char complaint[120];
-    if (g->failed)
+    if (g->error == ENOMEM)
+        return no_memory(message);
+    if (g->error)
         return complain(message, "%.100s: cannot be written: %s", g->scratch, strerror(g->error));
     const int status = run_gnuplot(g);
-    if (status < 0 && errno == ENOENT)
+    if (status == NOT_FOUND)
         return complain(message, "gnuplot, which draws the pictures, is not installed; on Debian: "
                                  "apt-get install gnuplot-nox");
     if (status < 0)
         return complain(message, "gnuplot cannot be run: %s", strerror(errno));
     if (status == 0)
-        return fetch(g, directory, stem, message);
+        return fetch(g);
     read_complaint(g, complaint);
     return complain(message,
                     status == TOO_SMALL ? "%.190s: a larger --size, or shorter --labels"
@@ -649,26 +488,33 @@ static bool draw(const struct gnuplot *g, const char *directory, const char *ste
                     complaint);
 }
 
-bool gnuplot_end(struct gnuplot *g, const char *directory, const char *stem,
-                 stance_message *message)
+void gnuplot_abandon(struct gnuplot *g)
 {
-    const char *dash = strrchr(stem, '-');
-    char path[1024];
+    leave(g);
+    remove_picture(g->scratch);
+}
 
-    if (!look_wants(g->look, dash ? dash + 1 : stem)) {
+bool gnuplot_end(struct gnuplot *g)
+{
+    const char *const dash = strrchr(g->stem, '-');
+    char path[1024];
+    const bool missing = g->missing;
+    if (missing && g->error == ENOMEM)
+        no_memory(g->plot->message);
+    if (missing || !look_wants(g->plot->look, dash ? dash + 1 : g->stem)) {
         gnuplot_abandon(g);
-        return true;
+        return !missing;
     }
-    gnuplot_close_cells(g, g->data);
+    put_titles(g);
     put_formats(g);
-    const bool good = draw(g, directory, stem, message);
+    const bool good = draw(g);
+    leave(g);
     if (!good || !kept_in()) {
-        remove_scratch(g);
+        remove_picture(g->scratch);
         return good;
     }
     /* The scratch directory stays where it is, under the picture's name; a former one goes. */
-    join_path(kept_in(), stem, path, sizeof path);
-    fclose(g->sink);
+    snprintf(path, sizeof path, "%s/%s", kept_in(), g->stem);
     remove_picture(path);
-    return rename(g->scratch, path) == 0 || not_written(path, message);
+    return rename(g->scratch, path) == 0 || not_written(path, g->plot->message);
 }

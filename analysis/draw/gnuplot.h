@@ -1,11 +1,13 @@
 /* gnuplot.h - a picture, drawn by gnuplot in the formats and sizes of a look.
  *
- * What a picture looks like stands in a script NAME.gp beside the NAME.c that hands it the data,
- * and what pictures share in style.gp, legend.gp, page.gp and panels.gp here; all are embedded in
- * the program. In a scratch directory gnuplot loads style.gp, the data (variables, data blocks),
- * legend.gp and the script, so that no path of the user's enters a script; the finished files are
- * copied to where they belong. No text is interpreted: see gnuplot_quote. STANCE_SCRIPTS=DIR in the
- * environment keeps scripts and data in DIR/STEM, where `gnuplot script` draws the picture anew.
+ * A picture is data: axes, rows of numbers, a legend, notes. chart.gp draws panels of curves one
+ * under the other; what has a form of its own (maps, figures of robots) has a script NAME.gp beside
+ * the NAME.c that hands it the data. What they share stands in style.gp, legend.gp, page.gp and
+ * panels.gp here; all are embedded in the program. In a scratch directory gnuplot loads style.gp,
+ * the data (variables, data blocks), legend.gp and the script, so that no path of the user's enters
+ * a script; the finished files are copied to where they belong. No text is interpreted: see
+ * gnuplot_quote. STANCE_SCRIPTS=DIR in the environment keeps scripts and data in DIR/STEM, where
+ * `gnuplot script` draws the picture anew.
  */
 #ifndef STANCE_DRAW_GNUPLOT_H
 #define STANCE_DRAW_GNUPLOT_H
@@ -20,71 +22,134 @@
     __asm__(".pushsection .rodata\n" #symbol ":\n.incbin \"" path "\"\n.byte 0\n.popsection\n");   \
     extern const char symbol[] __attribute__((visibility("hidden")))
 
-struct gnuplot {
+/* What is drawn, how, and where the files go: DIRECTORY/STEM-<picture>.svg and .png, or as the look
+ * has it. */
+struct plot {
+    const struct results *r; /* NULL: what is drawn is no results file */
+    const char *title;       /* NULL: that of the results file */
+    const char *directory, *stem;
     struct look *look;
-    char scratch[256]; /* directory */
-    FILE *data;        /* variables and data blocks are appended here */
-    FILE *sink;        /* takes what has no file */
-    int files;         /* of cells so far */
-    bool failed;       /* a write failed */
-    int error;         /* errno of that */
+    stance_message *message; /* takes one line of why something failed */
+    bool allowed;            /* maps of starts show what linear theory allows any controller */
+};
+
+struct gnuplot {
+    const struct plot *plot;
+    struct gnuplot_room *room;
+    FILE *data; /* variables and data blocks are appended here */
+    char *text; /* so far, of `size` */
+    size_t size;
+    char axis[16];       /* the last one's name */
+    char stem[520];      /* of the files */
+    char scratch[256];   /* directory */
+    char subtitle[2400]; /* the line under the title, so far */
+    int panels, series;  /* so far */
+    int files;           /* of cells so far */
+    int rows;            /* of the data block that is open; -1: none is */
+    int error;           /* errno of what failed first; 0: nothing has */
+    bool missing;        /* there is something that could not be had; the message says why */
 };
 
 /* Makes the directory for pictures when it is missing. False, with the reason on standard error:
  * nothing can be written there. */
 bool gnuplot_directory(const char *directory);
 
-/* Begins a picture that the script `picture` draws, with `title` and `subtitle`; look NULL: as it
- * comes, for pictures without options. False: no scratch directory; nothing is left behind. */
-bool gnuplot_begin(struct gnuplot *g, struct look *look, const char *picture, const char *title,
-                   const char *subtitle, stance_message *message);
-/* Where the look wants the picture, runs gnuplot, writes the look's file, or DIRECTORY/STEM.svg,
- * .png ..., and prints the paths. Ends the picture in any case. False: a write failed, gnuplot is
- * missing or complains; the files are as they were. */
-bool gnuplot_end(struct gnuplot *g, const char *directory, const char *stem,
-                 stance_message *message);
-/* Ends a picture without drawing it. */
+/* Begins a picture that a script, NULL: chart.gp, draws under the plot's title. False: no scratch
+ * directory. */
+bool gnuplot_begin(struct gnuplot *g, const struct plot *plot, const char *name,
+                   const char *script);
+/* Where the look wants the picture, runs gnuplot, writes the look's file, or
+ * DIRECTORY/STEM-NAME.svg, .png ..., and prints the paths. Ends the picture in any case. False: a
+ * write failed, gnuplot is missing or complains, or something was missing; the files are as they
+ * were. */
+bool gnuplot_end(struct gnuplot *g);
+/* Ends it without drawing it. */
 void gnuplot_abandon(struct gnuplot *g);
 
 /* ---- what the script is given; failures are kept for gnuplot_end ---------------------------- */
 
+/* Memory, all zero, until the picture ends; NULL: there is none, and the picture fails. */
+void *gnuplot_room(struct gnuplot *g, size_t count, size_t size);
+/* The same of what others have made, which is freed then; NULL: they had none. */
+void *gnuplot_keep(struct gnuplot *g, void *piece);
+/* What the picture cannot do without; where it is not had, the message says why. Returns `had`. */
+bool gnuplot_needs(struct gnuplot *g, bool had);
+
+/* Adds to the line under the title. */
+void gnuplot_say(struct gnuplot *g, const char *format, ...) __attribute__((format(printf, 2, 3)));
 /* A line, as printf makes it; free texts only through gnuplot_text. */
 void gnuplot_set(struct gnuplot *g, const char *format, ...) __attribute__((format(printf, 2, 3)));
 /* Arrays of that size, of all the names. */
-void gnuplot_arrays(struct gnuplot *g, int size, const char *names);
+void gnuplot_arrays(struct gnuplot *g, size_t size, const char *names);
 /* NAME = 'text' and NAME = value (NAN: NaN); the name as printf makes it. */
 void gnuplot_text(struct gnuplot *g, const char *text, const char *name, ...)
     __attribute__((format(printf, 3, 4)));
+/* The same of a text that becomes the label of a tic, where a per cent sign would begin a format.
+ */
+void gnuplot_tic(struct gnuplot *g, const char *text, const char *name, ...)
+    __attribute__((format(printf, 3, 4)));
 void gnuplot_number(struct gnuplot *g, double value, const char *name, ...)
     __attribute__((format(printf, 3, 4)));
-/* $NAME << EOD; rows of numbers follow, NAN for a gap, then gnuplot_end_block. */
+/* $NAME << EOD; rows of numbers follow, NAN for a gap, up to the next of anything else. A block
+ * without rows is given one of NANs: to gnuplot none at all would be an error. */
 void gnuplot_block(struct gnuplot *g, const char *name, ...) __attribute__((format(printf, 2, 3)));
 void gnuplot_row(struct gnuplot *g, const double *values, size_t count);
 #define GNUPLOT_ROW(g, ...)                                                                        \
     gnuplot_row((g), (const double[]){__VA_ARGS__},                                                \
                 sizeof((const double[]){__VA_ARGS__}) / sizeof(double))
-void gnuplot_end_block(struct gnuplot *g);
-/* The next binary file: cells1, cells2 ... Never NULL. */
-FILE *gnuplot_cells(struct gnuplot *g);
-void gnuplot_close_cells(struct gnuplot *g, FILE *file);
+/* What follows in the block is apart from what was before. */
+void gnuplot_gap(struct gnuplot *g);
+/* The next binary file: cells1, cells2 ... */
+void gnuplot_cells(struct gnuplot *g, const void *cells, size_t size);
+
+/* ---- charts ------------------------------------------------------------------------------- */
+
+enum plot_scale {
+    PLOT_LINEAR, /* places are the values */
+    PLOT_LOG,    /* places are their decimal logarithms */
+    PLOT_LIST,   /* places are 0, 1, 2 ...: words, and numbers without an even spacing */
+};
+
+/* A range that grows; ... from nothing. */
+struct plot_range {
+    double low, high;
+};
+#define PLOT_NOTHING ((struct plot_range){INFINITY, -INFINITY})
+/* Widens it to a value; what is not finite is passed over. */
+void plot_widen(struct plot_range *range, double value);
+/* The range of values[n], those that are finite; false: there are none. */
+bool plot_range_of(struct plot_range *range, const double *values, size_t n);
+/* With that part of its width as room at both ends; of one value half of 1. */
+struct plot_range plot_roomy(struct plot_range range, double part);
+
+/* Tells the script of the axis x or y of all panels or, once there are panels, of the last one: its
+ * name beside a unit ("": none), its scale, the places at its ends. Returns what its variables
+ * begin with, x or y3, until the next one. */
+const char *gnuplot_axis(struct gnuplot *g, char which, enum plot_scale scale,
+                         struct plot_range range, const char *name, const char *unit);
+/* The next panel of a chart, of this height in px as long as the page has no other, under a heading
+ * ("": none). */
+void gnuplot_panel(struct gnuplot *g, double height, const char *heading);
+/* What is drawn in it next, a data block as gnuplot's `plot` has it: "using 1:2 with lines". */
+void gnuplot_series(struct gnuplot *g, const char *style, ...)
+    __attribute__((format(printf, 2, 3)));
 
 /* An entry of the legend: a line of a type of dashes and a point of a type, 0: none, or where both
  * are none a box, of a colour (a variable of style.gp), beside a name and what is said of it, ""
  * for nothing; and a line under all of them. */
-void gnuplot_legend_mark(struct gnuplot *g, const char *colour, int dash, int point,
-                         const char *name, const char *more);
-static inline void gnuplot_legend(struct gnuplot *g, const char *colour, const char *name,
-                                  const char *more)
-{
-    gnuplot_legend_mark(g, colour, 0, 0, name, more);
-}
+void gnuplot_legend(struct gnuplot *g, const char *colour, int dash, int point, const char *name,
+                    const char *more);
+/* A further line under the last entry. */
+void gnuplot_about(struct gnuplot *g, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+void gnuplot_note(struct gnuplot *g, const char *format, ...) __attribute__((format(printf, 2, 3)));
+/* The colour of curve k = 0, 1 ... beside others. */
+const char *gnuplot_hue(size_t k);
 /* The colour of a kind of case, as style.gp has it: "#rrggbb", or "" of one that it does not name.
  */
 void gnuplot_kind_colour(const char *kind, char colour[8]);
-
 /* Gives a colour of style.gp the value that the look has for a name, if it has. */
 void gnuplot_colour(struct gnuplot *g, const char *colour, const char *name);
-void gnuplot_note(struct gnuplot *g, const char *text);
 
 /* Writes `text` as a string literal: nothing in it is expanded, substituted or formatted, control
  * characters become blanks, bytes that are not UTF-8 '?'. */

@@ -19,8 +19,9 @@ do for [k=1:legends] {
     if (legend_below && f_x > 0 && f_x + entry_width(k) > asked_width - 2*margin) { f_x = 0; f_y = f_y + legend_step }
     entry_x[k] = f_x
     entry_y[k] = f_y
-    if (legend_below) { f_x = f_x + entry_width(k) + 20 } else { f_y = f_y + legend_step }
-    legend_width = legend_width > entry_width(k) ? legend_width : entry_width(k)
+    about_height = 14*(lines(legend_about[k]) - 1)
+    if (legend_below && about_height == 0) { f_x = f_x + entry_width(k) + 20 } else { f_y = f_y + legend_step + about_height; f_x = 0 }
+    legend_width = at_least(legend_width, at_least(entry_width(k), legend_indent + 6.4*longest_line(legend_about[k])))
 }
 if (f_x > 0) { f_y = f_y + legend_step }
 do for [k=1:notes] {

@@ -5,6 +5,7 @@ if (legend_head ne '') { set label legend_head at screen X(legend_x), Y(legend_y
 do for [k=1:legends] {
     eval mark(k, legend_x + entry_x[k], legend_y + entry_y[k])
     set label legend_text[k] at screen X(legend_x + entry_x[k] + legend_indent), Y(legend_y + entry_y[k]) left font ',12' front
+    if (legend_about[k] ne '') { set label legend_about[k] at screen X(legend_x + entry_x[k] + legend_indent), Y(legend_y + entry_y[k] + 3) left font ',9' front }
 }
 line = legend_y + notes_y + 2
 do for [k=1:notes] {

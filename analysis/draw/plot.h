@@ -8,28 +8,7 @@
 #include "runner/base/command.h"
 #include "runner/store/results.h"
 
-/* What is drawn, how, and where the files go: DIRECTORY/STEM-<picture>.svg and .png, or as the look
- * has it. */
-struct plot {
-    const struct results *r;
-    const char *directory, *stem;
-    struct look *look;
-    bool allowed; /* maps of starts show what linear theory allows any controller */
-};
-
-/* Begins a picture of the file, under its title; ends it as STEM-picture. */
-bool plot_begin(const struct plot *plot, struct gnuplot *g, const char *script,
-                const char *subtitle, stance_message *message);
-bool plot_end(const struct plot *plot, struct gnuplot *g, const char *picture,
-              stance_message *message);
-
 /* ---- axes --------------------------------------------------------------------------------- */
-
-enum plot_scale {
-    PLOT_LINEAR, /* places are the values */
-    PLOT_LOG,    /* places are their decimal logarithms */
-    PLOT_LIST,   /* places are 0, 1, 2 ...: words, and numbers without an even spacing */
-};
 
 /* Cells along an axis from low to high: cell k stands at first + k * step. */
 struct plot_axis {
@@ -37,26 +16,25 @@ struct plot_axis {
     enum plot_scale scale;
     bool falling; /* the values fall: cell k is value count - 1 - k */
     double first, step;
-    double low, high; /* outer edges of the first and the last cell */
+    struct plot_range range; /* to the outer edges of the first and the last cell */
 };
 
 void plot_axis_make(struct plot_axis *along, const struct results_axis *axis);
+/* Logarithms count as even when none is further than a part of a cell from where it is drawn. */
+void plot_axis_make_ladder(struct plot_axis *along, const struct results_axis *axis, double part);
 /* For curves: numbers without an even spacing stand where they belong, not in a list. */
 void plot_axis_make_curve(struct plot_axis *along, const struct results_axis *axis);
 /* Where value i stands. */
 double plot_axis_place(const struct plot_axis *along, size_t i);
-/* All values from left to right; freed by the caller, NULL with a message: no memory. */
-struct statistics_place *plot_axis_points(const struct plot_axis *along, stance_message *message);
+/* All values from left to right, in the picture's memory; NULL: there is none. */
+struct statistics_place *plot_axis_points(const struct plot_axis *along, struct gnuplot *g);
 /* Value that cell k shows. */
 size_t plot_axis_index(const struct plot_axis *along, size_t k);
-/* Tells the script of the axis `which`, x say: x_text, x_path (with its unit), x_scale, x_low,
- * x_high, x_step, x_count, and of a list x_words of its words x_word[] at x_at[]. */
-void plot_axis_write(const struct plot_axis *along, struct gnuplot *g, const char *which);
-/* x_text and x_path alone. */
+/* Tells the script of the axis x or y, see gnuplot_axis: beside what others have x_step, x_count,
+ * and of a list x_words of its words x_word[] at x_at[]. Returns its name. */
+const char *plot_axis_write(const struct plot_axis *along, struct gnuplot *g, char which);
+/* What an axis is called, x_text and x_path, with its unit, alone. */
 void plot_label_write(const struct results_axis *axis, struct gnuplot *g, const char *which);
-/* A text that becomes the label of a tic, where a per cent sign would begin a format. */
-void plot_tic_text(struct gnuplot *g, const char *text, const char *name, ...)
-    __attribute__((format(printf, 3, 4)));
 
 /* A map over two axes: cell (i, j) shows value first + i stride[0] + j stride[1] of an array. */
 struct plot_cells {
@@ -70,17 +48,16 @@ void plot_cells_write(struct gnuplot *g, const struct plot_cells *cells, const v
 
 /* ---- outcomes ----------------------------------------------------------------------------- */
 
-/* "What became of each of 65536 cases" */
-void plot_became_text(const struct results *r, char *text, size_t size);
-/* Adds to a subtitle how many cases have failed, where some have. */
-void plot_failed_text(const struct results *r, char *text, size_t size);
-/* Adds by which faces of the box of starts the set of an outcome is cut, where there are starts,
- * and what that means for its share, where that is `shown`; RESULTS_KIND_COUNT: of none. */
-void plot_cut_text(const struct results *r, enum results_kind of, bool shown, char *text,
-                   size_t size);
+/* Each adds to the line under the title: "What became of each of 65536 cases"; how many cases have
+ * failed, where some have; by which faces of the box of starts the set of an outcome is cut, where
+ * there are starts, and what that means for its share, where that is `shown`; RESULTS_KIND_COUNT:
+ * of none. */
+void plot_say_became(struct gnuplot *g);
+void plot_say_failed(struct gnuplot *g);
+void plot_say_cut(struct gnuplot *g, enum results_kind of, bool shown);
 /* kind_colour[1 + enum results_kind], in the colours of the look; with `legend` an entry for each
  * kind that occurs, with its share of all cases. */
-void plot_kinds_write(const struct results *r, struct gnuplot *g, bool legend);
+void plot_kinds_write(struct gnuplot *g, bool legend);
 
 /* ---- answers ------------------------------------------------------------------------------ */
 
@@ -93,19 +70,18 @@ struct plot_answer {
 /* The names of those that are numbers, NULL from the last on; the table's entry of a name. */
 const char *plot_answer_word(size_t k);
 bool plot_answer_find(const char *name, struct plot_answer *answer);
-/* The numbers, NAN for other cases, and their range; values[cases] are freed by the caller. False,
- * with a message, also when there are none. */
-bool plot_answer_numbers(const struct plot *plot, const struct plot_answer *answer, double **values,
-                         double *low, double *high, stance_message *message);
-/* The range of values[n], those that are finite; false: there are none. */
-bool plot_range(const double *values, size_t n, double *low, double *high);
-/* "friction_used: largest ratio |rT|/rN of a contact, of the stabilised cases" */
-void plot_answer_title(const struct plot_answer *answer, char *text, size_t size);
+/* The numbers of all cases, NAN for other ones, in the picture's memory, and their range; NULL with
+ * a message, which the picture then lacks, also when there are none. */
+double *plot_answer_numbers(struct gnuplot *g, const struct plot_answer *answer,
+                            struct plot_range *range);
+/* "friction_used: largest ratio |rT|/rN of a contact, of the stabilised cases", to the line under
+ * the title. */
+void plot_say_answer(struct gnuplot *g, const struct plot_answer *answer);
 
 /* ---- pictures ----------------------------------------------------------------------------- */
 
 /* Each prints the paths that it writes. What cannot be drawn for good reason is said on standard
- * error; false is for failures, with one line in *message. */
+ * error; false is for failures, with one line in the plot's message. */
 
 /* X(name, help): what `stance plot` draws of sweeps. plot_NAME draws nothing of a file that does
  * not call for it. */
@@ -127,18 +103,15 @@ void plot_answer_title(const struct plot_answer *answer, char *text, size_t size
       "  is not an offset    with bands of their likely error (95 %); of starts on a grid the\n"   \
       "                      basin's volume, in a lighter band between what is inside for\n"       \
       "                      certain and what is not outside (stance basin -h)\n")
-#define PLOT_PICTURE(name, help) bool plot_##name(const struct plot *plot, stance_message *message);
+#define PLOT_PICTURE(name, help) bool plot_##name(const struct plot *plot);
 PLOT_PICTURES(PLOT_PICTURE)
 #undef PLOT_PICTURE
 
 /* STEM-NAME of an answer: a map of sweeps over two axes or more, a curve of those over one. */
-bool plot_answer_map(const struct plot *plot, const struct plot_answer *answer,
-                     stance_message *message);
-bool plot_answer_curve(const struct plot *plot, const struct plot_answer *answer,
-                       stance_message *message);
+bool plot_answer_map(const struct plot *plot, const struct plot_answer *answer);
+bool plot_answer_curve(const struct plot *plot, const struct plot_answer *answer);
 /* STEM-outline of the first of several files: where each has an outcome, RESULTS_KIND_COUNT: the
  * one that is looked at. */
-bool plot_outline(const struct plot *plots, int files, enum results_kind of,
-                  stance_message *message);
+bool plot_outline(const struct plot *plots, int files, enum results_kind of);
 
 #endif

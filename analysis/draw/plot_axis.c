@@ -5,7 +5,6 @@
 #include "runner/base/message.h"
 
 #include <math.h>
-#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -25,12 +24,13 @@ static bool is_positive(const struct results_axis *axis)
     return true;
 }
 
-static bool is_even(const struct results_axis *axis, bool logarithm)
+/* Whether no value is further than a part of a cell from where it would be drawn. */
+static bool is_even(const struct results_axis *axis, bool logarithm, double part)
 {
     double first = raw(axis, logarithm, 0);
     double step = (raw(axis, logarithm, axis->count - 1) - first) / (double)(axis->count - 1);
     for (size_t i = 0; i < axis->count; i++)
-        if (!(fabs(raw(axis, logarithm, i) - first - (double)i * step) <= 1e-5 * fabs(step)))
+        if (!(fabs(raw(axis, logarithm, i) - first - (double)i * step) <= part * fabs(step)))
             return false;
     return step != 0;
 }
@@ -45,17 +45,22 @@ static void make_even(struct plot_axis *along, bool logarithm)
     along->step = fabs(last - first) / (double)(axis->count - 1);
 }
 
-void plot_axis_make(struct plot_axis *along, const struct results_axis *axis)
+void plot_axis_make_ladder(struct plot_axis *along, const struct results_axis *axis, double part)
 {
     *along = (struct plot_axis){.axis = axis, .scale = PLOT_LIST, .step = 1};
     if (!axis->word && axis->count > 1) {
-        if (is_even(axis, false))
+        if (is_even(axis, false, 1e-5))
             make_even(along, false);
-        else if (axis->count > 2 && is_positive(axis) && is_even(axis, true))
+        else if (axis->count > 2 && is_positive(axis) && is_even(axis, true, part))
             make_even(along, true);
     }
-    along->low = along->first - 0.5 * along->step;
-    along->high = along->first + ((double)axis->count - 0.5) * along->step;
+    along->range.low = along->first - 0.5 * along->step;
+    along->range.high = along->first + ((double)axis->count - 0.5) * along->step;
+}
+
+void plot_axis_make(struct plot_axis *along, const struct results_axis *axis)
+{
+    plot_axis_make_ladder(along, axis, 1e-5);
 }
 
 /* Unevenness of the spacing: standard deviation of the steps over their mean. */
@@ -76,22 +81,17 @@ void plot_axis_make_curve(struct plot_axis *along, const struct results_axis *ax
     if (along->scale == PLOT_LIST && !axis->word && axis->count > 1) {
         const bool logarithm =
             is_positive(axis) && unevenness(axis, true) < 0.5 * unevenness(axis, false);
-        double low = INFINITY, high = -INFINITY;
-        for (size_t i = 0; i < axis->count; i++) {
-            low = fmin(low, raw(axis, logarithm, i));
-            high = fmax(high, raw(axis, logarithm, i));
-        }
-        const double margin = high > low ? 0.03 * (high - low) : 0.5;
+        struct plot_range range = PLOT_NOTHING;
+        for (size_t i = 0; i < axis->count; i++)
+            plot_widen(&range, raw(axis, logarithm, i));
+        along->range = plot_roomy(range, 0.03);
         along->scale = logarithm ? PLOT_LOG : PLOT_LINEAR;
-        along->low = low - margin;
-        along->high = high + margin;
     }
     /* A time is not negative, nor has an axis of times room for that. */
-    double lowest = INFINITY;
-    for (size_t i = 0; i < axis->count; i++)
-        lowest = fmin(lowest, axis->value[i]);
-    if (along->scale == PLOT_LINEAR && along->low < 0 && lowest >= 0)
-        along->low = 0;
+    struct plot_range values;
+    plot_range_of(&values, axis->value, axis->count);
+    if (along->scale == PLOT_LINEAR && along->range.low < 0 && values.low >= 0)
+        along->range.low = 0;
 }
 
 double plot_axis_place(const struct plot_axis *along, size_t i)
@@ -99,16 +99,14 @@ double plot_axis_place(const struct plot_axis *along, size_t i)
     return along->scale == PLOT_LIST ? (double)i : raw(along->axis, along->scale == PLOT_LOG, i);
 }
 
-struct statistics_place *plot_axis_points(const struct plot_axis *along, stance_message *message)
+struct statistics_place *plot_axis_points(const struct plot_axis *along, struct gnuplot *g)
 {
     const size_t n = along->axis->count;
-    struct statistics_place *points = malloc(n * sizeof *points);
+    struct statistics_place *const points = gnuplot_room(g, n, sizeof *points);
     for (size_t i = 0; points && i < n; i++)
         points[i] = (struct statistics_place){plot_axis_place(along, i), i};
     if (points)
         statistics_order(points, n);
-    else
-        no_memory(message);
     return points;
 }
 
@@ -131,32 +129,15 @@ static void put_words(const struct plot_axis *along, struct gnuplot *g, const ch
         char text[64];
         results_value_text(along->axis, k * every, false, text, sizeof text);
         gnuplot_set(g, "%s_at[%zu] = %zu", which, k + 1, k * every);
-        plot_tic_text(g, text, "%s_word[%zu]", which, k + 1);
+        gnuplot_tic(g, text, "%s_word[%zu]", which, k + 1);
     }
-}
-
-void plot_tic_text(struct gnuplot *g, const char *text, const char *name, ...)
-{
-    char escaped[160], whole[64];
-    size_t n = 0;
-    for (; *text && n + 3 < sizeof escaped; text++) {
-        escaped[n++] = *text;
-        if (*text == '%')
-            escaped[n++] = '%';
-    }
-    escaped[n] = '\0';
-    va_list arguments;
-    va_start(arguments, name);
-    vsnprintf(whole, sizeof whole, name, arguments);
-    va_end(arguments);
-    gnuplot_text(g, escaped, "%s", whole);
 }
 
 void plot_label_write(const struct results_axis *axis, struct gnuplot *g, const char *which)
 {
     static const char with[] = "; with ";
     char text[sizeof axis->text], path[sizeof axis->name + sizeof axis->unit + sizeof text + 16];
-    const char *label = look_label(g->look, axis->name), *dot = strrchr(axis->name, '.');
+    const char *label = look_label(g->plot->look, axis->name), *dot = strrchr(axis->name, '.');
     const bool own = label != axis->name;
     snprintf(text, sizeof text, "%s", axis->text);
     snprintf(path, sizeof path, axis->unit[0] ? "%s (%s)" : "%s", axis->name, axis->unit);
@@ -176,65 +157,60 @@ void plot_label_write(const struct results_axis *axis, struct gnuplot *g, const 
     gnuplot_text(g, own ? label : path, "%s_path", which);
 }
 
-void plot_axis_write(const struct plot_axis *along, struct gnuplot *g, const char *which)
+const char *plot_axis_write(const struct plot_axis *along, struct gnuplot *g, char which)
 {
-    static const char *const scales[] = {
-        [PLOT_LINEAR] = "linear", [PLOT_LOG] = "log", [PLOT_LIST] = "list"};
-    plot_label_write(along->axis, g, which);
-    gnuplot_text(g, scales[along->scale], "%s_scale", which);
-    gnuplot_set(g, "%s_low = %#.17g\n%s_high = %#.17g\n%s_step = %#.17g\n%s_count = %zu", which,
-                along->low, which, along->high, which, along->step, which, along->axis->count);
+    const char *const axis = gnuplot_axis(g, which, along->scale, along->range, "", "");
+    plot_label_write(along->axis, g, axis);
+    gnuplot_set(g, "%s_step = %#.17g; %s_count = %zu", axis, along->step, axis, along->axis->count);
     if (along->scale == PLOT_LIST)
-        put_words(along, g, which);
+        put_words(along, g, axis);
+    return axis;
 }
 
-void plot_became_text(const struct results *r, char *text, size_t size)
+void plot_say_became(struct gnuplot *g)
 {
-    if (r->cases == 1)
-        snprintf(text, size, "What became of 1 case");
-    else
-        snprintf(text, size, "What became of each of %llu cases", (unsigned long long)r->cases);
+    const uint64_t cases = g->plot->r->cases;
+    gnuplot_say(g, cases == 1 ? "What became of %llu case" : "What became of each of %llu cases",
+                (unsigned long long)cases);
 }
 
-void plot_failed_text(const struct results *r, char *text, size_t size)
+void plot_say_failed(struct gnuplot *g)
 {
     struct statistics_counts counts;
-    statistics_count(r, -1, 0, &counts);
+    statistics_count(g->plot->r, -1, 0, &counts);
     if (counts.kind[RESULTS_FAILED] > 0)
-        add_text(text, size, ", %llu failed in all",
-                 (unsigned long long)counts.kind[RESULTS_FAILED]);
+        gnuplot_say(g, ", %llu failed in all", (unsigned long long)counts.kind[RESULTS_FAILED]);
 }
 
-void plot_cut_text(const struct results *r, enum results_kind of, bool shown, char *text,
-                   size_t size)
+void plot_say_cut(struct gnuplot *g, enum results_kind of, bool shown)
 {
     struct faces faces;
     char at[400];
     if (of == RESULTS_KIND_COUNT)
         return;
-    faces_make(&faces, r, NULL, 0);
+    faces_make(&faces, g->plot->r, NULL, 0);
     const face_set cut = faces_cut(&faces, of);
     faces_text(&faces, cut, at, sizeof at);
     if (cut)
-        add_text(text, size, "; what is %s is cut by the box at %s%s", results_kind_names[of], at,
-                 shown ? ": its share is the box's" : "");
+        gnuplot_say(g, "; what is %s is cut by the box at %s%s", results_kind_names[of], at,
+                    shown ? ": its share is the box's" : "");
 }
 
-void plot_kinds_write(const struct results *r, struct gnuplot *g, bool legend)
+void plot_kinds_write(struct gnuplot *g, bool legend)
 {
+    const struct results *const r = g->plot->r;
     struct statistics_counts counts;
     char text[64], colour[64];
     statistics_count(r, -1, 0, &counts);
-    gnuplot_set(g, "array kind_colour[%d]", RESULTS_KIND_COUNT);
+    gnuplot_arrays(g, RESULTS_KIND_COUNT, "kind_colour");
     for (int k = 0; k < RESULTS_KIND_COUNT; k++) {
+        const double share = 100 * (double)counts.kind[k] / (double)r->cases;
         snprintf(colour, sizeof colour, "colour_%s", results_kind_names[k]);
+        snprintf(text, sizeof text, share < 0.05 ? "%.2g %%" : "%.1f %%", share);
         gnuplot_colour(g, colour, results_kind_names[k]);
         gnuplot_set(g, "kind_colour[%d] = %s", k + 1, colour);
-        if (legend && counts.kind[k] > 0) {
-            double share = 100 * (double)counts.kind[k] / (double)r->cases;
-            snprintf(text, sizeof text, share < 0.05 ? "%.2g %%" : "%.1f %%", share);
-            gnuplot_legend(g, colour, results_kind_names[k], text);
-        }
+        if (legend && counts.kind[k] > 0)
+            gnuplot_legend(g, colour, 0, 0, results_kind_names[k], text);
     }
 }
 
@@ -244,32 +220,16 @@ void plot_cells_write(struct gnuplot *g, const struct plot_cells *cells, const v
     const struct plot_axis *const across = cells->across, *const up = cells->up;
     const size_t nx = across->axis->count, ny = up->axis->count;
     const size_t twice_x = nx == 1 ? 2 : 1, twice_y = ny == 1 ? 2 : 1;
-    FILE *file = gnuplot_cells(g);
-    for (size_t j = 0; j < ny * twice_y; j++) {
-        for (size_t i = 0; i < nx * twice_x; i++) {
+    const size_t bytes = nx * twice_x * ny * twice_y * size;
+    char *const copy = gnuplot_room(g, bytes, 1), *at = copy;
+    for (size_t j = 0; copy && j < ny * twice_y; j++) {
+        for (size_t i = 0; i < nx * twice_x; i++, at += size) {
             const size_t index = cells->first +
                                  plot_axis_index(across, i / twice_x) * cells->stride[0] +
                                  plot_axis_index(up, j / twice_y) * cells->stride[1];
-            fwrite((const char *)values + index * size, size, 1, file);
+            memcpy(at, (const char *)values + index * size, size);
         }
     }
-    gnuplot_close_cells(g, file);
-}
-
-/* ---- pages -------------------------------------------------------------------------------- */
-
-bool plot_begin(const struct plot *plot, struct gnuplot *g, const char *script,
-                const char *subtitle, stance_message *message)
-{
-    const struct results *r = plot->r;
-    return gnuplot_begin(g, plot->look, script, r->title[0] ? r->title : r->name, subtitle,
-                         message);
-}
-
-bool plot_end(const struct plot *plot, struct gnuplot *g, const char *picture,
-              stance_message *message)
-{
-    char stem[512];
-    snprintf(stem, sizeof stem, "%s-%s", plot->stem, picture);
-    return gnuplot_end(g, plot->directory, stem, message);
+    if (copy)
+        gnuplot_cells(g, copy, bytes);
 }

@@ -15,6 +15,9 @@ colour_failed = 0x000000
 colour_pending = 0xe4e4e4
 # Of curves side by side.
 array hue[7] = [0x0072b2, 0xd55e00, 0x009e73, 0xcc79a7, 0xe69f00, 0x56b4e9, 0x000000]
+# Of the first candidate of a search, of the chosen one, of what linear theory allows.
+curve_colour(k) = hue[int(word('2 1 3', k))]
+curve_dash(k) = int(word('2 1 4', k))
 grey = 0x8a8a8a
 no_number = 0xd9d9d9
 
@@ -90,12 +93,20 @@ x_label(middle, y) = (f_label = axis_label('x', page_width - 2*margin), f_half =
     sprintf("set label f_label at screen %.6f,%.6f center %s front", \
         X(at_least(f_half, at_most(middle, page_width - f_half))), Y(y), small))
 
+# ---- charts: see chart.gp. Panels as the data have them, and where they come to stand ----
+array panel_own[40]; array panel_heading[40]; array panel_y[40]; array panel_plot[40]; array panel_top[40]; array panel_high[40]
+panels = 0
+left = 104
+chart_width = 620 # px, of a panel
+headed = 0        # panels have room for headings
+
 # ---- legends: marks with texts, and notes under them; the data add theirs. A mark is a line where it has a type of
 # dashes, a point where it has a type of points, or a filled box ----
 array legend_text[40]
 array legend_colour[40]
 array legend_dash[40]
 array legend_point[40]
+array legend_about[40] # lines under an entry
 array note[12]
 bars = 0
 legends = 0

@@ -8,6 +8,8 @@
  */
 #include "search_pictures.h"
 
+#include "analysis/statistics/statistics.h"
+
 #include "runner/scenario/schema.h"
 
 #include <math.h>
@@ -38,16 +40,14 @@ static void put_candidates(struct page *page)
     gnuplot_block(&page->g, "candidates");
     for (size_t i = 0; i < n; i += every)
         GNUPLOT_ROW(&page->g, (double)i + 1, page->scale * f->objective[i]);
-    gnuplot_end_block(&page->g);
     gnuplot_block(&page->g, "best");
     for (size_t g = 0; g < f->length[SEARCH_GENERATION]; g++) {
         const double best = page->scale * f->objective[f->best[g]];
         if (g > 0 && (f->stage[g] != f->stage[g - 1] || f->restart[g] != f->restart[g - 1]))
-            gnuplot_set(&page->g, "%s", "");
+            gnuplot_gap(&page->g);
         GNUPLOT_ROW(&page->g, (double)search_first(f, g), best);
         GNUPLOT_ROW(&page->g, (double)f->candidates[g], best);
     }
-    gnuplot_end_block(&page->g);
 }
 
 static void put_stages(struct page *page)
@@ -55,10 +55,8 @@ static void put_stages(struct page *page)
     const struct search_file *const f = &page->study->f;
     size_t last[MOST_STAGES];
     const size_t stages = search_stages(page->study, last, MOST_STAGES);
-    gnuplot_set(&page->g,
-                "stages = %zu\narray stage_from[%zu]\narray stage_to[%zu]\n"
-                "array stage_text[%zu]",
-                stages, stages, stages, stages);
+    gnuplot_set(&page->g, "stages = %zu", stages);
+    gnuplot_arrays(&page->g, stages, "stage_from stage_to stage_text");
     for (size_t i = 0; i < stages; i++) {
         char text[40];
         snprintf(text, sizeof text, "%lld starts", (long long)f->starts[last[i]]);
@@ -77,11 +75,11 @@ static void put_range(struct page *page, double first, double chosen, double lim
     double low = fmin(first, chosen), high = fmax(fmax(first, chosen), limit);
     low = isnan(low) ? page->scale * f->objective[0] : low;
     high = isnan(high) ? low : high;
-    for (size_t i = 0; i < f->length[SEARCH_CANDIDATE]; i++)
-        high = fmax(high, page->scale * f->objective[i]);
     double least = low;
-    for (size_t i = 0; i < f->length[SEARCH_CANDIDATE]; i++)
+    for (size_t i = 0; i < f->length[SEARCH_CANDIDATE]; i++) {
+        high = fmax(high, page->scale * f->objective[i]);
         least = fmin(least, page->scale * f->objective[i]);
+    }
     low = page->study->plain ? 0 : fmax(least, low - (high - low));
     const double room = high > low ? 0.06 * (high - low) : 1;
     gnuplot_number(&page->g, page->study->plain ? 0 : low - room, "low");
@@ -152,7 +150,6 @@ static void put_distribution(struct page *page, const char *block, bool width)
                 width ? f->step[g] * sqrt(f->covariance[(g * n + k) * n + k]) : change(f, g, k);
         gnuplot_row(&page->g, row, columns);
     }
-    gnuplot_end_block(&page->g);
 }
 
 /* Numbers in the order in which they end, the lowest first: number[k], its name, its end. */
@@ -160,21 +157,19 @@ static void put_ends(struct page *page)
 {
     const struct search_file *const f = &page->study->f;
     const size_t n = f->length[SEARCH_PARAMETER];
-    const size_t last = f->length[SEARCH_GENERATION] - 1;
-    gnuplot_set(&page->g,
-                "numbers = %zu; named = %d\narray end_number[%zu]\narray end_at[%zu]\n"
-                "array end_text[%zu]",
-                n, n <= MOST_NAMED, n, n, n);
-    for (size_t k = 0; k < n; k++) {
-        size_t rank = 1;
+    struct statistics_place *const end = gnuplot_room(&page->g, n, sizeof *end);
+    for (size_t k = 0; end && k < n; k++)
+        end[k] = (struct statistics_place){change(f, f->length[SEARCH_GENERATION] - 1, k), k};
+    if (end)
+        statistics_order(end, n);
+    gnuplot_set(&page->g, "numbers = %zu; named = %d", n, n <= MOST_NAMED);
+    gnuplot_arrays(&page->g, n, "end_number end_at end_text");
+    for (size_t k = 0; end && k < n; k++) {
         char text[100];
-        for (size_t other = 0; other < n; other++)
-            rank += change(f, last, other) < change(f, last, k) ||
-                    (change(f, last, other) == change(f, last, k) && other < k);
-        name_number(page->study, k, text, sizeof text);
-        gnuplot_set(&page->g, "end_number[%zu] = %zu", rank, k + 1);
-        gnuplot_number(&page->g, change(f, last, k), "end_at[%zu]", rank);
-        gnuplot_text(&page->g, look_label(page->g.look, text), "end_text[%zu]", rank);
+        name_number(page->study, end[k].index, text, sizeof text);
+        gnuplot_set(&page->g, "end_number[%zu] = %zu", k + 1, end[k].index + 1);
+        gnuplot_number(&page->g, end[k].value, "end_at[%zu]", k + 1);
+        gnuplot_text(&page->g, look_label(page->g.plot->look, text), "end_text[%zu]", k + 1);
     }
 }
 
@@ -182,25 +177,19 @@ static void put_means(struct page *page)
 {
     const struct search_file *const f = &page->study->f;
     const size_t n = f->length[SEARCH_PARAMETER], generations = f->length[SEARCH_GENERATION];
-    double low = INFINITY, high = -INFINITY, least = INFINITY, most = 0;
+    struct plot_range mean = PLOT_NOTHING, width = PLOT_NOTHING;
     for (size_t i = 0; i < generations * n; i++) {
-        const double variance = f->covariance[i * n + i % n];
-        const double width = f->step[i / n] * sqrt(variance);
-        low = fmin(low, change(f, i / n, i % n));
-        high = fmax(high, change(f, i / n, i % n));
-        least = width > 0 ? fmin(least, width) : least;
-        most = fmax(most, width);
+        plot_widen(&mean, change(f, i / n, i % n));
+        plot_widen(&width, log10(f->step[i / n] * sqrt(f->covariance[i * n + i % n])));
     }
-    for (size_t g = 0; g < generations; g++) {
-        least = f->step[g] > 0 ? fmin(least, f->step[g]) : least;
-        most = fmax(most, f->step[g]);
-    }
-    const bool known = isfinite(low) && isfinite(high) && isfinite(most) && least <= most;
-    const double room = known && high > low ? 0.05 * (high - low) : 0.5;
-    gnuplot_number(&page->g, known ? low - room : 0, "mean_low");
-    gnuplot_number(&page->g, known ? high + room : 1, "mean_high");
-    gnuplot_number(&page->g, known ? log10(least) - 0.05 : -1, "width_low");
-    gnuplot_number(&page->g, known ? log10(most) + 0.05 : 0, "width_high");
+    for (size_t g = 0; g < generations; g++)
+        plot_widen(&width, log10(f->step[g]));
+    const bool known = mean.low <= mean.high && width.low <= width.high;
+    const struct plot_range shown = plot_roomy(known ? mean : PLOT_NOTHING, 0.05);
+    gnuplot_number(&page->g, shown.low, "mean_low");
+    gnuplot_number(&page->g, shown.high, "mean_high");
+    gnuplot_number(&page->g, known ? width.low - 0.05 : -1, "width_low");
+    gnuplot_number(&page->g, known ? width.high + 0.05 : 0, "width_high");
     put_ends(page);
     put_distribution(page, "mean", false);
     put_distribution(page, "width", true);
@@ -208,33 +197,26 @@ static void put_means(struct page *page)
 
 /* ---- the page ----------------------------------------------------------------------------- */
 
-bool plot_search_convergence(const struct search_study *study, struct look *look,
-                             const char *directory, stance_message *message)
+bool plot_search_convergence(const struct search_study *study, const struct plot *plot)
 {
     const struct search_file *const f = &study->f;
     struct page page = {.study = study, .scale = study->plain ? 100 : 1};
-    char subtitle[200], stem[400];
-    if (study->done)
-        snprintf(subtitle, sizeof subtitle,
-                 "%zu candidates in %zu generations; lines: of %zu fresh starts",
-                 f->length[SEARCH_CANDIDATE], f->length[SEARCH_GENERATION],
-                 f->length[SEARCH_START]);
-    else
-        snprintf(subtitle, sizeof subtitle,
-                 "%zu candidates in %zu of at most %lld generations, not finished",
-                 f->length[SEARCH_CANDIDATE], f->length[SEARCH_GENERATION],
-                 (long long)f->most_generations);
-    if (!gnuplot_begin(&page.g, look, plot_convergence_gp, f->title[0] ? f->title : study->name,
-                       subtitle, message))
+    struct gnuplot *const g = &page.g;
+    if (!gnuplot_begin(g, plot, "convergence", plot_convergence_gp))
         return false;
-    gnuplot_set(&page.g, "candidates = %zu", f->length[SEARCH_CANDIDATE]);
-    gnuplot_text(&page.g, study->plain ? "recovered starts (%)" : "objective", "worth");
-    gnuplot_legend_mark(&page.g, "grey", 0, 7, "candidate", "");
-    gnuplot_legend_mark(&page.g, "0x000000", 1, 0, "best so far of its stage", "");
+    gnuplot_say(g, "%zu candidates in %zu ", f->length[SEARCH_CANDIDATE],
+                f->length[SEARCH_GENERATION]);
+    if (study->done)
+        gnuplot_say(g, "generations; lines: of %zu fresh starts", f->length[SEARCH_START]);
+    else
+        gnuplot_say(g, "of at most %lld generations, not finished", (long long)f->most_generations);
+    gnuplot_set(g, "candidates = %zu", f->length[SEARCH_CANDIDATE]);
+    gnuplot_text(g, study->plain ? "recovered starts (%)" : "objective", "worth");
+    gnuplot_legend(g, "grey", 0, 7, "candidate", "");
+    gnuplot_legend(g, "0x000000", 1, 0, "best so far of its stage", "");
     put_lines(&page);
     put_stages(&page);
     put_candidates(&page);
     put_means(&page);
-    snprintf(stem, sizeof stem, "%.300s-convergence", study->name);
-    return gnuplot_end(&page.g, directory, stem, message);
+    return gnuplot_end(g);
 }

@@ -60,7 +60,7 @@ eval linear_tics('x', 0, candidates, width/70, 0)
 eval panel_tics(low, high, height)
 size = candidates > 4000 ? 0.2 : candidates > 400 ? 0.35 : 0.6
 plot $candidates using 1:2 with points pt 7 ps size lc rgb grey notitle, \
-    for [k=3:1:-1] curve_at[k] with lines lc rgb curve_colour[k] dt curve_dash[k] lw 2.2 notitle, \
+    for [k=3:1:-1] curve_at[k] with lines lc rgb curve_colour(k) dt curve_dash(k) lw 2.2 notitle, \
     $best using 1:2 with lines lc rgb 'black' lw 2 notitle
 
 eval panel(left, mean_top, width, mean_height)

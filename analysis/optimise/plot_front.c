@@ -9,23 +9,18 @@
 
 GNUPLOT_SCRIPT(plot_front_gp, "analysis/optimise/plot_front.gp");
 
-bool plot_search_front(const struct search_front *front, struct look *look, const char *directory,
-                       stance_message *message)
+bool plot_search_front(const struct search_front *front, const struct plot *plot)
 {
     struct gnuplot g;
     struct plot_axis along;
-    char text[600];
     double most = 0;
     bool limited = true, glued = false;
-    const char *const title = front->study[0].f.title;
-    snprintf(text, sizeof text,
-             "%zu searches, each with its fresh starts; bars: 95 %% intervals%s%s", front->count,
-             front->also[0] ? "; also different: " : "", front->also);
-    if (!gnuplot_begin(&g, look, plot_front_gp, title[0] ? title : front->study[0].name, text,
-                       message))
+    if (!gnuplot_begin(&g, plot, "front", plot_front_gp))
         return false;
+    gnuplot_say(&g, "%zu searches, each with its fresh starts; bars: 95 %% intervals%s%s",
+                front->count, front->also[0] ? "; also different: " : "", front->also);
     plot_axis_make_curve(&along, &front->against);
-    plot_axis_write(&along, &g, "x");
+    plot_axis_write(&along, &g, 'x');
     gnuplot_block(&g, "front");
     for (size_t i = 0; i < front->count; i++) {
         const struct search_study *const study = &front->study[i];
@@ -45,9 +40,7 @@ bool plot_search_front(const struct search_front *front, struct look *look, cons
         most = isfinite(row[7]) ? fmax(most, row[7]) : most;
         gnuplot_row(&g, row, 8);
     }
-    gnuplot_end_block(&g);
     search_curves_write(&g, (const char *const[SEARCH_CURVES]){"", "", limited ? "" : NULL}, glued);
     gnuplot_set(&g, "limited = %d; most = %#.10g", limited, fmin(104, 1.04 * most + 1));
-    snprintf(text, sizeof text, "%.300s-front", front->study[0].name);
-    return gnuplot_end(&g, directory, text, message);
+    return gnuplot_end(&g);
 }

@@ -4,12 +4,11 @@
  * ranges: these are shares, not a section through the domain. */
 #include "search_pictures.h"
 
-#include "runner/base/message.h"
+#include "analysis/statistics/statistics.h"
+
 #include "runner/scenario/schema.h"
 
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 GNUPLOT_SCRIPT(plot_starts_gp, "analysis/optimise/plot_starts.gp");
 
@@ -18,31 +17,11 @@ enum { PARTS = 12, LEAST = 20, MOST_PANELS = 18 }; /* starts in a part at least 
 struct page {
     struct gnuplot g;
     const struct search_study *study;
-    double *allowed; /* of each start; NULL: linear theory sets no bound */
-    size_t *order;
+    double *allowed;                /* of each start; NULL: linear theory sets no bound */
+    struct statistics_place *order; /* of the starts along a coordinate */
     size_t circumstance;
     double most; /* per cent */
 };
-
-static const struct search_file *by_file;
-static size_t by_column;
-
-static double coordinate(const struct search_file *f, size_t start, size_t column)
-{
-    return f->start_value[start * f->length[SEARCH_VARIED] + column];
-}
-
-/* NAN, which only a damaged file has, at the end. */
-static int compare(const void *a, const void *b)
-{
-    const size_t i = *(const size_t *)a, j = *(const size_t *)b;
-    const double x = coordinate(by_file, i, by_column), y = coordinate(by_file, j, by_column);
-    if (x < y || (isnan(y) && !isnan(x)))
-        return -1;
-    if (y < x || (isnan(x) && !isnan(y)))
-        return 1;
-    return i < j ? -1 : i > j;
-}
 
 static double recovered(const struct page *page, size_t k, size_t start)
 {
@@ -54,14 +33,14 @@ static double recovered(const struct page *page, size_t k, size_t start)
 }
 
 /* The middle of a part, and of each curve its share and interval. */
-static void put_part(struct page *page, size_t column, size_t from, size_t to)
+static void put_part(struct page *page, size_t from, size_t to)
 {
     const struct search_file *const f = &page->study->f;
     struct interval_draws draws[SEARCH_CURVES] = {{0}};
     double row[1 + 3 * SEARCH_CURVES] = {0};
     for (size_t i = from; i < to; i++) {
-        const size_t start = page->order[i];
-        row[0] += coordinate(f, start, column) / (double)(to - from);
+        const size_t start = page->order[i].index;
+        row[0] += page->order[i].value / (double)(to - from);
         interval_add(&draws[SEARCH_FIRST], recovered(page, 0, start), 1);
         interval_add(&draws[SEARCH_CHOSEN], recovered(page, (size_t)f->chosen, start), 1);
         if (page->allowed)
@@ -83,16 +62,15 @@ static void put_panel(struct page *page, size_t column)
     const size_t n = f->length[SEARCH_START], parts = n / PARTS >= LEAST ? PARTS
                                                       : n / LEAST > 2    ? n / LEAST
                                                                          : 2;
-    const char *const path = f->varied[column], *const label = look_label(page->g.look, path);
+    const char *const path = f->varied[column], *const label = look_label(page->g.plot->look, path);
     struct results_axis axis = {.unit = ""};
     char text[200];
-    for (size_t i = 0; i < n; i++)
-        page->order[i] = i;
-    by_file = f;
-    by_column = column;
-    qsort(page->order, n, sizeof *page->order, compare);
-    const double low = coordinate(f, page->order[0], column),
-                 high = coordinate(f, page->order[n - 1], column);
+    for (size_t i = 0; i < n; i++) {
+        const double at = f->start_value[i * f->length[SEARCH_VARIED] + column];
+        page->order[i] = (struct statistics_place){isnan(at) ? INFINITY : at, i}; /* damaged */
+    }
+    statistics_order(page->order, n);
+    const double low = page->order[0].value, high = page->order[n - 1].value;
     snprintf(axis.name, sizeof axis.name, "%s", path);
     search_describe(page->study, &axis);
     snprintf(text, sizeof text, "%.120s%s%s%s", label == path ? schema_last_name(path) : label,
@@ -104,8 +82,7 @@ static void put_panel(struct page *page, size_t column)
     gnuplot_block(&page->g, "parts%zu", column + 1);
     for (size_t p = 0; p < parts; p++)
         if (p * n / parts < (p + 1) * n / parts)
-            put_part(page, column, p * n / parts, (p + 1) * n / parts);
-    gnuplot_end_block(&page->g);
+            put_part(page, p * n / parts, (p + 1) * n / parts);
 }
 
 static void put_curves(struct page *page)
@@ -128,60 +105,38 @@ static void put_curves(struct page *page)
         page->study->glued);
 }
 
-static bool draw(struct page *page, struct look *look, const char *directory,
-                 stance_message *message)
+bool plot_search_starts(const struct search_study *study, const struct plot *plot)
 {
-    const struct search_file *const f = &page->study->f;
-    const size_t varied = f->length[SEARCH_VARIED],
+    const struct search_file *const f = &study->f;
+    const size_t starts = f->length[SEARCH_START], varied = f->length[SEARCH_VARIED],
                  panels = varied < MOST_PANELS ? varied : MOST_PANELS;
-    char subtitle[400], stem[400];
-    if (f->length[SEARCH_CIRCUMSTANCE] == 1)
-        snprintf(subtitle, sizeof subtitle, "%zu fresh starts", f->length[SEARCH_START]);
-    else if (page->circumstance == SEARCH_OVERALL)
-        snprintf(subtitle, sizeof subtitle, "%zu fresh starts, mean of %zu circumstances",
-                 f->length[SEARCH_START], f->length[SEARCH_CIRCUMSTANCE]);
-    else
-        snprintf(subtitle, sizeof subtitle,
-                 "%zu fresh starts, in the worst circumstance of the chosen one: %.200s",
-                 f->length[SEARCH_START], f->circumstance[page->circumstance]);
-    if (!gnuplot_begin(&page->g, look, plot_starts_gp, f->title[0] ? f->title : page->study->name,
-                       subtitle, message))
-        return false;
-    gnuplot_set(&page->g,
-                "panels = %zu; limited = %d\narray panel_text[%zu]\narray panel_low[%zu]\n"
-                "array panel_high[%zu]",
-                panels, page->allowed != NULL, panels, panels, panels);
-    put_curves(page);
-    for (size_t k = 0; k < panels; k++)
-        put_panel(page, k);
-    gnuplot_note(&page->g, "bars: 95 % intervals");
-    if (panels < varied) {
-        snprintf(subtitle, sizeof subtitle, "%zu of the %zu coordinates are drawn", panels, varied);
-        gnuplot_note(&page->g, subtitle);
-    }
-    gnuplot_number(&page->g, fmin(104, 1.04 * page->most + 1), "most");
-    snprintf(stem, sizeof stem, "%.300s-starts", page->study->name);
-    return gnuplot_end(&page->g, directory, stem, message);
-}
-
-bool plot_search_starts(const struct search_study *study, struct look *look, const char *directory,
-                        stance_message *message)
-{
-    const size_t n = study->f.length[SEARCH_START];
-    if (!study->done || study->f.length[SEARCH_VARIED] == 0)
+    struct page page = {.study = study};
+    struct gnuplot *const g = &page.g;
+    if (!study->done || varied == 0)
         return true;
-    struct page page = {.study = study,
-                        .allowed = calloc(n, sizeof *page.allowed),
-                        .order = calloc(n, sizeof *page.order),
-                        .circumstance = search_worst(study, (size_t)study->f.chosen)};
-    double *const room = page.allowed;
-    bool good = (page.allowed && page.order) || no_memory(message);
-    if (good) {
-        if (!search_allowed(study, page.allowed))
-            page.allowed = NULL;
-        good = draw(&page, look, directory, message);
-    }
-    free(room);
-    free(page.order);
-    return good;
+    if (!gnuplot_begin(g, plot, "starts", plot_starts_gp))
+        return false;
+    page.circumstance = search_worst(study, (size_t)f->chosen);
+    page.allowed = gnuplot_room(g, starts, sizeof *page.allowed);
+    page.order = gnuplot_room(g, starts, sizeof *page.order);
+    if (!page.allowed || !page.order)
+        return gnuplot_end(g);
+    if (!search_allowed(study, page.allowed))
+        page.allowed = NULL;
+    gnuplot_say(g, "%zu fresh starts", starts);
+    if (f->length[SEARCH_CIRCUMSTANCE] > 1 && page.circumstance == SEARCH_OVERALL)
+        gnuplot_say(g, ", mean of %zu circumstances", f->length[SEARCH_CIRCUMSTANCE]);
+    else if (f->length[SEARCH_CIRCUMSTANCE] > 1)
+        gnuplot_say(g, ", in the worst circumstance of the chosen one: %.200s",
+                    f->circumstance[page.circumstance]);
+    gnuplot_set(g, "panels = %zu; limited = %d", panels, page.allowed != NULL);
+    gnuplot_arrays(g, panels, "panel_text panel_low panel_high");
+    put_curves(&page);
+    for (size_t k = 0; k < panels; k++)
+        put_panel(&page, k);
+    gnuplot_note(g, "bars: 95 %% intervals");
+    if (panels < varied)
+        gnuplot_note(g, "%zu of the %zu coordinates are drawn", panels, varied);
+    gnuplot_number(g, fmin(104, 1.04 * page.most + 1), "most");
+    return gnuplot_end(g);
 }

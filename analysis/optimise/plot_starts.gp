@@ -24,6 +24,6 @@ do for [p=1:panels] {
     eval panel(panel_left(p), panel_top(p), width, height)
     eval linear_tics('x', panel_low[p], panel_high[p], width/56, 1)
     eval linear_tics('y', 0, most, height < 160 ? 4 : int(height/36), (p - 1) % columns == 0)
-    plot for [k=2+limited:1:-1] '$parts'.p using 1:3*k-1 with lines lc rgb curve_colour[k] dt curve_dash[k] lw 2 notitle, \
-        for [k=2+limited:1:-1] '$parts'.p using 1:3*k-1:3*k:3*k+1 with yerrorbars lc rgb curve_colour[k] pt 7 ps 0.4 lw 1.2 notitle
+    plot for [k=2+limited:1:-1] '$parts'.p using 1:3*k-1 with lines lc rgb curve_colour(k) dt curve_dash(k) lw 2 notitle, \
+        for [k=2+limited:1:-1] '$parts'.p using 1:3*k-1:3*k:3*k+1 with yerrorbars lc rgb curve_colour(k) pt 7 ps 0.4 lw 1.2 notitle
 }

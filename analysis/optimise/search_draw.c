@@ -12,23 +12,25 @@ void search_curves_write(struct gnuplot *g, const char *const more[SEARCH_CURVES
     } curve[SEARCH_CURVES] = {{"hue[2]", "first candidate", 2},
                               {"hue[1]", "chosen", 1},
                               {"hue[3]", "allowed by linear theory", 4}};
-    gnuplot_set(g, "array curve_colour[%d]\narray curve_dash[%d]", SEARCH_CURVES, SEARCH_CURVES);
-    for (int k = 0; k < SEARCH_CURVES; k++) {
+    for (int k = 0; k < SEARCH_CURVES; k++)
         if (more[k])
-            gnuplot_legend_mark(g, curve[k].colour, curve[k].dash, 0, curve[k].name, more[k]);
-        gnuplot_set(g, "curve_colour[%d] = %s; curve_dash[%d] = %d", k + 1, curve[k].colour, k + 1,
-                    curve[k].dash);
-    }
+            gnuplot_legend(g, curve[k].colour, curve[k].dash, 0, curve[k].name, more[k]);
     if (glued && more[SEARCH_ALLOWED])
         gnuplot_note(g, "allowed: " ALLOWED_GLUED);
 }
 
-static bool (*const pictures[])(const struct search_study *, struct look *, const char *,
-                                stance_message *) = {
+static bool (*const pictures[])(const struct search_study *, const struct plot *) = {
 #define PICTURE(name, help) plot_search_##name,
     SEARCH_PICTURES(PICTURE)
 #undef PICTURE
 };
+
+/* How the pictures of a search are titled and called. */
+static void name_plot(struct plot *plot, const struct search_study *study)
+{
+    plot->title = study->f.title[0] ? study->f.title : study->name;
+    plot->stem = study->name;
+}
 
 int search_draw(struct look *look, const char *const *file, size_t files)
 {
@@ -37,15 +39,19 @@ int search_draw(struct look *look, const char *const *file, size_t files)
     stance_message message = {""};
     bool good = false;
     char own[1024];
-    const char *const directory = look_directory(look, file[0], own, sizeof own);
-    if (!gnuplot_directory(directory))
+    struct plot plot = {.directory = look_directory(look, file[0], own, sizeof own),
+                        .look = look,
+                        .message = &message};
+    if (!gnuplot_directory(plot.directory))
         return EXIT_IO;
     if (files == 1 && (good = search_study_open(&study, file[0], &message))) {
+        name_plot(&plot, &study);
         for (size_t k = 0; good && k < sizeof pictures / sizeof *pictures; k++)
-            good = pictures[k](&study, look, directory, &message);
+            good = pictures[k](&study, &plot);
         search_study_close(&study);
     } else if (files > 1 && (good = search_front_open(&front, file, files, &message))) {
-        good = plot_search_front(&front, look, directory, &message);
+        name_plot(&plot, &front.study[0]);
+        good = plot_search_front(&front, &plot);
         search_front_close(&front);
     }
     if (!good)

@@ -6,7 +6,7 @@
 
 #include "analysis/draw/gnuplot.h"
 
-/* X(name, help): plot_search_NAME draws DIRECTORY/STEM-NAME, nothing of a search that does not call
+/* X(name, help): plot_search_NAME draws STEM-NAME, nothing of a search that does not call
  * for it. */
 #define SEARCH_PICTURES(X)                                                                         \
     X(convergence,                                                                                 \
@@ -19,21 +19,18 @@
       "  finished            chosen one recover, and that linear theory allows, along each\n"      \
       "                      coordinate of the starts\n")
 #define SEARCH_PICTURE(name, help)                                                                 \
-    bool plot_search_##name(const struct search_study *study, struct look *look,                   \
-                            const char *directory, stance_message *message);
+    bool plot_search_##name(const struct search_study *study, const struct plot *plot);
 SEARCH_PICTURES(SEARCH_PICTURE)
 #undef SEARCH_PICTURE
 
-/* Their curves: the first candidate, the chosen one, what linear theory allows; each a colour of
- * style.gp and a type of dashes. */
+/* Their curves: the first candidate, the chosen one, what linear theory allows. */
 enum search_curve { SEARCH_FIRST, SEARCH_CHOSEN, SEARCH_ALLOWED, SEARCH_CURVES };
-/* Tells the script curve_colour[3] and curve_dash[3], and the legend, a text behind each name;
- * NULL: that curve is not drawn. glued: what is allowed is so for contacts as if glued. */
+/* Their legend, as style.gp draws them, a text behind each name; NULL: that curve is not drawn.
+ * glued: what is allowed is so for contacts as if glued. */
 void search_curves_write(struct gnuplot *g, const char *const more[SEARCH_CURVES], bool glued);
 
 struct search_front;
-bool plot_search_front(const struct search_front *front, struct look *look, const char *directory,
-                       stance_message *message);
+bool plot_search_front(const struct search_front *front, const struct plot *plot);
 /* Its lines of help. */
 #define SEARCH_FRONT_HELP                                                                          \
     "  several searches    NAME-front of the first: shares of fresh starts against the number\n"   \

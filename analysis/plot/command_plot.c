@@ -16,8 +16,9 @@ extern const struct command command_plot; /* below */
 
 /* ---- one case ----------------------------------------------------------------------------- */
 
-static int draw_case(const struct plot *plot, uint64_t index, bool given, stance_message *message)
+static int draw_case(const struct plot *plot, uint64_t index, bool given)
 {
+    stance_message *const message = plot->message;
     const struct results *r = plot->r;
     const unsigned long long number = index;
     uint64_t *list;
@@ -48,9 +49,9 @@ static int draw_case(const struct plot *plot, uint64_t index, bool given, stance
     snprintf(stem, sizeof stem, "%.300s-case%llu", plot->stem, number);
     own.stem = given && !r->single ? stem : plot->stem;
     struct plot_case c;
-    if (!plot_case_load(&c, &own, place, index, message))
+    if (!plot_case_load(&c, &own, place, index))
         return EXIT_IO;
-    const bool good = plot_case(&c, message);
+    const bool good = plot_case(&c);
     plot_case_free(&c);
     return good ? EXIT_DONE : EXIT_IO;
 }
@@ -59,8 +60,7 @@ static int draw_case(const struct plot *plot, uint64_t index, bool given, stance
 
 /* The picture for which `stance sensitivity` has options; what a file is too short for is said.
  * answer NULL: of the share of cases that end well. */
-static int draw_sensitivity(const struct plot *plot, const struct plot_answer *answer,
-                            stance_message *message)
+static int draw_sensitivity(const struct plot *plot, const struct plot_answer *answer)
 {
     const struct sensitivity_request request = {
         .answer = answer ? answer->name : NULL,
@@ -69,60 +69,57 @@ static int draw_sensitivity(const struct plot *plot, const struct plot_answer *a
         .bootstrap = SENSITIVITY_BOOTSTRAP,
     };
     struct sensitivity_study study;
-    int code = sensitivity_study_make(&study, plot->r, &request, message);
+    int code = sensitivity_study_make(&study, plot->r, &request, plot->message);
     if (code == EXIT_DONE) {
-        code =
-            sensitivity_picture(&study, plot->look, plot->directory, message) ? EXIT_DONE : EXIT_IO;
+        code = sensitivity_picture(&study, plot) ? EXIT_DONE : EXIT_IO;
         sensitivity_study_free(&study);
     }
     if (code == EXIT_USAGE)
-        fprintf(stderr, "%s\n", message->text);
+        fprintf(stderr, "%s\n", plot->message->text);
     return code == EXIT_USAGE ? EXIT_DONE : code;
 }
 
 /* ---- a sweep ------------------------------------------------------------------------------ */
 
-static bool (*const pictures[])(const struct plot *, stance_message *) = {
+static bool (*const pictures[])(const struct plot *) = {
 #define PICTURE(name, help) plot_##name,
     PLOT_PICTURES(PICTURE)
 #undef PICTURE
 };
 
-static int draw_sweep(const struct plot *plot, stance_message *message)
+static int draw_sweep(const struct plot *plot)
 {
     const struct results *r = plot->r;
     uint64_t *list;
     size_t count;
 
     for (size_t k = 0; k < sizeof pictures / sizeof pictures[0]; k++)
-        if (!pictures[k](plot, message))
+        if (!pictures[k](plot))
             return EXIT_IO;
-    if (!results_recorded(r, &list, &count, message))
+    if (!results_recorded(r, &list, &count, plot->message))
         return EXIT_IO;
     if (count > 0)
         fprintf(stderr, "trajectories of %zu case%s are recorded: --case %llu draws %s\n", count,
                 count == 1 ? "" : "s", (unsigned long long)list[0],
                 count == 1 ? "it" : "the first");
     free(list);
-    return sensitivity_study_fits(r) ? draw_sensitivity(plot, NULL, message) : EXIT_DONE;
+    return sensitivity_study_fits(r) ? draw_sensitivity(plot, NULL) : EXIT_DONE;
 }
 
-static int draw_answer(const struct plot *plot, const char *name, enum results_kind of,
-                       stance_message *message)
+static int draw_answer(const struct plot *plot, const char *name, enum results_kind of)
 {
     struct plot_answer answer;
     plot_answer_find(name, &answer);
     answer.of = of;
     if (plot->r->single) {
-        complain(message, "%.150s: holds one case; stance summary prints its numbers",
+        complain(plot->message, "%.150s: holds one case; stance summary prints its numbers",
                  plot->r->file);
         return EXIT_USAGE;
     }
     if (sensitivity_study_fits(plot->r))
-        return draw_sensitivity(plot, &answer, message);
-    return (plot->r->axes < 2 ? plot_answer_curve : plot_answer_map)(plot, &answer, message)
-               ? EXIT_DONE
-               : EXIT_IO;
+        return draw_sensitivity(plot, &answer);
+    return (plot->r->axes < 2 ? plot_answer_curve : plot_answer_map)(plot, &answer) ? EXIT_DONE
+                                                                                    : EXIT_IO;
 }
 
 /* ---- the command -------------------------------------------------------------------------- */
@@ -139,8 +136,7 @@ struct request {
 };
 
 /* The outlines of all files. */
-static int draw_outlines(const struct request *request, const struct plot *first,
-                         stance_message *message)
+static int draw_outlines(const struct request *request, const struct plot *first)
 {
     static struct results r[MOST_FILES]; /* large; the process has but one command */
     struct plot plots[MOST_FILES] = {*first};
@@ -149,10 +145,10 @@ static int draw_outlines(const struct request *request, const struct plot *first
     while (good && opened < request->files.count) {
         plots[opened] = *first;
         plots[opened].r = &r[opened];
-        good = results_open(&r[opened], request->files.text[opened], message);
+        good = results_open(&r[opened], request->files.text[opened], first->message);
         opened += good;
     }
-    good = good && plot_outline(plots, (int)request->files.count, request->of, message);
+    good = good && plot_outline(plots, (int)request->files.count, request->of);
     while (opened > 1)
         results_close(&r[--opened]);
     return good ? EXIT_DONE : EXIT_IO;
@@ -170,16 +166,16 @@ static int draw_results(struct request *request, stance_message *message)
         return EXIT_IO;
     const char *const directory =
         look_directory(&request->look, request->files.text[0], own_directory, sizeof own_directory);
-    const struct plot plot = {&r, directory, r.name, &request->look, request->allowed};
+    const struct plot plot = {
+        &r, NULL, directory, r.name, &request->look, message, request->allowed};
     if (request->allowed && !request->outline && (r.single || r.sample >= 0 || r.axes < 2)) {
         complain(message, "%.150s: has no map: --allowed belongs to maps over two starts", r.file);
         code = EXIT_USAGE;
     } else if (gnuplot_directory(directory)) {
-        code = request->outline  ? draw_outlines(request, &plot, message)
-               : request->answer ? draw_answer(&plot, request->answer, request->of, message)
-               : indexed || r.single
-                   ? draw_case(&plot, indexed ? request->index : r.index, indexed, message)
-                   : draw_sweep(&plot, message);
+        code = request->outline      ? draw_outlines(request, &plot)
+               : request->answer     ? draw_answer(&plot, request->answer, request->of)
+               : indexed || r.single ? draw_case(&plot, indexed ? request->index : r.index, indexed)
+                                     : draw_sweep(&plot);
     }
     results_close(&r);
     return code;
@@ -220,7 +216,7 @@ static int run(int argc, char **argv)
         return command_usage(&command_plot,
                              "stance replay draws animations; pictures are svg, png or pdf");
     if (request.model)
-        return plot_model(files->text[0], request.sets.text, request.sets.count, &request.look);
+        return plot_model(&command_plot, files->text[0], &request.sets, &request.look);
     return sandbox(draw, &request,
                    word_list(names, sizeof names, (const char *const *)files->text, files->count));
 }

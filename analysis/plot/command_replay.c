@@ -88,13 +88,14 @@ static bool find_value(const struct results_axis *axis, const char *name, const 
 static bool add_distances(const struct results_varied *v, const char *name, const char *text,
                           double *distance)
 {
-    double wanted, low, high;
+    double wanted;
+    struct plot_range of;
     if (v->word)
         return bad("--near takes NAME=NUMBER, not", name);
     if (!read_number(text, name, &wanted))
         return false;
     const double range =
-        plot_range(v->of.value, v->of.count, &low, &high) && high > low ? high - low : 1;
+        plot_range_of(&of, v->of.value, v->of.count) && of.high > of.low ? of.high - of.low : 1;
     for (size_t i = 0; i < v->of.count; i++) {
         const double off = (v->of.value[i] - wanted) / range;
         distance[i] += off * off;
@@ -225,6 +226,7 @@ struct replay {
     char directory[256], scenario[600], file[600];
     uint64_t index;
     struct results r;
+    struct plot plot;
     struct plot_case c;
     bool opened, loaded;
 };
@@ -309,29 +311,27 @@ static bool is_animated(const struct look *look)
     return look->format[LOOK_GIF] || (look->picture && strcmp(look->picture, "animation") == 0);
 }
 
-static int draw(const struct request *request, struct replay *replays, size_t count,
-                struct plot *plots, stance_message *message)
+static int draw(const struct request *request, struct replay *replays, size_t count)
 {
     for (size_t k = count; k-- > 0;) {
         struct replay *const replay = &replays[k];
-        plots[k].r = &replay->r;
-        if (!plot_case_load(&replay->c, &plots[k], 0, replay->index, message))
+        replay->plot.r = &replay->r;
+        if (!plot_case_load(&replay->c, &replay->plot, 0, replay->index))
             return EXIT_IO;
         replay->loaded = true;
         replay->c.other = k + 1 < count ? &replays[k + 1].c : NULL;
     }
-    return (is_animated(&request->look) ? plot_animation : plot_case)(&replays[0].c, message)
-               ? EXIT_DONE
-               : EXIT_IO;
+    return (is_animated(&request->look) ? plot_animation : plot_case)(&replays[0].c) ? EXIT_DONE
+                                                                                     : EXIT_IO;
 }
 
 static int replay(const struct request *request, struct look *look, const struct results *r,
                   stance_message *message)
 {
     static struct replay replays[MOST_CASES]; /* large; the process has but one command */
-    struct plot plots[MOST_CASES];
     char directory[1024], stem[400];
     const size_t count = asked_cases(request) > 0 ? asked_cases(request) : 1;
+    const char *const where = look_directory(look, request->file, directory, sizeof directory);
     int code = EXIT_DONE;
     snprintf(stem, sizeof stem, "%.200s", r->name);
     if (!check_sets(r, request))
@@ -339,17 +339,15 @@ static int replay(const struct request *request, struct look *look, const struct
     for (size_t k = 0; k < count; k++) {
         if (!find_case(r, request, k, &replays[k].index))
             return EXIT_USAGE;
+        replays[k].plot = (struct plot){NULL, NULL, where, stem, look, message, false};
         add_text(stem, sizeof stem, "-case%llu", (unsigned long long)replays[k].index);
     }
-    const char *const where = look_directory(look, request->file, directory, sizeof directory);
-    for (size_t k = 0; k < MOST_CASES; k++)
-        plots[k] = (struct plot){NULL, where, stem, look, false};
     if (!gnuplot_directory(where))
         return EXIT_IO;
     for (size_t k = 0; code == EXIT_DONE && k < count; k++)
         code = compute(r, request, &replays[k], message);
     if (code == EXIT_DONE)
-        code = draw(request, replays, count, plots, message);
+        code = draw(request, replays, count);
     for (size_t k = 0; k < count; k++)
         clean_up(&replays[k]);
     return code;

@@ -10,37 +10,32 @@
 #include "runner/plan/allowed.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
-enum { RAYS = 32, DEEPEST = 9, HALVINGS = 20 };
+enum { RAYS = 32, DEEPEST = 9, HALVINGS = 20, MOST_POINTS = RAYS << DEEPEST };
 #define STRAIGHT 1e-4 /* of the picture's sides */
 #define PLANE 1e-9    /* of their states: how far starts may be off it */
 
-struct section {
-    struct allowed of;
-    int n;
-    double origin[DESIGN_STATES], side[2][DESIGN_STATES];
-};
-
 /* ---- the plane ---------------------------------------------------------------------------- */
 
-/* What the panels of a picture have in common. */
 struct picture {
-    const struct results *r;
     const struct plot_layout *layout;
-    const struct results_axis *axis[2];
-    struct plot_frame frame;
+    struct plot_axis along[2];
     size_t end[2][2]; /* of each axis: places of its least and its largest value */
     struct scenario s;
     struct scenario_values values; /* of the start that is looked at */
+    /* Of the panel that is made: its set, its plane, a point inside, in parts of the picture. */
+    struct plot_allowed_panel *panel;
+    struct allowed of;
+    double origin[DESIGN_STATES], side[2][DESIGN_STATES], inside[2];
+    int number, n;
 };
 
 /* Both axes are starts, on even scales. */
 static bool check_axes(struct picture *p, stance_message *why)
 {
     for (int k = 0; k < 2; k++) {
-        const struct results_axis *const axis = p->axis[k];
+        const struct results_axis *const axis = p->along[k].axis;
         const struct scenario_axis *const of = &p->s.axis[k == 0 ? p->layout->x : p->layout->y];
         for (int i = 0; i < of->paths; i++)
             if (!scenario_is_start(of->path[i]))
@@ -52,7 +47,7 @@ static bool check_axes(struct picture *p, stance_message *why)
                     p->end[k][end] = i;
         if (p->end[k][0] == p->end[k][1])
             return complain(why, "%.90s has one value", axis->name);
-        if (p->frame.scale[k] == PLOT_LIST)
+        if (p->along[k].scale == PLOT_LIST)
             return complain(why, "the values of %.90s are not even", axis->name);
     }
     return true;
@@ -61,107 +56,96 @@ static bool check_axes(struct picture *p, stance_message *why)
 /* Where a value of an axis is between the picture's edges, 0 ... 1. */
 static double part_of(const struct picture *p, int k, double value)
 {
-    const bool log = p->frame.scale[k] == PLOT_LOG;
-    const double low = log ? pow(10, p->frame.low[k]) : p->frame.low[k],
-                 high = log ? pow(10, p->frame.high[k]) : p->frame.high[k];
+    const bool log = p->along[k].scale == PLOT_LOG;
+    const double low = log ? pow(10, p->along[k].range.low) : p->along[k].range.low,
+                 high = log ? pow(10, p->along[k].range.high) : p->along[k].range.high;
     return (value - low) / (high - low);
 }
 
 static double place_of(const struct picture *p, int k, double part)
 {
-    const double low = p->frame.low[k], high = p->frame.high[k];
-    if (p->frame.scale[k] == PLOT_LOG)
+    const double low = p->along[k].range.low, high = p->along[k].range.high;
+    if (p->along[k].scale == PLOT_LOG)
         return log10(pow(10, low) + part * (pow(10, high) - pow(10, low)));
     return low + part * (high - low);
 }
 
-static void state_at(const struct section *s, const double part[2], double *x)
+static void state_at(const struct picture *p, const double part[2], double *x)
 {
-    for (int c = 0; c < s->n; c++)
-        x[c] = s->origin[c] + part[0] * s->side[0][c] + part[1] * s->side[1][c];
+    for (int c = 0; c < p->n; c++)
+        x[c] = p->origin[c] + part[0] * p->side[0][c] + part[1] * p->side[1][c];
 }
 
-/* The state in which a case of a panel starts. */
-static void start_of(const struct section *s, struct picture *p, int panel, size_t i, size_t j,
-                     double *x)
+static bool holds_at(const struct picture *p, const double part[2])
+{
+    double x[DESIGN_STATES];
+    state_at(p, part, x);
+    return stance_null_set_holds(p->of.set, x);
+}
+
+/* The state in which a case of the panel starts. */
+static void start_of(struct picture *p, size_t i, size_t j, double *x)
 {
     double position[STANCE_MAX_COORDINATES], velocity[STANCE_MAX_COORDINATES];
-    scenario_case_values(&p->s, plot_layout_index(p->layout, panel, i, j), &p->values);
-    resolve_start(p->s.scene, &p->values, &s->of.design, position, velocity);
-    allowed_state(&s->of, position, velocity, x);
+    scenario_case_values(&p->s, plot_layout_index(p->layout, p->number, i, j), &p->values);
+    resolve_start(p->s.scene, &p->values, &p->of.design, position, velocity);
+    allowed_state(&p->of, position, velocity, x);
 }
 
 /* How far a start is off the plane, as a part of the largest coordinates. */
-static double off_plane(const struct section *s, struct picture *p, int panel, size_t i, size_t j)
+static double off_plane(struct picture *p, size_t i, size_t j)
 {
-    const double part[2] = {part_of(p, 0, p->axis[0]->value[i]),
-                            part_of(p, 1, p->axis[1]->value[j])};
+    const double part[2] = {part_of(p, 0, p->along[0].axis->value[i]),
+                            part_of(p, 1, p->along[1].axis->value[j])};
     double x[DESIGN_STATES], on[DESIGN_STATES], largest = 0, off = 0;
-    start_of(s, p, panel, i, j, x);
-    state_at(s, part, on);
-    for (int c = 0; c < s->n; c++) {
+    start_of(p, i, j, x);
+    state_at(p, part, on);
+    for (int c = 0; c < p->n; c++) {
         largest = fmax(largest, fabs(x[c]));
         off = fmax(off, fabs(x[c] - on[c]));
     }
     return off > 0 ? off / largest : 0;
 }
 
-static bool make_plane(struct section *s, struct picture *p, int panel, stance_message *why)
+static bool make_plane(struct picture *p, stance_message *why)
 {
-    const size_t *const low = (size_t[]){p->end[0][0], p->end[1][0]}, *const high =
-                                                                          (size_t[]){p->end[0][1],
-                                                                                     p->end[1][1]};
     double first[DESIGN_STATES], x[DESIGN_STATES];
-    s->n = 2 * s->of.equilibrium.freedoms;
-    start_of(s, p, panel, low[0], low[1], first);
-    memcpy(s->origin, first, sizeof first);
+    p->n = 2 * p->of.equilibrium.freedoms;
+    start_of(p, p->end[0][0], p->end[1][0], first);
+    memcpy(p->origin, first, sizeof first);
     for (int k = 0; k < 2; k++) {
-        const double begin = part_of(p, k, p->axis[k]->value[low[k]]),
-                     end = part_of(p, k, p->axis[k]->value[high[k]]);
-        start_of(s, p, panel, k == 0 ? high[0] : low[0], k == 1 ? high[1] : low[1], x);
-        for (int c = 0; c < s->n; c++) {
-            s->side[k][c] = (x[c] - first[c]) / (end - begin);
-            s->origin[c] -= begin * s->side[k][c];
+        const double begin = part_of(p, k, p->along[k].axis->value[p->end[k][0]]),
+                     end = part_of(p, k, p->along[k].axis->value[p->end[k][1]]);
+        start_of(p, p->end[0][k == 0], p->end[1][k == 1], x);
+        for (int c = 0; c < p->n; c++) {
+            p->side[k][c] = (x[c] - first[c]) / (end - begin);
+            p->origin[c] -= begin * p->side[k][c];
         }
     }
-    double off = off_plane(s, p, panel, high[0], high[1]);
-    for (size_t i = 0; i < p->axis[0]->count; i++)
-        off = fmax(off, off_plane(s, p, panel, i, low[1]));
-    for (size_t j = 0; j < p->axis[1]->count; j++)
-        off = fmax(off, off_plane(s, p, panel, low[0], j));
+    double off = off_plane(p, p->end[0][1], p->end[1][1]);
+    for (size_t i = 0; i < p->along[0].axis->count; i++)
+        off = fmax(off, off_plane(p, i, p->end[1][0]));
+    for (size_t j = 0; j < p->along[1].axis->count; j++)
+        off = fmax(off, off_plane(p, p->end[0][0], j));
     return off <= PLANE || complain(why, "the starts of the map are no plane");
 }
 
 /* ---- its outline -------------------------------------------------------------------------- */
 
-struct end { /* of a ray */
-    double angle, at[2];
-    bool edge;
-};
-
-struct outline {
-    const struct section *s;
-    double inside[2];
-    struct plot_allowed_panel *panel; /* takes the points, their places in parts of the picture */
-    size_t room;
-    bool failed; /* no memory */
-};
-
 /* Where a ray leaves the set or the picture. */
-static struct end shoot(const struct outline *o, double angle)
+static struct plot_allowed_point shoot(const struct picture *p, double angle)
 {
     const double way[2] = {cos(angle), sin(angle)};
-    double reach[2] = {0, INFINITY}, x[DESIGN_STATES];
-    struct end end = {.angle = angle, .edge = true};
+    double reach[2] = {0, INFINITY};
+    struct plot_allowed_point end = {.angle = angle, .edge = true};
     for (int k = 0; k < 2; k++)
         if (way[k] != 0)
-            reach[1] = fmin(reach[1], ((way[k] > 0 ? 1 : 0) - o->inside[k]) / way[k]);
+            reach[1] = fmin(reach[1], ((way[k] > 0 ? 1 : 0) - p->inside[k]) / way[k]);
     for (int round = 0; round < HALVINGS; round++) {
         const double r = round == 0 ? reach[1] : 0.5 * (reach[0] + reach[1]);
         for (int k = 0; k < 2; k++)
-            end.at[k] = o->inside[k] + r * way[k];
-        state_at(o->s, end.at, x);
-        const bool holds = stance_null_set_holds(o->s->of.set, x);
+            end.place[k] = p->inside[k] + r * way[k];
+        const bool holds = holds_at(p, end.place);
         if (round == 0 && holds)
             return end;
         end.edge = false;
@@ -170,127 +154,116 @@ static struct end shoot(const struct outline *o, double angle)
     return end;
 }
 
-static void keep(struct outline *o, struct end end)
+/* Keeps a point, and what is between it and another one. */
+static void keep(struct picture *p, struct plot_allowed_point a, struct plot_allowed_point b,
+                 int depth)
 {
-    struct plot_allowed_panel *const panel = o->panel;
-    if (panel->points == o->room) {
-        const size_t room = 2 * o->room + RAYS;
-        struct plot_allowed_point *const grown = realloc(panel->point, room * sizeof *grown);
-        o->failed |= !grown;
-        if (!grown)
-            return;
-        panel->point = grown;
-        o->room = room;
-    }
-    panel->point[panel->points++] = (struct plot_allowed_point){{end.at[0], end.at[1]}, end.edge};
-}
-
-/* Keeps what is between two ends. */
-static void refine(struct outline *o, struct end a, struct end b, int depth)
-{
-    const struct end middle = shoot(o, 0.5 * (a.angle + b.angle));
-    const double across[2] = {b.at[0] - a.at[0], b.at[1] - a.at[1]};
-    const double off = across[0] * (middle.at[1] - a.at[1]) - across[1] * (middle.at[0] - a.at[0]);
+    const struct plot_allowed_point middle = shoot(p, 0.5 * (a.angle + b.angle));
+    const double across[2] = {b.place[0] - a.place[0], b.place[1] - a.place[1]};
+    const double off =
+        across[0] * (middle.place[1] - a.place[1]) - across[1] * (middle.place[0] - a.place[0]);
     const bool straight = a.edge == b.edge && middle.edge == a.edge &&
                           fabs(off) <= STRAIGHT * hypot(across[0], across[1]);
-    if (depth == 0 || straight || o->failed)
+    if (depth == 0 || straight) {
+        p->panel->point[p->panel->points++] = a;
         return;
-    refine(o, a, middle, depth - 1);
-    keep(o, middle);
-    refine(o, middle, b, depth - 1);
+    }
+    keep(p, a, middle, depth - 1);
+    keep(p, middle, b, depth - 1);
 }
 
 /* ---- panels ------------------------------------------------------------------------------- */
 
-/* The share of the panel's starts that are in the set, and their mean, which then is. */
-static double find_inside(const struct section *s, const struct picture *p, double mean[2])
+/* The share of the panel's starts that are in the set; their mean is then inside. */
+static double find_inside(struct picture *p)
 {
-    const size_t count[2] = {p->axis[0]->count, p->axis[1]->count};
-    double inside = 0, sum[2] = {0}, x[DESIGN_STATES];
+    const size_t count[2] = {p->along[0].axis->count, p->along[1].axis->count};
+    double inside = 0, sum[2] = {0};
     for (size_t i = 0; i < count[0]; i++)
         for (size_t j = 0; j < count[1]; j++) {
-            const double part[2] = {part_of(p, 0, p->axis[0]->value[i]),
-                                    part_of(p, 1, p->axis[1]->value[j])};
-            state_at(s, part, x);
-            const bool holds = stance_null_set_holds(s->of.set, x);
+            const double part[2] = {part_of(p, 0, p->along[0].axis->value[i]),
+                                    part_of(p, 1, p->along[1].axis->value[j])};
+            const bool holds = holds_at(p, part);
             inside += holds;
             for (int k = 0; k < 2; k++)
                 sum[k] += holds ? part[k] : 0;
         }
     for (int k = 0; k < 2; k++)
-        mean[k] = sum[k] / inside;
+        p->inside[k] = sum[k] / inside;
     return inside / (double)count[0] / (double)count[1];
 }
 
 /* `why`: nothing is to be seen. */
-static bool make_panel(struct plot_allowed_panel *panel, struct picture *p, int number,
-                       stance_message *why, stance_message *message)
+static void trace(struct picture *p, stance_message *why)
 {
-    struct section s;
-    struct outline o = {.s = &s, .panel = panel};
-    panel->share = NAN;
-    bool good = allowed_make(&s.of, &p->s, plot_layout_index(p->layout, number, 0, 0), message);
-    if (!good)
-        return false;
-    const bool unreached = s.of.set && stance_null_set_unreached(s.of.set, NULL, NULL) > 0;
-    panel->glued = s.of.set && allowed_glued(&s.of.equilibrium);
-    if (!s.of.set) {
-        *why = s.of.why;
-    } else if (stance_null_set_modes(s.of.set, NULL, NULL) == 0 && !unreached) {
-        complain(why, "no mode is unstable, so all starts are allowed");
-    } else if (make_plane(&s, p, number, why)) {
-        panel->share = find_inside(&s, p, o.inside);
-        if (panel->share == 0)
-            complain(why, "none of these starts is allowed%s",
-                     unreached ? ": no torque moves some of each" : "");
-        struct end last = {0};
-        for (int k = 0; panel->share > 0 && k <= RAYS; k++) {
-            const struct end next = shoot(&o, 2 * acos(-1) * k / RAYS);
-            if (k > 0) {
-                keep(&o, last);
-                refine(&o, last, next, DEEPEST);
-            }
-            last = next;
-        }
-        good = !o.failed || no_memory(message);
-        size_t edges = 0;
-        for (size_t i = 0; i < panel->points; i++) {
-            struct plot_allowed_point *const point = &panel->point[i];
-            for (int k = 0; k < 2; k++)
-                point->place[k] = place_of(p, k, point->place[k]);
-            edges += point->edge;
-        }
-        if (panel->points > 0 && edges == panel->points)
-            complain(why, "all of these starts are allowed");
+    struct plot_allowed_panel *const panel = p->panel;
+    struct plot_allowed_point last = {.edge = true};
+    size_t edges = 0;
+    for (int k = 0; k <= RAYS; k++) {
+        const struct plot_allowed_point next = shoot(p, 2 * acos(-1) * k / RAYS);
+        if (k > 0)
+            keep(p, last, next, DEEPEST);
+        last = next;
     }
-    allowed_free(&s.of);
-    return good;
+    for (size_t i = 0; i < panel->points; i++) {
+        struct plot_allowed_point *const point = &panel->point[i];
+        for (int k = 0; k < 2; k++)
+            point->place[k] = place_of(p, k, point->place[k]);
+        edges += point->edge;
+    }
+    if (edges == panel->points)
+        complain(why, "all of these starts are allowed");
 }
 
-bool plot_allowed_make(struct plot_allowed *allowed, const struct plot *plot,
-                       const struct plot_layout *layout, const struct plot_frame *frame,
-                       stance_message *message)
+static bool make_panel(struct picture *p, stance_message *why, stance_message *message)
 {
-    const struct results *const r = plot->r;
-    *allowed = (struct plot_allowed){0};
-    if (!plot->allowed)
-        return true;
-    struct picture *const p = malloc(sizeof *p);
-    allowed->panel = calloc((size_t)layout->panels, sizeof *allowed->panel);
-    if (!p || !allowed->panel) {
-        free(p);
-        return no_memory(message);
+    struct plot_allowed_panel *const panel = p->panel;
+    panel->share = NAN;
+    if (!allowed_make(&p->of, &p->s, plot_layout_index(p->layout, p->number, 0, 0), message))
+        return false;
+    const stance_null_set *const set = p->of.set;
+    const bool unreached = set && stance_null_set_unreached(set, NULL, NULL) > 0;
+    panel->glued = set && allowed_glued(&p->of.equilibrium);
+    if (!set) {
+        *why = p->of.why;
+    } else if (stance_null_set_modes(set, NULL, NULL) == 0 && !unreached) {
+        complain(why, "no mode is unstable, so all starts are allowed");
+    } else if (make_plane(p, why)) {
+        panel->share = find_inside(p);
+        if (panel->share > 0)
+            trace(p, why);
+        else
+            complain(why, "none of these starts is allowed%s",
+                     unreached ? ": no torque moves some of each" : "");
     }
-    p->r = r, p->layout = layout, p->frame = *frame;
-    p->axis[0] = &r->axis[layout->x], p->axis[1] = &r->axis[layout->y];
-    bool good = results_swept(r, &p->s, message);
+    allowed_free(&p->of);
+    return true;
+}
+
+bool plot_allowed_make(struct plot_allowed *allowed, struct gnuplot *g,
+                       const struct plot_layout *layout, const struct plot_axis along[2])
+{
+    const struct results *const r = layout->r;
+    *allowed = (struct plot_allowed){0};
+    if (!g->plot->allowed)
+        return true;
+    struct picture *const p = gnuplot_room(g, 1, sizeof *p);
+    allowed->panel = gnuplot_room(g, (size_t)layout->panels, sizeof *allowed->panel);
+    if (!p || !allowed->panel || !gnuplot_needs(g, results_swept(r, &p->s, g->plot->message)))
+        return false;
+    p->layout = layout;
+    memcpy(p->along, along, sizeof p->along);
     stance_message first = {""};
     int without = 0;
-    if (good && check_axes(p, &first))
+    bool good = true;
+    if (check_axes(p, &first))
         allowed->panels = layout->panels;
     for (int k = 0; good && k < allowed->panels; k++) {
         stance_message why = {""};
-        good = make_panel(&allowed->panel[k], p, k, &why, message);
+        p->panel = &allowed->panel[k];
+        p->panel->point = gnuplot_room(g, MOST_POINTS, sizeof *p->panel->point);
+        p->number = k;
+        good = p->panel->point && gnuplot_needs(g, make_panel(p, &why, g->plot->message));
         if (why.text[0] && without++ == 0)
             first = why;
     }
@@ -300,18 +273,8 @@ bool plot_allowed_make(struct plot_allowed *allowed, const struct plot *plot,
             fprintf(stderr, " in %d of %d panels", without, allowed->panels);
         fprintf(stderr, ": %s\n", first.text);
     }
-    if (good || allowed->panels > 0)
-        scenario_free(&p->s);
-    free(p);
+    scenario_free(&p->s);
     return good;
-}
-
-void plot_allowed_free(struct plot_allowed *allowed)
-{
-    for (int k = 0; k < allowed->panels; k++)
-        free(allowed->panel[k].point);
-    free(allowed->panel);
-    *allowed = (struct plot_allowed){0};
 }
 
 bool plot_allowed_same(const struct plot_allowed_panel *a, const struct plot_allowed_panel *b)
@@ -328,7 +291,7 @@ bool plot_allowed_same(const struct plot_allowed_panel *a, const struct plot_all
 void plot_allowed_write(const struct plot_allowed_panel *panel, struct gnuplot *g, int number)
 {
     const size_t n = panel->points;
-    size_t first = 0, rows = 0;
+    size_t first = 0;
     bool open = false;
     while (first < n && !panel->point[first].edge)
         first++;
@@ -338,13 +301,9 @@ void plot_allowed_write(const struct plot_allowed_panel *panel, struct gnuplot *
         if (!point->edge)
             GNUPLOT_ROW(g, point->place[0], point->place[1]);
         else if (open)
-            gnuplot_set(g, "%s", ""); /* lines are apart */
+            gnuplot_gap(g);
         open = !point->edge;
-        rows += open;
     }
-    if (rows == 0)
-        GNUPLOT_ROW(g, NAN, NAN);
-    gnuplot_end_block(g);
 }
 
 void plot_allowed_legend(const struct plot_allowed_panel *panel, int count, int dash,
@@ -362,7 +321,7 @@ void plot_allowed_legend(const struct plot_allowed_panel *panel, int count, int 
         return;
     if (same)
         snprintf(share, sizeof share, "%.1f %%", 100 * panel[0].share);
-    gnuplot_legend_mark(g, "colour_allowed", dash, 0, "linear theory allows", share);
+    gnuplot_legend(g, "colour_allowed", dash, 0, "linear theory allows", share);
     gnuplot_note(g, "linear theory allows: some controller recovers, while the contacts stand");
     if (glued)
         gnuplot_note(g, ALLOWED_GLUED);

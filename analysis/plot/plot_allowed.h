@@ -8,15 +8,9 @@
 /* Dashes of style.gp: of the one line of a picture, and of those that are thin beside several. */
 enum { PLOT_ALLOWED_ONE = 11, PLOT_ALLOWED_EACH };
 
-/* The axes of a picture: how places are values, and which of them it shows. */
-struct plot_frame {
-    enum plot_scale scale[2];
-    double low[2], high[2]; /* places */
-};
-
 struct plot_allowed_point {
-    double place[2];
-    bool edge; /* the picture ends before the set does */
+    double place[2], angle; /* of the ray from inside */
+    bool edge;              /* the picture ends before the set does */
 };
 
 /* Of a panel: around the section, counter-clockwise; points 0: there is none. */
@@ -32,11 +26,11 @@ struct plot_allowed {
     struct plot_allowed_panel *panel;
 };
 
-/* Says on standard error where there is none, and why. False: no memory, or no scenario. */
-bool plot_allowed_make(struct plot_allowed *allowed, const struct plot *plot,
-                       const struct plot_layout *layout, const struct plot_frame *frame,
-                       stance_message *message);
-void plot_allowed_free(struct plot_allowed *allowed);
+/* Of the panels of a layout, over its axes as a picture has them, in the picture's memory; where
+ * the plot asks for it. Says on standard error where there is none, and why. False: no memory, or
+ * no scenario, which the picture then lacks. */
+bool plot_allowed_make(struct plot_allowed *allowed, struct gnuplot *g,
+                       const struct plot_layout *layout, const struct plot_axis along[2]);
 
 bool plot_allowed_same(const struct plot_allowed_panel *a, const struct plot_allowed_panel *b);
 /* The block $allowedNUMBER of lines; none of it stands on the picture's edges. */

@@ -28,44 +28,31 @@ bool plot_answer_find(const char *name, struct plot_answer *answer)
     return k < STANCE_ANSWER_COUNT;
 }
 
-bool plot_range(const double *values, size_t n, double *low, double *high)
+double *plot_answer_numbers(struct gnuplot *g, const struct plot_answer *answer,
+                            struct plot_range *range)
 {
-    *low = INFINITY;
-    *high = -INFINITY;
-    for (size_t i = 0; i < n; i++) {
-        if (isfinite(values[i])) {
-            *low = fmin(*low, values[i]);
-            *high = fmax(*high, values[i]);
-        }
-    }
-    return *low <= *high;
-}
-
-bool plot_answer_numbers(const struct plot *plot, const struct plot_answer *answer, double **values,
-                         double *low, double *high, stance_message *message)
-{
-    const struct results *r = plot->r;
+    const struct results *r = g->plot->r;
     const bool all = answer->of == RESULTS_KIND_COUNT;
     uint64_t inferred;
     bool *which; /* cases without numbers, whatever stands in the file */
-    if (!statistics_inferred(r, &inferred, &which, message))
-        return false;
-    const bool good = results_answer(r, answer->name, values, message);
-    for (uint64_t i = 0; good && *values && i < r->cases; i++)
+    double *values = NULL;
+    if (!gnuplot_needs(g, statistics_inferred(r, &inferred, &which, g->plot->message)))
+        return NULL;
+    const bool good = gnuplot_needs(g, results_answer(r, answer->name, &values, g->plot->message));
+    for (uint64_t i = 0; values && i < r->cases; i++)
         if (!(all || r->kind[i] == answer->of) || (which && which[i]))
-            (*values)[i] = NAN;
+            values[i] = NAN;
     free(which);
-    if (!good || (*values && plot_range(*values, r->cases, low, high)))
-        return good;
-    free(*values);
-    *values = NULL;
-    return complain(message, "%.200s: no%s%s case has a number %s", r->file, all ? "" : " ",
-                    all ? "" : results_kind_names[answer->of], answer->name);
+    if (good && (!values || !plot_range_of(range, values, r->cases)))
+        gnuplot_needs(g, complain(g->plot->message, "%.200s: no%s%s case has a number %s", r->file,
+                                  all ? "" : " ", all ? "" : results_kind_names[answer->of],
+                                  answer->name));
+    return values ? gnuplot_keep(g, values) : NULL;
 }
 
-void plot_answer_title(const struct plot_answer *answer, char *text, size_t size)
+void plot_say_answer(struct gnuplot *g, const struct plot_answer *answer)
 {
-    bool all = answer->of == RESULTS_KIND_COUNT;
-    snprintf(text, size, "%s: %s%s%s%s", answer->name, answer->text, all ? "" : ", of the ",
-             all ? "" : results_kind_names[answer->of], all ? "" : " cases");
+    const bool all = answer->of == RESULTS_KIND_COUNT;
+    gnuplot_say(g, "%s: %s%s%s%s", answer->name, answer->text, all ? "" : ", of the ",
+                all ? "" : results_kind_names[answer->of], all ? "" : " cases");
 }

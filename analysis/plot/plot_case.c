@@ -8,96 +8,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-GNUPLOT_SCRIPT(plot_case_gp, "analysis/plot/plot_case.gp");
-
-enum { MOST_ROWS = 4000, MOST_LINES = 4 * STANCE_MAX_COORDINATES, HUES = 7 /* style.gp */ };
+enum { MOST_ROWS = 4000 };
 
 /* Contacts with the ground; those after them are stops of joints, which have no place on it. */
 static size_t grounded(const struct plot_case *c)
 {
     return c->readable ? (size_t)plot_case_grounded(c->scenario.scene) : c->t->contacts;
-}
-
-/* ---- data --------------------------------------------------------------------------------- */
-
-/* Writes time and `width` columns. More rows than pixels become two per group: the least and the
- * largest of every column, so that no peak is lost. */
-static void put_track(struct gnuplot *g, int number, const struct results_trajectory *t,
-                      const double *values, size_t width)
-{
-    size_t group = t->rows > MOST_ROWS ? (t->rows + MOST_ROWS / 2 - 1) / (MOST_ROWS / 2) : 1;
-    double row[1 + 2 * STANCE_MAX_CONTACTS + STANCE_MAX_COORDINATES + STANCE_MAX_ACTUATORS];
-
-    gnuplot_block(g, "track%d", number);
-    for (size_t first = 0; first < t->rows; first += group) {
-        size_t end = first + group < t->rows ? first + group : t->rows;
-        for (int extreme = 0; extreme < (group > 1 ? 2 : 1); extreme++) {
-            row[0] = t->time[extreme ? end - 1 : first];
-            for (size_t c = 0; c < width; c++) {
-                double value = values[first * width + c];
-                for (size_t k = first + 1; k < end; k++) {
-                    double other = values[k * width + c];
-                    value = extreme ? fmax(value, other) : fmin(value, other);
-                }
-                row[1 + c] = value;
-            }
-            gnuplot_row(g, row, 1 + width);
-        }
-    }
-    gnuplot_end_block(g);
-}
-
-/* What of some columns fits the frame. */
-struct range {
-    double low, high;
-    size_t beyond;  /* rows left outside */
-    double largest; /* of them, by magnitude */
-};
-
-static void include(struct range *range, double value)
-{
-    range->low = fmin(range->low, value);
-    range->high = fmax(range->high, value);
-}
-
-/* Of columns first, first + every ... before `end`, of `width`. With `robust`, single peaks (the
- * impulses of impacts) may stick out: the frame ends at half as much again as 98 % of the loaded
- * rows need. */
-static struct range range_of(const struct results_trajectory *t, const double *values, size_t width,
-                             size_t first, size_t every, size_t end, bool robust)
-{
-    struct range range = {INFINITY, -INFINITY, 0, 0};
-    double *loaded = robust ? malloc(t->rows * width * sizeof *loaded) : NULL, limit = INFINITY;
-    size_t n = 0;
-
-    for (size_t k = 0; k < t->rows && loaded; k++)
-        for (size_t c = first; c < end; c += every)
-            if (isfinite(values[k * width + c]) && values[k * width + c] != 0)
-                loaded[n++] = fabs(values[k * width + c]);
-    if (n > 0) {
-        struct statistics_numbers numbers;
-        statistics_summarise(loaded, n, &numbers);
-        double usual = 1.5 * statistics_quantile(loaded, n, 0.98);
-        limit = numbers.high > 1.5 * usual ? usual : INFINITY;
-    }
-    free(loaded);
-    for (size_t k = 0; k < t->rows; k++) {
-        bool beyond = false;
-        for (size_t c = first; c < end; c += every) {
-            const double value = values[k * width + c];
-            if (!isfinite(value))
-                continue;
-            include(&range, fmax(-limit, fmin(limit, value)));
-            if (fabs(value) > limit) {
-                beyond = true;
-                range.largest = fabs(value) > fabs(range.largest) ? value : range.largest;
-            }
-        }
-        range.beyond += beyond;
-    }
-    if (!(range.low <= range.high))
-        range.low = range.high = 0;
-    return range;
 }
 
 /* ---- pages -------------------------------------------------------------------------------- */
@@ -108,8 +24,8 @@ enum shown { POSITIONS, FORCES, TORQUES, GAPS };
 struct page {
     struct gnuplot g;
     const struct plot_case *c;
+    struct plot_range time;
     enum shown of;
-    int panels, lines, ramps; /* so far */
 };
 
 /* [rows][width]; NULL: it has none. */
@@ -121,21 +37,63 @@ static const double *shown_of(const struct page *page, const struct results_traj
     return values[page->of];
 }
 
-/* Of all cases: see range_of. */
-static struct range range_of_all(const struct page *page, size_t first, size_t every, size_t end,
-                                 bool robust)
+/* Columns first, first + every ... before `end` of what a page shows. */
+struct columns {
+    size_t first, every, end;
+    bool robust; /* single peaks (the impulses of impacts) may stick out of the frame */
+};
+
+/* What of some columns fits the frame. */
+struct range {
+    struct plot_range of;
+    size_t beyond;  /* rows left outside */
+    double largest; /* of them, by magnitude */
+};
+
+/* The frame ends at half as much again as 98 % of the loaded rows need. */
+static double limit_of(const double *values, size_t rows, size_t width, struct columns columns)
 {
-    struct range all = {INFINITY, -INFINITY, 0, 0};
+    double *const loaded = malloc(rows * width * sizeof *loaded), limit = INFINITY;
+    size_t n = 0;
+    for (size_t k = 0; k < rows * width && loaded; k += width)
+        for (size_t c = columns.first; c < columns.end; c += columns.every)
+            if (isfinite(values[k + c]) && values[k + c] != 0)
+                loaded[n++] = fabs(values[k + c]);
+    if (n > 0) {
+        struct statistics_numbers numbers;
+        statistics_summarise(loaded, n, &numbers);
+        const double usual = 1.5 * statistics_quantile(loaded, n, 0.98);
+        limit = numbers.high > 1.5 * usual ? usual : INFINITY;
+    }
+    free(loaded);
+    return limit;
+}
+
+/* Of all cases. */
+static struct range range_of(const struct page *page, struct columns columns)
+{
+    struct range range = {PLOT_NOTHING, 0, 0};
     for (const struct plot_case *c = page->c; c; c = c->other) {
         size_t width;
-        const double *values = shown_of(page, c->t, &width);
-        const struct range own = range_of(c->t, values, width, first, every, end, robust);
-        include(&all, own.low);
-        include(&all, own.high);
-        all.beyond += own.beyond;
-        all.largest = fabs(own.largest) > fabs(all.largest) ? own.largest : all.largest;
+        const double *const values = shown_of(page, c->t, &width);
+        const double limit =
+            columns.robust ? limit_of(values, c->t->rows, width, columns) : INFINITY;
+        for (size_t k = 0; k < c->t->rows * width; k += width) {
+            bool beyond = false;
+            for (size_t i = k + columns.first; i < k + columns.end; i += columns.every) {
+                if (!isfinite(values[i]))
+                    continue;
+                plot_widen(&range.of, fmax(-limit, fmin(limit, values[i])));
+                beyond = beyond || fabs(values[i]) > limit;
+                if (fabs(values[i]) > fmax(limit, fabs(range.largest)))
+                    range.largest = values[i];
+            }
+            range.beyond += beyond;
+        }
     }
-    return all;
+    if (!(range.of.low <= range.of.high))
+        range.of.low = range.of.high = 0;
+    return range;
 }
 
 /* Value i of the first path of an axis, for people. */
@@ -178,8 +136,8 @@ static void swept_text(const struct scenario *s, uint64_t index, char *text, siz
     }
 }
 
-/* What the case is and what became of it, added to a subtitle. */
-static void describe(const struct plot_case *c, char *text, size_t size)
+/* What the case is and what became of it, added to the line under the title. */
+static void describe(struct gnuplot *g, const struct plot_case *c)
 {
     const struct results *r = c->plot->r;
     char where[600] = "";
@@ -188,79 +146,84 @@ static void describe(const struct plot_case *c, char *text, size_t size)
     else if (c->readable)
         swept_text(&c->scenario, c->t->index, where, sizeof where);
     if (where[0])
-        add_text(text, size, "case %llu, %s: ", (unsigned long long)c->t->index, where);
-    add_text(text, size, "%s", results_kind_names[r->kind[r->single ? 0 : c->t->index]]);
+        gnuplot_say(g, "case %llu, %s: ", (unsigned long long)c->t->index, where);
+    gnuplot_say(g, "%s", results_kind_names[r->kind[r->single ? 0 : c->t->index]]);
     if (isfinite(c->settle_time))
-        add_text(text, size, ", settled from %.4g s", c->settle_time);
+        gnuplot_say(g, ", settled from %.4g s", c->settle_time);
     if (isfinite(c->fall_time))
-        add_text(text, size, ", fallen at %.4g s", c->fall_time);
+        gnuplot_say(g, ", fallen at %.4g s", c->fall_time);
 }
 
-bool plot_case_begin(const struct plot_case *c, struct gnuplot *g, const char *script,
-                     const char *what, stance_message *message)
+bool plot_case_begin(const struct plot_case *c, struct gnuplot *g, const char *name,
+                     const char *script, const char *what)
 {
-    char subtitle[2048];
-    snprintf(subtitle, sizeof subtitle, "%s; ", what);
-    describe(c, subtitle, sizeof subtitle);
+    if (!gnuplot_begin(g, c->plot, name, script))
+        return false;
+    gnuplot_say(g, "%s; ", what);
+    describe(g, c);
     if (c->other) {
-        add_text(subtitle, sizeof subtitle, "; second ");
-        describe(c->other, subtitle, sizeof subtitle);
+        gnuplot_say(g, "; second ");
+        describe(g, c->other);
     }
-    return plot_begin(c->plot, g, script, subtitle, message);
+    return true;
 }
 
 /* A page of panels, all of columns of what it shows against time. */
-static bool begin_page(struct page *page, const char *what, int panels, int height,
-                       stance_message *message)
+static bool begin_page(struct page *page, const char *name, const char *what)
 {
-    double from = INFINITY, to = -INFINITY;
-    struct gnuplot *g = &page->g;
-    if (!plot_case_begin(page->c, g, plot_case_gp, what, message))
+    struct gnuplot *const g = &page->g;
+    if (!plot_case_begin(page->c, g, name, NULL, what))
         return false;
-    gnuplot_set(g, "panels = %d; height = %d", panels, height);
-    gnuplot_arrays(g, MOST_LINES,
-                   "heading label low high track_panel track_column track_factor track_width "
-                   "track_dash track_colour track_case ramp_panel ramp_start ramp_rate ramp_end "
-                   "ramp_colour ramp_dash");
-    int number = 0;
+    page->time = PLOT_NOTHING;
     for (const struct plot_case *c = page->c; c; c = c->other) {
-        size_t width;
-        const double *values = shown_of(page, c->t, &width);
-        put_track(g, ++number, c->t, values, width);
-        from = fmin(from, c->t->time[0]);
-        to = fmax(to, c->t->time[c->t->rows - 1]);
+        plot_widen(&page->time, c->t->time[0]);
+        plot_widen(&page->time, c->t->time[c->t->rows - 1]);
     }
-    gnuplot_set(g, "from = %#.17g; to = %#.17g", from, to > from ? to : from + 1);
+    if (!(page->time.high > page->time.low))
+        page->time.high = page->time.low + 1;
+    gnuplot_set(g, "chart_width = 700; headed = 1");
+    gnuplot_axis(g, 'x', PLOT_LINEAR, page->time, "time", "s");
+    if (page->c->other)
+        gnuplot_note(g, "dashed: the second case");
     return true;
 }
 
 /* The next panel: its range is that of all its lines and ramps. */
-static void put_panel(struct page *page, const char *heading, const char *label,
-                      const struct range *range)
+static void put_panel(struct page *page, double height, const char *heading,
+                      struct plot_range range, const char *name, const char *unit)
 {
-    const int p = ++page->panels;
     /* Room around the values; never so little that noise of rounding fills the frame. */
-    const double least = 1e-6 * (1 + fabs(range->low) + fabs(range->high));
-    const double span = fmax(range->high - range->low, least);
-    const double middle = 0.5 * (range->low + range->high);
-    gnuplot_text(&page->g, heading, "heading[%d]", p);
-    gnuplot_text(&page->g, label, "label[%d]", p);
-    gnuplot_set(&page->g, "low[%d] = %#.17g; high[%d] = %#.17g", p, middle - 0.56 * span, p,
-                middle + 0.56 * span);
+    const double least = 1e-6 * (1 + fabs(range.low) + fabs(range.high));
+    const double half = 0.56 * fmax(range.high - range.low, least);
+    const double middle = 0.5 * (range.low + range.high);
+    gnuplot_panel(&page->g, height, heading);
+    gnuplot_axis(&page->g, 'y', PLOT_LINEAR, (struct plot_range){middle - half, middle + half},
+                 name, unit);
 }
 
-/* A column of the track in the last panel, `factor` times; of another case dashed. */
+/* A column of what is shown in the last panel, `factor` times; of another case dashed. More rows
+ * than pixels become two per group, the least and the largest, so that no peak is lost. */
 static void put_line(struct page *page, size_t column, double factor, size_t hue, bool dotted)
 {
     int number = 0;
     for (const struct plot_case *c = page->c; c; c = c->other) {
-        number++;
-        gnuplot_set(&page->g,
-                    "k = %d; track_panel[k] = %d; track_column[k] = %zu; track_factor[k] = %#.17g; "
-                    "track_colour[k] = hue[%zu]; track_dash[k] = %d; track_width[k] = %g; "
-                    "track_case[k] = %d",
-                    ++page->lines, page->panels, column + 2, factor, hue % HUES + 1,
-                    dotted ? 3 : number, dotted ? 1 : 1.7, number);
+        const struct results_trajectory *const t = c->t;
+        const size_t half = MOST_ROWS / 2,
+                     group = t->rows > MOST_ROWS ? (t->rows + half - 1) / half : 1;
+        size_t width;
+        const double *const values = shown_of(page, t, &width) + column;
+        gnuplot_series(&page->g, "using 1:2 with lines dt %d lw %g lc rgb %s",
+                       dotted ? 3 : ++number, dotted ? 1 : 1.7, gnuplot_hue(hue));
+        for (size_t first = 0; first < t->rows; first += group) {
+            const size_t end = first + group < t->rows ? first + group : t->rows;
+            struct plot_range range = PLOT_NOTHING;
+            for (size_t k = first; k < end; k++)
+                plot_widen(&range, factor * values[k * width]);
+            const bool any = range.low <= range.high;
+            GNUPLOT_ROW(&page->g, t->time[first], any ? range.low : NAN);
+            if (group > 1)
+                GNUPLOT_ROW(&page->g, t->time[end - 1], any ? range.high : NAN);
+        }
     }
 }
 
@@ -271,36 +234,27 @@ struct ramp {
 
 static void put_ramp(struct page *page, const struct ramp *ramp, const char *colour, bool dashed)
 {
-    gnuplot_set(&page->g,
-                "k = %d; ramp_panel[k] = %d; ramp_start[k] = %#.17g; ramp_rate[k] = %#.17g; "
-                "ramp_end[k] = %#.17g; ramp_colour[k] = %s; ramp_dash[k] = %d",
-                ++page->ramps, page->panels, ramp->start, ramp->rate, ramp->end, colour,
-                !dashed          ? 1
-                : page->c->other ? 4
-                                 : 2);
+    const double time[] = {page->time.low, fmax(page->time.low, fmin(ramp->end, page->time.high)),
+                           page->time.high};
+    gnuplot_series(&page->g, "using 1:2 with lines dt %d lw 1.5 lc rgb %s",
+                   !dashed          ? 1
+                   : page->c->other ? 4
+                                    : 2,
+                   colour);
+    for (int k = 0; k < 3; k++)
+        GNUPLOT_ROW(&page->g, time[k], ramp->start + ramp->rate * fmin(time[k], ramp->end));
 }
 
 static void put_level(struct page *page, double level, const char *colour, bool dashed)
 {
-    put_ramp(page, &(struct ramp){level, 0, 0}, colour, dashed);
+    put_ramp(page, &(struct ramp){level, 0, page->time.high}, colour, dashed);
 }
 
-static bool end_page(struct page *page, const char *picture, stance_message *message)
-{
-    if (page->c->other)
-        gnuplot_note(&page->g, "dashed: the second case");
-    gnuplot_set(&page->g, "tracks = %d; ramps = %d", page->lines, page->ramps);
-    return plot_end(page->c->plot, &page->g, picture, message);
-}
-
-/* An entry of the legend for each contact or actuator. */
+/* A line and an entry of the legend for each contact or actuator. */
 static void put_names(struct page *page, const char (*names)[SCENARIO_NAME], size_t count)
 {
-    char colour[32];
-    for (size_t k = 0; k < count; k++) {
-        snprintf(colour, sizeof colour, "hue[%zu]", k % HUES + 1);
-        gnuplot_legend(&page->g, colour, names[k], "");
-    }
+    for (size_t k = 0; k < count; k++)
+        gnuplot_legend(&page->g, gnuplot_hue(k), 0, 0, names[k], "");
 }
 
 /* ---- coordinates -------------------------------------------------------------------------- */
@@ -338,89 +292,83 @@ static bool setpoint_of(const struct plot_case *c, size_t i, struct ramp *setpoi
     return isfinite(setpoint->start);
 }
 
-static bool draw_coordinates(const struct plot_case *c, stance_message *message)
+static bool draw_coordinates(const struct plot_case *c)
 {
     static const stance_quantity unknown = {.unit = "", .text = ""};
     const struct results_trajectory *t = c->t;
     struct page page = {.c = c, .of = POSITIONS};
     bool targets = false, led = false;
 
-    if (!begin_page(&page, "Coordinates", (int)t->coordinates, 100, message))
+    if (!begin_page(&page, "coordinates", "Coordinates"))
         return false;
     for (size_t i = 0; i < t->coordinates; i++) {
         const stance_quantity *q = c->readable ? &c->scenario.scene->coordinate[i] : &unknown;
-        struct range range = range_of_all(&page, i, t->coordinates, t->coordinates, false);
+        struct range range = range_of(&page, (struct columns){i, 1, i + 1, false});
         const double target = target_of(c, i);
         struct ramp setpoint;
-        char text[300];
         const bool leads = setpoint_of(c, i, &setpoint);
-        if (isfinite(target))
-            include(&range, target);
+        plot_widen(&range.of, target);
         if (leads) {
-            include(&range, setpoint.start);
-            include(&range, setpoint.start + setpoint.rate * setpoint.end);
+            plot_widen(&range.of, setpoint.start);
+            plot_widen(&range.of, setpoint.start + setpoint.rate * setpoint.end);
         }
-        snprintf(text, sizeof text, q->unit[0] ? "%s (%s)" : "%s", t->coordinate[i], q->unit);
-        put_panel(&page, q->text, text, &range);
-        put_line(&page, i, 1, 0, false);
+        put_panel(&page, 100, q->text, range.of, t->coordinate[i], q->unit);
         if (isfinite(target))
             put_level(&page, target, "hue[2]", true);
         if (leads)
             put_ramp(&page, &setpoint, "hue[2]", true);
+        put_line(&page, i, 1, 0, false);
         targets = targets || isfinite(target);
         led = led || leads;
     }
     if (targets || led)
-        gnuplot_note(&page.g, !c->other ? (targets ? "dashed: equilibrium" : "dashed: set-point")
-                              : targets ? "dash-dotted: equilibrium"
-                                        : "dash-dotted: set-point");
-    return end_page(&page, "coordinates", message);
+        gnuplot_note(&page.g, "%s: %s", c->other ? "dash-dotted" : "dashed",
+                     targets ? "equilibrium" : "set-point");
+    return gnuplot_end(&page.g);
 }
 
 /* ---- forces ------------------------------------------------------------------------------- */
 
 /* "Normal force (mean over 0.01 s); 1 of 801 instants beyond the frame, the largest 9000 N" */
-static void heading_of(const struct results_trajectory *t, const char *what,
-                       const struct range *range, const char *unit, char *text, size_t size)
+static void heading_of(const struct results_trajectory *t, const struct range *range,
+                       const char *unit, char *text, size_t size)
 {
-    snprintf(text, size, "%s", what);
     if (range->beyond > 0)
         add_text(text, size, "; %zu of %zu instants beyond the frame, up to %.4g %s", range->beyond,
                  t->rows, range->largest, unit);
 }
 
 /* Normal and tangential forces, the latter with the edges of the friction cones. */
-static bool draw_forces(const struct plot_case *c, stance_message *message)
+static bool draw_forces(const struct plot_case *c)
 {
-    static const char *const components[] = {"Normal force, out of the ground",
-                                             "Tangential force, along +x"};
+    static const char *const names[][2] = {{"Normal force, out of the ground", "normal force"},
+                                           {"Tangential force, along +x", "tangential force"}};
     const struct results_trajectory *t = c->t;
     const size_t count = grounded(c);
     struct page page = {.c = c, .of = FORCES};
-    char text[300], what[80];
+    char text[300];
 
-    if (!begin_page(&page, "Forces of the ground on the contacts", 2, 220, message))
+    if (!begin_page(&page, "forces", "Forces of the ground on the contacts"))
         return false;
-    for (int k = 0; k < 2; k++) {
-        struct range range = range_of_all(&page, (size_t)k, 2, 2 * count, true);
-        snprintf(what, sizeof what, "%s", components[k]);
+    for (size_t k = 0; k < 2; k++) {
+        const struct range range = range_of(&page, (struct columns){k, 2, 2 * count, true});
+        snprintf(text, sizeof text, "%s", names[k][0]);
         if (t->rows > 1)
-            add_text(what, sizeof what, " (means over %.4g s)", t->time[1] - t->time[0]);
-        heading_of(t, what, &range, "N", text, sizeof text);
-        put_panel(&page, text, k ? "tangential force (N)" : "normal force (N)", &range);
+            add_text(text, sizeof text, " (means over %.4g s)", t->time[1] - t->time[0]);
+        heading_of(t, &range, "N", text, sizeof text);
+        put_panel(&page, 220, text, range.of, names[k][1], "N");
         for (size_t i = 0; i < count; i++) {
             for (int sign = -1; k == 1 && c->readable && sign <= 1; sign += 2)
                 put_line(&page, 2 * i, sign * c->values.friction, i, true);
-            put_line(&page, 2 * i + (size_t)k, 1, i, false);
+            put_line(&page, 2 * i + k, 1, i, false);
         }
     }
     put_names(&page, t->contact, count);
     if (c->readable) {
-        snprintf(text, sizeof text, "limit of friction %.4g", c->values.friction);
         gnuplot_note(&page.g, "tangential, dotted:");
-        gnuplot_note(&page.g, text);
+        gnuplot_note(&page.g, "limit of friction %.4g", c->values.friction);
     }
-    return end_page(&page, "forces", message);
+    return gnuplot_end(&page.g);
 }
 
 /* ---- torques and gaps --------------------------------------------------------------------- */
@@ -476,54 +424,53 @@ static size_t torque_levels(const struct plot_case *c, size_t actuators, struct 
     return count;
 }
 
-static bool draw_torques(const struct plot_case *c, stance_message *message)
+static bool draw_torques(const struct plot_case *c)
 {
     const struct results_trajectory *t = c->t;
     struct page page = {.c = c, .of = TORQUES};
-    struct range range = range_of_all(&page, 0, 1, t->actuators, true);
-    const double extent = 4 * fmax(fabs(range.low), fabs(range.high));
+    struct range range = range_of(&page, (struct columns){0, 1, t->actuators, true});
+    const double extent = 4 * fmax(fabs(range.of.low), fabs(range.of.high));
     const char *unit, *const label = torque_label(c, &unit);
     struct torque_level level[STANCE_MAX_ACTUATORS];
-    char text[300];
+    char text[300] = "Applied in the step that ends at each instant";
 
-    if (!begin_page(&page, "What the actuators give", 1, 260, message))
+    if (!begin_page(&page, "torques", "What the actuators give"))
         return false;
-    heading_of(t, "Applied in the step that ends at each instant", &range, unit, text, sizeof text);
+    heading_of(t, &range, unit, text, sizeof text);
     const size_t limits = torque_levels(c, t->actuators, level);
-    for (size_t k = 0; k < limits; k++)
-        for (int sign = -1; level[k].limit < extent && sign <= 1; sign += 2)
-            include(&range, sign * level[k].limit);
-    put_panel(&page, text, label, &range);
-    for (size_t k = 0; k < t->actuators; k++)
-        put_line(&page, k, 1, k, false);
+    for (size_t k = 0; k < limits && level[k].limit < extent; k++) {
+        plot_widen(&range.of, -level[k].limit);
+        plot_widen(&range.of, level[k].limit);
+    }
+    put_panel(&page, 260, text, range.of, label, "");
     for (size_t k = 0; k < limits; k++)
         for (int sign = -1; level[k].limit < extent && sign <= 1; sign += 2)
             put_level(&page, sign * level[k].limit, "0x606060", true);
+    for (size_t k = 0; k < t->actuators; k++)
+        put_line(&page, k, 1, k, false);
     put_names(&page, t->actuator, t->actuators);
-    for (size_t k = 0; k < limits; k++) {
-        snprintf(text, sizeof text, "%slimit %.4g %s%s", level[k].limit < extent ? "dashed: " : "",
-                 level[k].limit, level[k].unit, level[k].of);
-        gnuplot_note(&page.g, text);
-    }
-    return end_page(&page, "torques", message);
+    for (size_t k = 0; k < limits; k++)
+        gnuplot_note(&page.g, "%slimit %.4g %s%s", level[k].limit < extent ? "dashed: " : "",
+                     level[k].limit, level[k].unit, level[k].of);
+    return gnuplot_end(&page.g);
 }
 
-static bool draw_gaps(const struct plot_case *c, stance_message *message)
+static bool draw_gaps(const struct plot_case *c)
 {
     const struct results_trajectory *t = c->t;
     const size_t count = grounded(c);
     struct page page = {.c = c, .of = GAPS};
-    struct range range = range_of_all(&page, 0, 1, count, false);
+    struct range range = range_of(&page, (struct columns){0, 1, count, false});
 
-    if (!begin_page(&page, "Heights of the contact points above the ground", 1, 260, message))
+    if (!begin_page(&page, "gaps", "Heights of the contact points above the ground"))
         return false;
-    include(&range, 0);
-    put_panel(&page, "", "gap (m)", &range);
+    plot_widen(&range.of, 0);
+    put_panel(&page, 260, "", range.of, "gap", "m");
+    put_level(&page, 0, "0x606060", false);
     for (size_t k = 0; k < count; k++)
         put_line(&page, k, 1, k, false);
-    put_level(&page, 0, "0x606060", false);
     put_names(&page, t->contact, count);
-    return end_page(&page, "gaps", message);
+    return gnuplot_end(&page.g);
 }
 
 /* ---- all of them -------------------------------------------------------------------------- */
@@ -558,18 +505,17 @@ static void learn(struct plot_case *c)
             c->equilibrium[i] = NAN;
 }
 
-bool plot_case_load(struct plot_case *c, const struct plot *plot, size_t place, uint64_t index,
-                    stance_message *message)
+bool plot_case_load(struct plot_case *c, const struct plot *plot, size_t place, uint64_t index)
 {
     *c = (struct plot_case){.plot = plot};
-    if (!results_trajectory(plot->r, place, index, &c->trajectory, message))
+    if (!results_trajectory(plot->r, place, index, &c->trajectory, plot->message))
         return false;
     c->t = &c->trajectory;
     learn(c);
     if (c->t->rows > 0)
         return true;
     plot_case_free(c);
-    return complain(message, "%.100s: the trajectory of case %llu is empty", plot->r->file,
+    return complain(plot->message, "%.100s: the trajectory of case %llu is empty", plot->r->file,
                     (unsigned long long)index);
 }
 
@@ -580,7 +526,7 @@ void plot_case_free(struct plot_case *c)
     results_trajectory_free(&c->trajectory);
 }
 
-bool plot_case(const struct plot_case *c, stance_message *message)
+bool plot_case(const struct plot_case *c)
 {
     const struct plot_case *const other = c->other ? c->other : c;
     const struct results_trajectory *t = c->t, *o = other->t;
@@ -588,13 +534,13 @@ bool plot_case(const struct plot_case *c, stance_message *message)
         t->actuators != o->actuators || !t->force != !o->force || !t->torque != !o->torque ||
         !t->gap != !o->gap || grounded(c) != grounded(other) ||
         memcmp(t->coordinate, o->coordinate, t->coordinates * sizeof *t->coordinate) != 0)
-        return complain(message, "%.100s: the two cases are of different robots", c->plot->r->file);
+        return complain(c->plot->message, "%.100s: the two cases are of different robots",
+                        c->plot->r->file);
     const bool lands = grounded(c) > 0;
-    const bool good =
-        draw_coordinates(c, message) && (!t->force || !lands || draw_forces(c, message)) &&
-        (!t->torque || draw_torques(c, message)) && (!t->gap || !lands || draw_gaps(c, message));
+    const bool good = draw_coordinates(c) && (!t->force || !lands || draw_forces(c)) &&
+                      (!t->torque || draw_torques(c)) && (!t->gap || !lands || draw_gaps(c));
     if (good && !c->readable)
         fprintf(stderr, "%s: no stick figures: this version cannot read the file's scenario\n",
                 c->plot->r->file);
-    return good && (!c->readable || plot_strip(c, message));
+    return good && (!c->readable || plot_strip(c));
 }

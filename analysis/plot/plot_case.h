@@ -18,17 +18,16 @@ struct plot_case {
 };
 
 /* Loads the case at a place among the recorded ones; freed with plot_case_free. */
-bool plot_case_load(struct plot_case *c, const struct plot *plot, size_t place, uint64_t index,
-                    stance_message *message);
+bool plot_case_load(struct plot_case *c, const struct plot *plot, size_t place, uint64_t index);
 void plot_case_free(struct plot_case *c);
 /* STEM-coordinates, -forces, -torques, -gaps and -strip. */
-bool plot_case(const struct plot_case *c, stance_message *message);
+bool plot_case(const struct plot_case *c);
 /* STEM-animation of the stick figures, as GIF. */
-bool plot_animation(const struct plot_case *c, stance_message *message);
+bool plot_animation(const struct plot_case *c);
 
-/* Begins a picture of the case; plot_end ends it. */
-bool plot_case_begin(const struct plot_case *c, struct gnuplot *g, const char *script,
-                     const char *what, stance_message *message);
+/* Begins a picture of the case; gnuplot_end ends it. */
+bool plot_case_begin(const struct plot_case *c, struct gnuplot *g, const char *name,
+                     const char *script, const char *what);
 
 /* Contacts with the ground: the first ones of a scene, before the stops of joints. */
 int plot_case_grounded(const stance_scene *scene);
@@ -43,6 +42,8 @@ struct figure {
     double centre; /* m, what stands in the middle of its place */
     double base;   /* m, height of the ground below it */
 };
+/* Row of a trajectory at a time: the last one from its end on. */
+size_t figure_row(const struct results_trajectory *t, double time);
 void figure_make(struct figure *figure, const struct plot_case *c, size_t row);
 /* The ground's fall along x: a slope's tangent. */
 double figure_fall(const struct plot_case *c);
@@ -55,6 +56,6 @@ void figure_put(struct gnuplot *g, const struct figure *figure, int contacts, en
                 double dx, double dz);
 
 /* STEM-strip: stick figures at even intervals. */
-bool plot_strip(const struct plot_case *c, stance_message *message);
+bool plot_strip(const struct plot_case *c);
 
 #endif

@@ -13,6 +13,14 @@ int plot_case_grounded(const stance_scene *scene)
     return count;
 }
 
+size_t figure_row(const struct results_trajectory *t, double time)
+{
+    size_t row = 0;
+    while (row + 1 < t->rows && t->time[row + 1] <= time + 1e-9)
+        row++;
+    return row;
+}
+
 double figure_fall(const struct plot_case *c)
 {
     return tan(c->values.robot[STANCE_ROBOT_SLOPE]);
@@ -78,7 +86,7 @@ void figure_put(struct gnuplot *g, const struct figure *figure, int contacts, en
         const int contact = body ? contacts : first >= 0 ? first : second;
         for (int end = 0; end < 2; end++)
             GNUPLOT_ROW(g, figure->point[p + end][0] + dx, figure->point[p + end][1] + dz, contact);
-        gnuplot_set(g, "%s", "");
+        gnuplot_gap(g);
     }
     for (int p = 0; part == FIGURE_POINTS && p < figure->points && !figure->outline; p++)
         if (contact_at(figure, contacts, p) < 0)

@@ -3,6 +3,7 @@
 
 #include "runner/base/message.h"
 
+#include <math.h>
 #include <string.h>
 
 enum { MAX_COLUMNS = 6 }; /* of a table */
@@ -71,7 +72,8 @@ size_t plot_layout_shown(const struct plot_layout *layout, int k, size_t m)
     return shown < 2 ? (count - 1) / 2 : m * (count - 1) / (shown - 1);
 }
 
-void plot_layout_point(const struct plot_layout *layout, int panel, size_t *point)
+/* Coordinates of a panel, 0 along the axes of the map. */
+static void point_of(const struct plot_layout *layout, int panel, size_t *point)
 {
     memset(point, 0, SCENARIO_MAX_AXES * sizeof *point);
     size_t rest = (size_t)panel;
@@ -85,7 +87,7 @@ uint64_t plot_layout_index(const struct plot_layout *layout, int panel, size_t i
 {
     size_t point[SCENARIO_MAX_AXES];
     uint64_t index = 0;
-    plot_layout_point(layout, panel, point);
+    point_of(layout, panel, point);
     point[layout->x] = i;
     point[layout->y] = j;
     for (int a = 0; a < layout->r->axes; a++)
@@ -93,32 +95,27 @@ uint64_t plot_layout_index(const struct plot_layout *layout, int panel, size_t i
     return index;
 }
 
-int plot_layout_panel(const struct plot_layout *layout, uint64_t index)
+double plot_layout_share(const struct plot_layout *layout, int panel, enum results_kind of)
 {
-    size_t point[SCENARIO_MAX_AXES];
-    int panel = 0;
-    results_point(layout->r, index, point);
-    for (int k = 0; k < layout->others; k++) {
-        size_t m = 0;
-        while (m < layout->shown[k] && plot_layout_shown(layout, k, m) != point[layout->other[k]])
-            m++;
-        if (m == layout->shown[k])
-            return -1;
-        panel = panel * (int)layout->shown[k] + (int)m;
+    size_t sum = 0, done = 0;
+    for (size_t i = 0; i < layout->across.axis->count; i++) {
+        for (size_t j = 0; j < layout->up.axis->count; j++) {
+            const uint8_t kind = layout->r->kind[plot_layout_index(layout, panel, i, j)];
+            sum += kind == of;
+            done += kind < RESULTS_FAILED;
+        }
     }
-    return panel;
+    return done > 0 ? 100 * (double)sum / (double)done : NAN;
 }
 
 void plot_layout_note(const struct plot_layout *layout, struct gnuplot *g)
 {
-    char text[160];
     for (int k = 0; k < layout->others; k++) {
         const struct results_axis *axis = &layout->r->axis[layout->other[k]];
         if (layout->shown[k] == axis->count)
             continue;
-        snprintf(text, sizeof text, "%zu of the %zu values of %s are drawn", layout->shown[k],
-                 axis->count, axis->name);
-        gnuplot_note(g, text);
+        gnuplot_note(g, "%zu of the %zu values of %s are drawn", layout->shown[k], axis->count,
+                     axis->name);
     }
 }
 
@@ -134,7 +131,7 @@ bool plot_zero_place(const struct plot_axis *along, double *place)
         return false;
     if (along->scale == PLOT_LINEAR) {
         *place = 0;
-        return along->low < 0 && along->high > 0;
+        return along->range.low < 0 && along->range.high > 0;
     }
     size_t nearest = statistics_nearest_zero(along->axis);
     *place = (double)nearest;
@@ -151,11 +148,11 @@ void plot_value_title(struct gnuplot *g, const struct results_axis *axis, size_t
                       enum plot_naming naming, char *text, size_t size)
 {
     char value[96];
-    const char *name = look_label(g->look, axis->name);
+    const char *name = look_label(g->plot->look, axis->name);
     results_value_text(axis, i, true, value, sizeof value);
     if (name == axis->name)
         name = plot_short_name(axis->name, naming);
-    const char *const label = look_label(g->look, value);
+    const char *const label = look_label(g->plot->look, value);
     if (naming == PLOT_NUMBERS && label == value)
         results_value_text(axis, i, false, text, size);
     else if (naming >= PLOT_VALUES_ALONE)
@@ -170,7 +167,7 @@ void plot_panel_title(struct gnuplot *g, const struct plot_layout *layout, int p
 {
     size_t point[SCENARIO_MAX_AXES];
     char one[300];
-    plot_layout_point(layout, panel, point);
+    point_of(layout, panel, point);
     text[0] = '\0';
     for (int k = 0; k < layout->others; k++) {
         const int a = layout->other[k];

@@ -25,14 +25,12 @@ struct plot_layout {
 
 /* The last two axes of numbers, and at most `most` panels; a file of two axes or more. */
 void plot_layout_make(struct plot_layout *layout, const struct results *r, int most);
-/* Coordinates of a panel, 0 along the axes of the map. */
-void plot_layout_point(const struct plot_layout *layout, int panel, size_t *point);
 /* The case of a panel at points i and j of the axes of the map. */
 uint64_t plot_layout_index(const struct plot_layout *layout, int panel, size_t i, size_t j);
 /* Index of the m-th shown point of the k-th axis of the panels. */
 size_t plot_layout_shown(const struct plot_layout *layout, int k, size_t m);
-/* The panel that shows a case, or -1. */
-int plot_layout_panel(const struct plot_layout *layout, uint64_t index);
+/* Per cent of a panel's cases that are done; NAN: none is. */
+double plot_layout_share(const struct plot_layout *layout, int panel, enum results_kind of);
 /* Two axes of panels are a table, rows of the first and columns of the second. */
 bool plot_layout_is_table(const struct plot_layout *layout);
 /* A note for each axis of which not all values are drawn: nobody is to take what is there for all.

@@ -2,103 +2,101 @@
 #include "analysis/draw/plot.h"
 
 #include <math.h>
-#include <stdlib.h>
 
-GNUPLOT_SCRIPT(plot_line_gp, "analysis/plot/plot_line.gp");
-
-/* One answer of every case. */
-struct line_panel {
-    const char *name, *unit;
-    double *values; /* NULL: nothing to draw */
-    double low, high;
+struct line {
+    struct gnuplot g;
+    struct plot_axis along;
+    struct statistics_place *points;
+    size_t count; /* of them */
 };
-enum { LINE_PANELS = 3 };
 
-/* Runs of neighbours of the same kind, from where to where: seams between boxes would show. */
-static void put_runs(struct gnuplot *g, const struct results *r, const struct plot_axis *along,
-                     const struct statistics_place *points)
+/* A strip of runs of neighbours of the same kind, from where to where: seams between boxes would
+ * show. */
+static void put_runs(struct line *line)
 {
-    const size_t n = along->axis->count;
-    double low = along->low;
-    gnuplot_block(g, "runs");
-    for (size_t i = 0; i < n; i++) {
-        const uint8_t kind = r->kind[points[i].index];
-        if (i + 1 < n && r->kind[points[i + 1].index] == kind)
+    const uint8_t *const kind = line->g.plot->r->kind;
+    const struct statistics_place *const p = line->points;
+    double low = line->along.range.low;
+    gnuplot_panel(&line->g, 30, "");
+    gnuplot_set(&line->g, "chart_beside = 'outcome'");
+    gnuplot_series(&line->g,
+                   "using (0.5*($1+$2)):(0.5):1:2:(0):(1):(kind_colour[$3+1]) with boxxyerror "
+                   "fillstyle solid noborder lc rgb variable");
+    for (size_t i = 0; i < line->count; i++) {
+        const bool last = i + 1 == line->count;
+        if (!last && kind[p[i + 1].index] == kind[p[i].index])
             continue;
-        const double high = i + 1 < n ? 0.5 * (points[i].value + points[i + 1].value) : along->high;
-        GNUPLOT_ROW(g, low, high, kind);
+        const double high = last ? line->along.range.high : 0.5 * (p[i].value + p[i + 1].value);
+        GNUPLOT_ROW(&line->g, low, high, kind[p[i].index]);
         low = high;
     }
-    gnuplot_end_block(g);
 }
 
-/* The page STEM-`picture` of LINE_PANELS panels, those without values left out; frees the values,
- * which is all that it does where `what` is NULL. */
-static bool draw_page(const struct plot *plot, struct line_panel *panels, const char *what,
-                      const char *picture, stance_message *message)
+/* The page STEM-`name`, its axis and the outcomes. */
+static bool begin(struct line *line, const struct plot *plot, const char *name)
 {
-    struct plot_axis along;
-    struct gnuplot g;
-    int panel = 0;
-    plot_axis_make_curve(&along, &plot->r->axis[0]);
-    struct statistics_place *points = plot_axis_points(&along, message);
-    const bool good = points && what && plot_begin(plot, &g, plot_line_gp, what, message);
-    if (good) {
-        plot_axis_write(&along, &g, "x");
-        plot_kinds_write(plot->r, &g, true);
-        put_runs(&g, plot->r, &along, points);
-        gnuplot_arrays(&g, LINE_PANELS, "answer answer_unit lowest highest");
-        for (const struct line_panel *p = panels; p < panels + LINE_PANELS; p++) {
-            if (!p->values)
-                continue;
-            gnuplot_text(&g, p->name, "answer[%d]", ++panel);
-            gnuplot_text(&g, p->unit, "answer_unit[%d]", panel);
-            gnuplot_set(&g, "lowest[%d] = %#.17g; highest[%d] = %#.17g", panel, p->low, panel,
-                        p->high);
-            gnuplot_block(&g, "line%d", panel);
-            for (size_t i = 0; i < along.axis->count; i++)
-                GNUPLOT_ROW(&g, points[i].value, p->values[points[i].index],
-                            plot->r->kind[points[i].index]);
-            gnuplot_end_block(&g);
-        }
-        gnuplot_set(&g, "panels = %d", panel);
-    }
-    free(points);
-    for (int k = 0; k < LINE_PANELS; k++)
-        free(panels[k].values);
-    return good && plot_end(plot, &g, picture, message);
+    if (!gnuplot_begin(&line->g, plot, name, NULL))
+        return false;
+    plot_axis_make_curve(&line->along, &plot->r->axis[0]);
+    line->points = plot_axis_points(&line->along, &line->g);
+    line->count = line->points ? line->along.axis->count : 0;
+    plot_axis_write(&line->along, &line->g, 'x');
+    plot_kinds_write(&line->g, true);
+    put_runs(line);
+    return true;
 }
 
-bool plot_line(const struct plot *plot, stance_message *message)
+/* A panel of an answer of every case; points are not to sit on its frame. */
+static void put_answer(struct line *line, const char *name, const char *unit, const double *values,
+                       struct plot_range range)
 {
-    struct line_panel panels[LINE_PANELS] = {{.name = "settle_time", .unit = "s"},
-                                             {.name = "end_time", .unit = "s"},
-                                             {.name = "friction_used", .unit = ""}};
+    const size_t n = line->count;
+    const double room =
+        range.high > range.low ? 0.06 * (range.high - range.low) : 0.1 * fabs(range.low) + 0.05;
+    gnuplot_panel(&line->g, 150, "");
+    gnuplot_axis(&line->g, 'y', PLOT_LINEAR,
+                 (struct plot_range){range.low - room, range.high + room}, name, unit);
+    gnuplot_series(&line->g,
+                   "using 1:2 with lines lc rgb '#b0b0b0' lw 1 notitle, '' using "
+                   "1:2:(kind_colour[$3+1]) with points pt 7 ps %g lc rgb variable",
+                   n > 400   ? 0.25
+                   : n > 100 ? 0.45
+                             : 0.8);
+    for (size_t i = 0; i < n; i++)
+        GNUPLOT_ROW(&line->g, line->points[i].value, values[line->points[i].index],
+                    line->g.plot->r->kind[line->points[i].index]);
+}
+
+bool plot_line(const struct plot *plot)
+{
+    static const char *const names[][2] = {
+        {"settle_time", "s"}, {"end_time", "s"}, {"friction_used", ""}};
     const struct results *r = plot->r;
-    char what[96];
-    bool good = true;
+    struct line line;
     if (r->sample >= 0 || r->axes != 1)
         return true;
-    plot_became_text(r, what, sizeof what);
-    for (int k = 0; good && k < LINE_PANELS; k++) {
-        struct line_panel *const panel = &panels[k];
-        good = results_answer(r, panel->name, &panel->values, message);
-        if (good && panel->values &&
-            !plot_range(panel->values, r->cases, &panel->low, &panel->high)) {
-            free(panel->values);
-            panel->values = NULL;
-        }
+    if (!begin(&line, plot, "curve"))
+        return false;
+    plot_say_became(&line.g);
+    for (size_t k = 0; k < sizeof names / sizeof *names; k++) {
+        double *values = NULL;
+        struct plot_range range;
+        if (gnuplot_needs(&line.g, results_answer(r, names[k][0], &values, plot->message)) &&
+            values && gnuplot_keep(&line.g, values) && plot_range_of(&range, values, r->cases))
+            put_answer(&line, names[k][0], names[k][1], values, range);
     }
-    return draw_page(plot, panels, good ? what : NULL, "curve", message);
+    return gnuplot_end(&line.g);
 }
 
-bool plot_answer_curve(const struct plot *plot, const struct plot_answer *answer,
-                       stance_message *message)
+bool plot_answer_curve(const struct plot *plot, const struct plot_answer *answer)
 {
-    struct line_panel panels[LINE_PANELS] = {{.name = answer->name, .unit = answer->unit}};
-    char what[256];
-    plot_answer_title(answer, what, sizeof what);
-    return plot_answer_numbers(plot, answer, &panels[0].values, &panels[0].low, &panels[0].high,
-                               message) &&
-           draw_page(plot, panels, what, answer->name, message);
+    struct line line;
+    struct plot_range range;
+    if (!begin(&line, plot, answer->name))
+        return false;
+    plot_say_answer(&line.g, answer);
+    const double *const values = plot_answer_numbers(&line.g, answer, &range);
+    if (values)
+        put_answer(&line, answer->name, answer->unit, values, range);
+    return gnuplot_end(&line.g);
 }

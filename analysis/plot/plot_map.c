@@ -2,15 +2,20 @@
  * when it settled. Further axes become panels. */
 #include "plot_allowed.h"
 
-#include "runner/base/message.h"
-
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 enum { MAX_PANELS = 30 }; /* more are drawn in part */
 
 GNUPLOT_SCRIPT(plot_map_gp, "analysis/plot/plot_map.gp");
+
+/* What all pictures of a file are over. */
+struct map {
+    struct gnuplot g;
+    struct plot_layout layout;
+    struct plot_allowed allowed; /* what linear theory allows in the panels */
+    uint64_t inferred;           /* cases */
+};
 
 /* ---- a page ------------------------------------------------------------------------------- */
 
@@ -18,26 +23,27 @@ static void put_titles(struct gnuplot *g, const struct plot_layout *layout)
 {
     static const char *const naming[] = {"long", "short", "bare"};
     const bool table = plot_layout_is_table(layout);
+    const size_t panels = (size_t)layout->panels;
     char text[1024];
+    gnuplot_arrays(g, panels, "title_long title_short title_bare share");
     for (int n = PLOT_NAMES; n <= PLOT_VALUES_ALONE; n++) {
-        gnuplot_set(g, "array title_%s[%d]", naming[n], layout->panels);
-        for (int p = 0; p < layout->panels; p++) {
-            plot_panel_title(g, layout, p, (enum plot_naming)n, text, sizeof text);
-            gnuplot_text(g, text, "title_%s[%d]", naming[n], p + 1);
+        for (size_t p = 0; p < panels; p++) {
+            plot_panel_title(g, layout, (int)p, (enum plot_naming)n, text, sizeof text);
+            gnuplot_text(g, text, "title_%s[%zu]", naming[n], p + 1);
         }
     }
     gnuplot_set(g, "table = %zu", table ? layout->shown[1] : 0);
     for (int k = 0; table && k < 2; k++) {
         const struct results_axis *axis = &layout->r->axis[layout->other[k]];
-        const char *const line = k ? "column" : "row", *name = look_label(g->look, axis->name);
+        const char *const line = k ? "column" : "row",
+                          *name = look_label(g->plot->look, axis->name);
         if (name == axis->name)
             snprintf(text, sizeof text, axis->unit[0] ? "%s (%s)" : "%s",
                      plot_short_name(name, PLOT_NAMES), axis->unit);
         else
             snprintf(text, sizeof text, "%s", name);
         gnuplot_text(g, text, "%s_name", line);
-        gnuplot_set(g, "array %s_long[%zu]\narray %s_bare[%zu]", line, layout->shown[k], line,
-                    layout->shown[k]);
+        gnuplot_arrays(g, layout->shown[k], k ? "column_long column_bare" : "row_long row_bare");
         for (size_t m = 0; m < layout->shown[k]; m++) {
             const size_t i = plot_layout_shown(layout, k, m);
             plot_value_title(g, axis, i, PLOT_NAMES, text, sizeof text);
@@ -49,45 +55,31 @@ static void put_titles(struct gnuplot *g, const struct plot_layout *layout)
 }
 
 /* What stands of the cases drawn in each panel, of those that are done; of numbers nothing. */
-static void put_shares(struct gnuplot *g, const struct results *r, const struct plot_layout *layout,
-                       bool measured)
+static void put_shares(struct gnuplot *g, const struct plot_layout *layout, bool measured)
 {
-    const uint8_t judged = (uint8_t)statistics_judged(r);
-    uint64_t *counts = calloc(2 * (size_t)layout->panels, sizeof *counts); /* judged, done */
+    const enum results_kind judged = statistics_judged(g->plot->r);
     char text[32];
-    for (uint64_t i = 0; counts && !measured && i < r->cases; i++) {
-        const int panel = plot_layout_panel(layout, i);
-        if (panel >= 0 && r->kind[i] < RESULTS_FAILED) {
-            counts[2 * panel] += r->kind[i] == judged;
-            counts[2 * panel + 1]++;
-        }
-    }
-    gnuplot_set(g, "array share[%d]", layout->panels);
     for (int p = 0; p < layout->panels; p++) {
-        const bool any = counts && counts[2 * p + 1] > 0;
-        snprintf(text, sizeof text, "%.1f %%",
-                 any ? 100 * (double)counts[2 * p] / (double)counts[2 * p + 1] : 0);
-        gnuplot_text(g, any ? text : "", "share[%d]", p + 1);
+        const double share = measured ? NAN : plot_layout_share(layout, p, judged);
+        snprintf(text, sizeof text, "%.1f %%", share);
+        gnuplot_text(g, isnan(share) ? "" : text, "share[%d]", p + 1);
     }
-    free(counts);
-    if (layout->panels > 1 && !measured) {
-        snprintf(text, sizeof text, "%%: %s", results_kind_names[judged]);
-        gnuplot_note(g, text);
-    }
+    if (layout->panels > 1 && !measured)
+        gnuplot_note(g, "%%: %s", results_kind_names[judged]);
 }
 
-static void subtitle_of(const struct results *r, const struct plot_layout *layout, const char *what,
-                        char *text, size_t size)
+/* The other axes, to the line under the title. */
+static void say_others(struct gnuplot *g, const struct plot_layout *layout)
 {
+    const struct results *const r = g->plot->r;
     const bool table = plot_layout_is_table(layout);
-    snprintf(text, size, "%s", what);
     for (int k = 0; k < layout->others; k++) {
         const struct results_axis *axis = &r->axis[layout->other[k]];
-        add_text(text, size, "%s%s%s%s%s",
-                 table ? (k ? ", columns " : "; rows ")
-                 : k   ? ", "
-                       : "; one panel per ",
-                 axis->name, axis->text[0] ? " (" : "", axis->text, axis->text[0] ? ")" : "");
+        gnuplot_say(g, "%s%s%s%s%s",
+                    table ? (k ? ", columns " : "; rows ")
+                    : k   ? ", "
+                          : "; one panel per ",
+                    axis->name, axis->text[0] ? " (" : "", axis->text, axis->text[0] ? ")" : "");
     }
     const char *before = "; at ";
     for (int a = 0; a < r->axes; a++) {
@@ -95,159 +87,136 @@ static void subtitle_of(const struct results *r, const struct plot_layout *layou
         if (r->axis[a].count > 1 || a == layout->x || a == layout->y)
             continue;
         results_value_text(&r->axis[a], 0, true, value, sizeof value);
-        add_text(text, size, "%s%s = %s", before, r->axis[a].name, value);
+        gnuplot_say(g, "%s%s = %s", before, r->axis[a].name, value);
         before = ", ";
     }
 }
 
+static bool begin(struct map *map, const struct plot *plot, const char *name)
+{
+    const struct results *const r = plot->r;
+    if (!gnuplot_begin(&map->g, plot, name, plot_map_gp))
+        return false;
+    plot_layout_make(&map->layout, r, MAX_PANELS);
+    gnuplot_needs(&map->g, statistics_inferred(r, &map->inferred, NULL, plot->message));
+    return true;
+}
+
 /* Axes, panels and their cells: of an array over the cases, their kinds or numbers; none: the
  * legend of cells without a number. */
-static bool begin_page(struct gnuplot *g, const struct plot *plot, const struct plot_layout *layout,
-                       const struct plot_allowed *allowed, const char *what, const void *values,
-                       size_t size, const char *none, stance_message *message)
+static void put(struct map *map, const void *values, size_t size, const char *none)
 {
-    const struct results *r = plot->r;
-    struct plot_cells cells = {&layout->across, &layout->up, 0, {0, 0}};
-    const bool measured = values != r->kind;
-    char text[1024];
+    struct gnuplot *const g = &map->g;
+    const struct plot_layout *const layout = &map->layout;
+    const struct plot_axis *const across = &layout->across, *const up = &layout->up;
+    struct plot_cells cells = {across, up, 0, {0, 0}};
+    const bool measured = values != g->plot->r->kind;
     double x, y;
 
-    subtitle_of(r, layout, what, text, sizeof text);
-    if (!plot_begin(plot, g, plot_map_gp, text, message))
-        return false;
-    plot_axis_write(&layout->across, g, "x");
-    plot_axis_write(&layout->up, g, "y");
+    if (!plot_allowed_make(&map->allowed, g, layout, (const struct plot_axis[]){*across, *up}))
+        return;
+    say_others(g, layout);
+    plot_axis_write(across, g, 'x');
+    plot_axis_write(up, g, 'y');
     gnuplot_set(g, "panels = %d; measured = %d; bars = %d", layout->panels, measured, measured);
     put_titles(g, layout);
     if (measured)
-        gnuplot_legend(g, "no_number", none, "");
+        gnuplot_legend(g, "no_number", 0, 0, none, "");
     else
-        plot_kinds_write(r, g, true);
-    const bool cross = plot_zero_place(&layout->across, &x) && plot_zero_place(&layout->up, &y);
+        plot_kinds_write(g, true);
+    const bool cross = plot_zero_place(across, &x) && plot_zero_place(up, &y);
     gnuplot_set(g, "cross = %d", cross);
     if (cross) {
         gnuplot_set(g, "cross_x = %#.17g; cross_y = %#.17g", x, y);
-        gnuplot_legend_mark(g, "0x000000", 0, 1, "equilibrium", "");
+        gnuplot_legend(g, "0x000000", 0, 1, "equilibrium", "");
     }
-    if (allowed->panels > 0)
-        plot_allowed_legend(allowed->panel, allowed->panels, PLOT_ALLOWED_ONE, g);
-    put_shares(g, r, layout, measured);
+    if (map->allowed.panels > 0)
+        plot_allowed_legend(map->allowed.panel, map->allowed.panels, PLOT_ALLOWED_ONE, g);
+    put_shares(g, layout, measured);
     plot_layout_note(layout, g);
     for (int p = 0; p < layout->panels; p++) {
         cells.first = plot_layout_index(layout, p, 0, 0);
         cells.stride[0] = plot_layout_index(layout, p, 1, 0) - cells.first;
         cells.stride[1] = plot_layout_index(layout, p, 0, 1) - cells.first;
         plot_cells_write(g, &cells, values, size);
-        if (p < allowed->panels)
-            plot_allowed_write(&allowed->panel[p], g, p + 1);
+        if (p < map->allowed.panels)
+            plot_allowed_write(&map->allowed.panel[p], g, p + 1);
     }
-    return true;
-}
-
-/* What linear theory allows in a map's panels. */
-static bool find_allowed(struct plot_allowed *allowed, const struct plot *plot,
-                         const struct plot_layout *layout, stance_message *message)
-{
-    const struct plot_axis *const x = &layout->across, *const y = &layout->up;
-    const struct plot_frame frame = {{x->scale, y->scale}, {x->low, y->low}, {x->high, y->high}};
-    return plot_allowed_make(allowed, plot, layout, &frame, message);
 }
 
 /* ---- an answer ---------------------------------------------------------------------------- */
 
-/* A picture of the numbers of one answer. */
-struct measure {
-    const char *name, *unit, *what; /* what: the page's subtitle */
-    const char *none;               /* the legend of cells without a number */
-    double *values, low, high;
-};
-
-static bool draw_measure(const struct plot *plot, const struct plot_layout *layout,
-                         const struct plot_allowed *allowed, const struct measure *m,
-                         stance_message *message)
+static bool end_measure(struct map *map, const char *name, const char *unit, const double *values,
+                        struct plot_range range, const char *none)
 {
-    struct gnuplot g;
-    if (!begin_page(&g, plot, layout, allowed, m->what, m->values, sizeof *m->values, m->none,
-                    message))
-        return false;
-    gnuplot_set(&g, "lowest = %#.17g; highest = %#.17g", m->low, m->high);
-    const char *label = look_label(plot->look, m->name);
-    gnuplot_text(&g, label, "measure");
-    gnuplot_text(&g, label == m->name ? m->unit : "", "measure_unit");
-    return plot_end(plot, &g, m->name, message);
+    put(map, values, sizeof *values, none);
+    gnuplot_set(&map->g, "lowest = %#.17g; highest = %#.17g", range.low, range.high);
+    const char *label = look_label(map->g.plot->look, name);
+    gnuplot_text(&map->g, label, "measure");
+    gnuplot_text(&map->g, label == name ? unit : "", "measure_unit");
+    return gnuplot_end(&map->g);
 }
 
 /* When each case settled; said where none did. */
-static bool draw_times(const struct plot *plot, const struct plot_layout *layout,
-                       const struct plot_allowed *allowed, bool inferred, stance_message *message)
+static bool draw_times(const struct plot *plot)
 {
+    static const char name[] = "settle_time";
     const struct results *const r = plot->r;
-    struct measure m = {.name = "settle_time",
-                        .unit = "s",
-                        .what = "Time from which each case stayed settled",
-                        .none = inferred ? "none or inferred" : "did not settle"};
-    bool good = results_answer(r, m.name, &m.values, message);
-    for (uint64_t i = 0; good && m.values && i < r->cases; i++)
+    struct map map;
+    struct plot_range range;
+    double *values = NULL;
+    if (!begin(&map, plot, name))
+        return false;
+    const bool good = gnuplot_needs(&map.g, results_answer(r, name, &values, plot->message)) &&
+                      values && gnuplot_keep(&map.g, values);
+    for (uint64_t i = 0; good && i < r->cases; i++)
         if (r->kind[i] != RESULTS_STABILISED && r->kind[i] != RESULTS_RESTED)
-            m.values[i] = NAN;
-    if (good && m.values && plot_range(m.values, r->cases, &m.low, &m.high))
-        good = draw_measure(plot, layout, allowed, &m, message);
-    else if (good)
+            values[i] = NAN;
+    if (map.g.missing)
+        return gnuplot_end(&map.g);
+    if (!good || !plot_range_of(&range, values, r->cases)) {
         fputs("no picture of settle_time: no case has one\n", stderr);
-    free(m.values);
-    return good;
+        gnuplot_abandon(&map.g);
+        return true;
+    }
+    gnuplot_say(&map.g, "Time from which each case stayed settled");
+    return end_measure(&map, name, "s", values, range,
+                       map.inferred > 0 ? "none or inferred" : "did not settle");
 }
 
-bool plot_maps(const struct plot *plot, stance_message *message)
+bool plot_maps(const struct plot *plot)
 {
     const struct results *const r = plot->r;
-    struct plot_layout layout;
-    struct plot_allowed allowed;
-    struct gnuplot g;
-    char what[700];
-    uint64_t inferred;
+    struct map map;
     if (r->sample >= 0 || r->axes < 2)
         return true;
-    plot_layout_make(&layout, r, MAX_PANELS);
-    if (!statistics_inferred(r, &inferred, NULL, message))
+    if (!begin(&map, plot, "map"))
         return false;
-    plot_became_text(r, what, sizeof what);
-    if (inferred > 0)
-        add_text(what, sizeof what, "; %llu of them inferred from neighbours that agree",
-                 (unsigned long long)inferred);
-    plot_cut_text(r, statistics_judged(r), true, what, sizeof what);
-    const bool good =
-        find_allowed(&allowed, plot, &layout, message) &&
-        begin_page(&g, plot, &layout, &allowed, what, r->kind, sizeof *r->kind, "", message) &&
-        plot_end(plot, &g, "map", message) &&
-        draw_times(plot, &layout, &allowed, inferred > 0, message);
-    plot_allowed_free(&allowed);
-    return good;
+    plot_say_became(&map.g);
+    if (map.inferred > 0)
+        gnuplot_say(&map.g, "; %llu of them inferred from neighbours that agree",
+                    (unsigned long long)map.inferred);
+    plot_say_cut(&map.g, statistics_judged(r), true);
+    put(&map, r->kind, sizeof *r->kind, "");
+    return gnuplot_end(&map.g) && draw_times(plot);
 }
 
-bool plot_answer_map(const struct plot *plot, const struct plot_answer *answer,
-                     stance_message *message)
+bool plot_answer_map(const struct plot *plot, const struct plot_answer *answer)
 {
-    struct plot_layout layout;
-    struct plot_allowed allowed;
-    char what[700], none[64];
-    uint64_t inferred;
-    struct measure m = {.name = answer->name, .unit = answer->unit, .what = what, .none = none};
-
-    if (!statistics_inferred(plot->r, &inferred, NULL, message) ||
-        !plot_answer_numbers(plot, answer, &m.values, &m.low, &m.high, message))
+    struct map map;
+    struct plot_range range;
+    char none[64];
+    if (!begin(&map, plot, answer->name))
         return false;
-    plot_answer_title(answer, what, sizeof what);
-    plot_cut_text(plot->r, answer->of, false, what, sizeof what);
+    const double *const values = plot_answer_numbers(&map.g, answer, &range);
+    if (!values)
+        return gnuplot_end(&map.g);
+    plot_say_answer(&map.g, answer);
+    plot_say_cut(&map.g, answer->of, false);
     snprintf(none, sizeof none,
-             inferred > 0                       ? "none or inferred"
+             map.inferred > 0                   ? "none or inferred"
              : answer->of == RESULTS_KIND_COUNT ? "no number"
                                                 : "not %s",
              answer->of == RESULTS_KIND_COUNT ? "" : results_kind_names[answer->of]);
-    plot_layout_make(&layout, plot->r, MAX_PANELS);
-    const bool good = find_allowed(&allowed, plot, &layout, message) &&
-                      draw_measure(plot, &layout, &allowed, &m, message);
-    plot_allowed_free(&allowed);
-    free(m.values);
-    return good;
+    return end_measure(&map, answer->name, answer->unit, values, range, none);
 }

@@ -8,8 +8,7 @@
 #include "plot_model.h"
 #include "plot_case.h"
 
-#include "runner/base/message.h"
-#include "runner/plan/plan.h"
+#include "runner/plan/asked.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -31,6 +30,13 @@ struct moved {
     double direction; /* rad, from the centre to that point, counter-clockwise from +x */
 };
 
+/* At a place, of what is at `of`, all in m. */
+struct label {
+    const char *text;
+    double x, z, of[2];
+    enum ink ink;
+};
+
 struct model {
     const stance_scene *scene;
     const stance_case *c;
@@ -38,9 +44,11 @@ struct model {
     double point[STANCE_MAX_POINTS][2];
     double velocity[STANCE_MAX_COORDINATES][STANCE_MAX_POINTS][2]; /* at unit rates */
     struct moved moved[STANCE_MAX_COORDINATES];
-    double low[2], high[2], size; /* m: of the figure */
+    struct plot_range range[2]; /* m: of the figure, x and z */
+    double size;
     struct gnuplot *g;
     int labels, words; /* so far */
+    struct label label[MOST_LABELS];
 };
 
 /* ---- what coordinates move ---------------------------------------------------------------- */
@@ -100,15 +108,13 @@ static void find_motion(struct model *m, int k)
 static void make_model(struct model *m)
 {
     m->points = m->scene->figure(m->scene, m->c->robot, m->c->position, m->point);
+    m->size = 1e-6;
     for (int i = 0; i < 2; i++) {
-        m->low[i] = INFINITY;
-        m->high[i] = -INFINITY;
-        for (int p = 0; p < m->points; p++) {
-            m->low[i] = fmin(m->low[i], m->point[p][i]);
-            m->high[i] = fmax(m->high[i], m->point[p][i]);
-        }
+        m->range[i] = PLOT_NOTHING;
+        for (int p = 0; p < m->points; p++)
+            plot_widen(&m->range[i], m->point[p][i]);
+        m->size = fmax(m->size, m->range[i].high - m->range[i].low);
     }
-    m->size = fmax(fmax(m->high[0] - m->low[0], m->high[1] - m->low[1]), 1e-6);
     for (int k = 0; k < m->scene->coordinates; k++) {
         static const double step = 1e-6;
         double position[STANCE_MAX_COORDINATES], ahead[STANCE_MAX_POINTS][2];
@@ -125,17 +131,11 @@ static void make_model(struct model *m)
 
 /* ---- drawing ------------------------------------------------------------------------------ */
 
-/* At a place, of what is at `of`, both in m. */
 static void label(struct model *m, enum ink ink, double x, double z, const double of[2],
                   const char *text)
 {
-    if (m->labels == MOST_LABELS)
-        return;
-    gnuplot_text(m->g, look_label(m->g->look, text), "label_text[%d]", ++m->labels);
-    gnuplot_set(m->g,
-                "k = %d; label_x[k] = %#.9g; label_y[k] = %#.9g; label_ink[k] = %d; "
-                "of_x[k] = %#.9g; of_y[k] = %#.9g",
-                m->labels, x, z, ink, of[0], of[1]);
+    if (m->labels < MOST_LABELS)
+        m->label[m->labels++] = (struct label){text, x, z, {of[0], of[1]}, ink};
 }
 
 /* At a radius about the centre of coordinate k, at an angle. */
@@ -215,51 +215,11 @@ static double slide_of(const struct model *m, int k, double from[2])
     return sign ? 0.18 * m->size : q;
 }
 
-static void put_arrows(struct model *m)
-{
-    gnuplot_block(m->g, "arrows");
-    for (int k = 0; k < m->scene->coordinates; k++) {
-        const struct moved *const moved = &m->moved[k];
-        const double angle = shown_angle(m, k);
-        if (moved->turns) {
-            arc(m, k, INK_COORDINATE, radius_of(m, k), moved->direction - angle,
-                moved->direction + (angle == 0 ? 0.6 : 0));
-        } else if (!is_place(m, k)) {
-            double from[2];
-            const double far = slide_of(m, k, from);
-            GNUPLOT_ROW(m->g, from[0], from[1], far * moved->along[0], far * moved->along[1],
-                        INK_COORDINATE, 1);
-        }
-    }
-    for (int a = 0; a < m->scene->actuators; a++) {
-        const int k = m->scene->actuated[a];
-        const struct moved *const moved = &m->moved[k];
-        if (moved->turns)
-            arc(m, k, INK_ACTUATOR, torque_radius(m, k), moved->direction + 0.12,
-                moved->direction + 0.7);
-        else
-            GNUPLOT_ROW(m->g, moved->point[0], moved->point[1], 0.18 * m->size * moved->along[0],
-                        0.18 * m->size * moved->along[1], INK_ACTUATOR, 1);
-    }
-    const double slope = m->c->robot[STANCE_ROBOT_SLOPE];
-    const double rest[STANCE_MAX_COORDINATES] = {0}, length = 0.13 * m->size;
-    for (int k = 0; k < plot_case_grounded(m->scene); k++) {
-        double point[2], speed[2];
-        m->scene->contact_point(m->scene, m->c->robot, m->c->position, rest, k, point, speed);
-        GNUPLOT_ROW(m->g, point[0], point[1], length * sin(slope), length * cos(slope), INK_CONTACT,
-                    1);
-        GNUPLOT_ROW(m->g, point[0], point[1], length * cos(slope), -length * sin(slope),
-                    INK_CONTACT, 1);
-    }
-    gnuplot_end_block(m->g);
-}
-
 static void put_lines(struct model *m)
 {
     gnuplot_block(m->g, "segments");
     for (int p = 0; p < m->points; p++)
         GNUPLOT_ROW(m->g, m->point[p][0], m->point[p][1]);
-    gnuplot_end_block(m->g);
     gnuplot_block(m->g, "zeros");
     GNUPLOT_ROW(m->g, NAN, NAN);
     for (int k = 0; k < m->scene->coordinates; k++) {
@@ -267,64 +227,91 @@ static void put_lines(struct model *m)
         const double zero = moved->direction - shown_angle(m, k), length = 1.25 * radius_of(m, k);
         if (!moved->turns)
             continue;
-        gnuplot_set(m->g, "%s", "");
+        gnuplot_gap(m->g);
         GNUPLOT_ROW(m->g, moved->centre[0], moved->centre[1]);
         GNUPLOT_ROW(m->g, moved->centre[0] + length * cos(zero),
                     moved->centre[1] + length * sin(zero));
     }
-    gnuplot_end_block(m->g);
 }
 
-static void put_labels(struct model *m)
+/* Beside the arc, beyond where the angle is 0; an arc that only shows the sign: at its end. */
+static void put_coordinate(struct model *m, int k)
 {
-    gnuplot_arrays(m->g, MOST_LABELS, "label_text label_x label_y label_ink of_x of_y");
-    for (int k = 0; k < m->scene->coordinates; k++) {
-        const struct moved *const moved = &m->moved[k];
-        /* Beside the arc, beyond where the angle is 0; an arc that only shows the sign: at its end.
-         */
+    const struct moved *const moved = &m->moved[k];
+    const char *const name = m->scene->coordinate[k].name;
+    double at[2], of[2];
+    if (moved->turns) {
         const double angle = shown_angle(m, k), radius = radius_of(m, k),
                      gap = 0.06 * m->size / radius;
-        const double middle = moved->direction + (angle == 0  ? 0.6 + gap
-                                                  : angle > 0 ? -angle - gap
-                                                              : -angle + gap);
-        if (moved->turns) {
-            double at[2], of[2];
-            place_at(m, k, radius, middle, at);
-            place_at(m, k, radius, moved->direction + (angle == 0 ? 0.3 : -0.5 * angle), of);
-            label(m, INK_COORDINATE, at[0], at[1], of, m->scene->coordinate[k].name);
-        }
-        if (!moved->turns && !is_place(m, k)) {
-            double from[2];
-            const double half = 0.5 * slide_of(m, k, from), side = 0.05 * m->size;
-            const double of[2] = {from[0] + half * moved->along[0],
-                                  from[1] + half * moved->along[1]};
-            label(m, INK_COORDINATE, of[0] - side * moved->along[1], of[1] + side * moved->along[0],
-                  of, m->scene->coordinate[k].name);
-        }
+        arc(m, k, INK_COORDINATE, radius, moved->direction - angle,
+            moved->direction + (angle == 0 ? 0.6 : 0));
+        place_at(m, k, radius,
+                 moved->direction + (angle == 0  ? 0.6 + gap
+                                     : angle > 0 ? -angle - gap
+                                                 : -angle + gap),
+                 at);
+        place_at(m, k, radius, moved->direction + (angle == 0 ? 0.3 : -0.5 * angle), of);
+        label(m, INK_COORDINATE, at[0], at[1], of, name);
+    } else if (!is_place(m, k)) {
+        const double far = slide_of(m, k, of), side = 0.05 * m->size;
+        GNUPLOT_ROW(m->g, of[0], of[1], far * moved->along[0], far * moved->along[1],
+                    INK_COORDINATE, 1);
+        for (int i = 0; i < 2; i++)
+            of[i] += 0.5 * far * moved->along[i];
+        label(m, INK_COORDINATE, of[0] - side * moved->along[1], of[1] + side * moved->along[0], of,
+              name);
     }
-    for (int a = 0; a < m->scene->actuators; a++) {
-        const int k = m->scene->actuated[a];
-        const struct moved *const moved = &m->moved[k];
-        const double far = 0.22 * m->size;
-        double at[2] = {moved->point[0] + far * moved->along[0],
-                        moved->point[1] + far * moved->along[1]};
-        double of[2] = {moved->point[0] + 0.5 * far * moved->along[0],
-                        moved->point[1] + 0.5 * far * moved->along[1]};
-        if (moved->turns) {
-            place_at(m, k, torque_radius(m, k) + 0.05 * m->size, moved->direction + 0.6, at);
-            place_at(m, k, torque_radius(m, k), moved->direction + 0.5, of);
-        }
-        label(m, INK_ACTUATOR, at[0], at[1], of, m->scene->actuator_name[a]);
+}
+
+static void put_actuator(struct model *m, int a)
+{
+    const int k = m->scene->actuated[a];
+    const struct moved *const moved = &m->moved[k];
+    const double x = moved->point[0], z = moved->point[1], dx = m->size * moved->along[0],
+                 dz = m->size * moved->along[1];
+    double at[2] = {x + 0.22 * dx, z + 0.22 * dz}, of[2] = {x + 0.11 * dx, z + 0.11 * dz};
+    if (moved->turns) {
+        const double radius = torque_radius(m, k);
+        arc(m, k, INK_ACTUATOR, radius, moved->direction + 0.12, moved->direction + 0.7);
+        place_at(m, k, radius + 0.05 * m->size, moved->direction + 0.6, at);
+        place_at(m, k, radius, moved->direction + 0.5, of);
+    } else {
+        GNUPLOT_ROW(m->g, x, z, 0.18 * dx, 0.18 * dz, INK_ACTUATOR, 1);
     }
+    label(m, INK_ACTUATOR, at[0], at[1], of, m->scene->actuator_name[a]);
+}
+
+static void put_contact(struct model *m, int k)
+{
+    const double slope = m->c->robot[STANCE_ROBOT_SLOPE], length = 0.13 * m->size;
     const double rest[STANCE_MAX_COORDINATES] = {0};
-    const int grounded = plot_case_grounded(m->scene);
-    for (int k = 0; k < grounded; k++) {
-        double point[2], speed[2];
-        m->scene->contact_point(m->scene, m->c->robot, m->c->position, rest, k, point, speed);
-        label(m, INK_CONTACT, point[0], point[1] - 0.06 * m->size, point,
-              m->scene->contact_name[k]);
-    }
+    double p[2], speed[2];
+    m->scene->contact_point(m->scene, m->c->robot, m->c->position, rest, k, p, speed);
+    GNUPLOT_ROW(m->g, p[0], p[1], length * sin(slope), length * cos(slope), INK_CONTACT, 1);
+    GNUPLOT_ROW(m->g, p[0], p[1], length * cos(slope), -length * sin(slope), INK_CONTACT, 1);
+    label(m, INK_CONTACT, p[0], p[1] - 0.06 * m->size, p, m->scene->contact_name[k]);
+}
+
+/* The arrows of all things and, after them, their labels. */
+static void put_things(struct model *m)
+{
+    gnuplot_block(m->g, "arrows");
+    for (int k = 0; k < m->scene->coordinates; k++)
+        put_coordinate(m, k);
+    for (int a = 0; a < m->scene->actuators; a++)
+        put_actuator(m, a);
+    for (int k = 0; k < plot_case_grounded(m->scene); k++)
+        put_contact(m, k);
+    gnuplot_arrays(m->g, MOST_LABELS, "label_text label_x label_y label_ink of_x of_y");
     gnuplot_set(m->g, "labels = %d", m->labels);
+    for (int k = 0; k < m->labels; k++) {
+        const struct label *const l = &m->label[k];
+        gnuplot_text(m->g, look_label(m->g->plot->look, l->text), "label_text[%d]", k + 1);
+        gnuplot_set(m->g,
+                    "k = %d; label_x[k] = %#.9g; label_y[k] = %#.9g; label_ink[k] = %d; "
+                    "of_x[k] = %#.9g; of_y[k] = %#.9g",
+                    k + 1, l->x, l->z, l->ink, l->of[0], l->of[1]);
+    }
 }
 
 /* Which way a slide goes, seen from where the robot stands. */
@@ -370,71 +357,51 @@ static void put_words(struct model *m)
     gnuplot_set(m->g, "words_shown = %d", m->words);
 }
 
-static bool draw_model(const struct scenario *s, const stance_case *c, struct look *look,
-                       const char *directory, stance_message *message)
+static int draw_model(const struct scenario *s, const stance_case *c, void *asked)
 {
+    struct look *const look = asked;
+    stance_message message;
+    const struct plot plot = {.title = s->title[0] ? s->title : s->name,
+                              .directory = look->directory ? look->directory : ".",
+                              .stem = s->name,
+                              .look = look,
+                              .message = &message};
     struct gnuplot g;
-    struct model *const m = calloc(1, sizeof *m);
-    char subtitle[160], stem[300];
-    if (!m)
-        return no_memory(message);
-    m->scene = s->scene;
-    m->c = c;
-    m->g = &g;
-    make_model(m);
-    const double fall = tan(c->robot[STANCE_ROBOT_SLOPE]);
-    snprintf(subtitle, sizeof subtitle, "The model in its first posture, scene %.60s",
-             s->scene->name);
-    bool good =
-        gnuplot_begin(&g, look, plot_model_gp, s->title[0] ? s->title : s->name, subtitle, message);
-    if (good) {
+    if (!look->file && !gnuplot_directory(plot.directory))
+        return EXIT_IO;
+    bool good = gnuplot_begin(&g, &plot, "model", plot_model_gp);
+    struct model *const m = good ? gnuplot_room(&g, 1, sizeof *m) : NULL;
+    if (m) {
+        m->scene = s->scene;
+        m->c = c;
+        m->g = &g;
+        make_model(m);
+        gnuplot_say(&g, "The model in its first posture, scene %.60s", s->scene->name);
         gnuplot_set(&g,
                     "low_x = %#.9g; high_x = %#.9g; low_y = %#.9g; high_y = %#.9g; size = %#.9g",
-                    m->low[0], m->high[0], m->low[1], m->high[1], m->size);
-        gnuplot_set(&g, "has_place = %d; place_x = %#.9g; place_y = %#.9g", is_place(m, 0),
-                    c->position[0], c->position[1]);
+                    m->range[0].low, m->range[0].high, m->range[1].low, m->range[1].high, m->size);
+        gnuplot_set(&g, "has_place = %d; place_x = %#.9g; place_y = %#.9g; fall = %#.9g",
+                    is_place(m, 0), c->position[0], c->position[1],
+                    tan(c->robot[STANCE_ROBOT_SLOPE]));
         put_lines(m);
-        gnuplot_set(&g, "fall = %#.9g", fall);
-        put_arrows(m);
-        put_labels(m);
+        put_things(m);
         put_words(m);
-        snprintf(stem, sizeof stem, "%.250s-model", s->name);
-        good = gnuplot_end(&g, directory, stem, message);
     }
-    free(m);
-    return good;
+    good = good && gnuplot_end(&g);
+    if (!good)
+        fprintf(stderr, "%s\n", message.text);
+    return good ? EXIT_DONE : EXIT_IO;
 }
 
-int plot_model(const char *file, const char *const *sets, size_t set_count, struct look *look)
+int plot_model(const struct command *command, const char *file, const struct option_texts *sets,
+               struct look *look)
 {
-    const struct parallel alone = parallel_alone();
-    const char *const directory = look->directory ? look->directory : ".";
-    struct scenario s;
-    struct plan plan;
-    struct plan_error error = {0};
-    stance_message message = {""};
-    int method, code = EXIT_USAGE;
-    stance_case *const c = calloc(1, sizeof *c);
-    if (!c || !scenario_read(&s, file, NULL, sets, set_count, stderr)) {
-        free(c);
-        return EXIT_USAGE;
+    struct scenario *const s = calloc(1, sizeof *s);
+    int code = EXIT_USAGE;
+    if (s && scenario_read(s, file, NULL, sets->text, sets->count, stderr)) {
+        code = asked_first(command, s, draw_model, look);
+        scenario_free(s);
     }
-    if (!plan_make(&plan, &s, true, 0, false, &error)) {
-        fprintf(stderr, "stance plot: %s\n", error.message.text);
-    } else {
-        if (!plan_compute_designs(&plan, &alone, &error) || !plan_check_cases(&plan, &error))
-            fprintf(stderr, "stance plot: %s\n", error.message.text);
-        else if (!plan_resolve(&plan, 0, c, &method))
-            fprintf(stderr, "stance plot: the first case does not exist\n");
-        else if (!look->file && !gnuplot_directory(directory))
-            code = EXIT_IO;
-        else
-            code = draw_model(&s, c, look, directory, &message) ? EXIT_DONE : EXIT_IO;
-        plan_free(&plan);
-    }
-    if (message.text[0])
-        fprintf(stderr, "%s\n", message.text);
-    scenario_free(&s);
-    free(c);
+    free(s);
     return code;
 }

@@ -4,10 +4,9 @@
 
 #include "analysis/draw/look.h"
 
-#include <stddef.h>
-
 /* NAME-model of the scenario in `file` with --set `sets`, into this directory unless the look says
  * otherwise: its first case, where it begins. Returns an exit code; says why on standard error. */
-int plot_model(const char *file, const char *const *sets, size_t set_count, struct look *look);
+int plot_model(const struct command *command, const char *file, const struct option_texts *sets,
+               struct look *look);
 
 #endif

@@ -5,233 +5,192 @@
 #include "runner/base/message.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 GNUPLOT_SCRIPT(plot_outline_gp, "analysis/plot/plot_outline.gp");
 
 /* Each has a pair of dashes and marks of its own. */
-enum { MOST_OUTLINES = 14, HUES = 7, DASHES = 5 };
+enum { MOST_OUTLINES = 14, DASHES = 5 };
 static const int marks[] = {0, 7, 4}; /* types of gnuplot's points: none, discs, squares */
 _Static_assert(MOST_OUTLINES <= DASHES * sizeof marks / sizeof marks[0], "outlines look alike");
 
 struct page {
     struct gnuplot g;
-    const struct plot *plots; /* [files] */
+    const struct plot *plots;                 /* [files] */
+    struct plot_layout layout[MOST_OUTLINES]; /* [files] */
+    struct plot_range range[2];               /* that hold all maps */
+    enum plot_scale scale[2];                 /* that all files can have */
+    const char *swept; /* the one axis that outlines differ in, beside files; NULL: none, several */
     int files, outlines;
     enum results_kind of;
-    enum plot_scale scale[2]; /* that all files can have */
-    double low[2], high[2];
-    bool cross;
-    const char *swept; /* the one axis that outlines differ in, beside files; NULL: none, several */
 };
 
-static const struct results_axis *axis_of(const struct results *r, const struct plot_layout *layout,
-                                          int k)
+static const struct results_axis *axis_of(const struct page *page, int f, int k)
 {
-    return &r->axis[k == 0 ? layout->x : layout->y];
+    const struct plot_layout *const layout = &page->layout[f];
+    return &layout->r->axis[k == 0 ? layout->x : layout->y];
 }
 
 /* ---- axes --------------------------------------------------------------------------------- */
 
 /* Whether a file has a map, over the axes of the first one. */
-static bool check_file(const struct page *page, int f, const struct plot_layout *first,
-                       stance_message *message)
+static bool check_file(struct page *page, int f)
 {
-    const struct results *const r = page->plots[f].r, *const r0 = page->plots[0].r;
-    struct plot_layout layout;
+    stance_message *const message = page->plots[0].message;
+    const struct results *const r = page->plots[f].r;
     if (r->single || r->axes < 2 || r->sample >= 0)
         return complain(message, "%.150s: has no outline: it is no sweep over a grid of two axes",
                         r->file);
-    plot_layout_make(&layout, r, MOST_OUTLINES);
+    plot_layout_make(&page->layout[f], r, MOST_OUTLINES / page->files);
     for (int k = 0; k < 2; k++) {
-        const struct results_axis *const own = axis_of(r, &layout, k), *const of =
-                                                                           axis_of(r0, first, k);
+        const struct results_axis *const own = axis_of(page, f, k), *const of = axis_of(page, 0, k);
         bool same = strcmp(own->name, of->name) == 0 && !own->word == !of->word &&
                     (!own->word || own->count == of->count);
         for (size_t i = 0; same && own->word && i < own->count; i++)
             same = strcmp(own->word[i], of->word[i]) == 0;
         if (!same)
             return complain(message, "%.70s: its map is over %.30s, that of %.70s over %.30s",
-                            r->file, own->name, r0->file, of->name);
+                            r->file, own->name, page->plots[0].r->file, of->name);
     }
     return true;
 }
 
 /* An axis of a file's map on the page's scale. */
-static struct plot_axis on_page(const struct page *page, const struct results_axis *axis, int k)
+static struct plot_axis on_page(const struct page *page, int f, int k)
 {
     struct plot_axis along;
-    plot_axis_make_curve(&along, axis);
+    plot_axis_make_curve(&along, axis_of(page, f, k));
     along.scale = page->scale[k];
-    along.low = page->low[k];
-    along.high = page->high[k];
+    along.range = page->range[k];
     return along;
 }
 
-/* The scales and ranges that hold all maps. */
-static void choose_scales(struct page *page)
+/* The scale and the range that hold all maps. */
+static void choose_scale(struct page *page, int k)
 {
-    const struct results_axis *axis[MOST_OUTLINES][2];
+    struct plot_range range = PLOT_NOTHING;
+    page->scale[k] = PLOT_LOG;
     for (int f = 0; f < page->files; f++) {
-        struct plot_layout layout;
-        plot_layout_make(&layout, page->plots[f].r, MOST_OUTLINES);
-        for (int k = 0; k < 2; k++)
-            axis[f][k] = axis_of(page->plots[f].r, &layout, k);
+        struct plot_axis along;
+        plot_axis_make_curve(&along, axis_of(page, f, k));
+        page->scale[k] = along.scale == PLOT_LOG ? page->scale[k] : along.scale;
     }
-    for (int k = 0; k < 2; k++) {
-        page->scale[k] = PLOT_LOG;
-        for (int f = 0; f < page->files; f++) {
-            struct plot_axis along;
-            plot_axis_make_curve(&along, axis[f][k]);
-            page->scale[k] = along.scale == PLOT_LOG ? page->scale[k] : along.scale;
-        }
-        page->low[k] = INFINITY;
-        page->high[k] = -INFINITY;
-        for (int f = 0; f < page->files; f++) {
-            const struct plot_axis along = on_page(page, axis[f][k], k);
-            for (size_t i = 0; i < axis[f][k]->count; i++) {
-                page->low[k] = fmin(page->low[k], plot_axis_place(&along, i));
-                page->high[k] = fmax(page->high[k], plot_axis_place(&along, i));
-            }
-        }
-        if (!(page->low[k] < page->high[k])) {
-            page->low[k] -= 0.5;
-            page->high[k] += 0.5;
-        }
+    for (int f = 0; f < page->files; f++) {
+        const struct plot_axis along = on_page(page, f, k);
+        for (size_t i = 0; i < along.axis->count; i++)
+            plot_widen(&range, plot_axis_place(&along, i));
     }
-}
-
-static void put_axes(struct page *page, const struct plot_layout *layout)
-{
-    const struct results *const r = page->plots[0].r;
-    page->cross = true;
-    for (int k = 0; k < 2; k++) {
-        const struct plot_axis along = on_page(page, axis_of(r, layout, k), k);
-        plot_axis_write(&along, &page->g, k == 0 ? "x" : "y");
-        page->cross = page->cross && along.axis->offset && along.scale == PLOT_LINEAR &&
-                      along.low < 0 && along.high > 0;
-    }
+    page->range[k] = plot_roomy(range, 0);
 }
 
 /* ---- outlines ----------------------------------------------------------------------------- */
 
+/* A panel of a file, whose cases are counted from left to right and from below. */
+struct panel {
+    const struct plot_layout *layout;
+    int number;
+    struct statistics_place *points[2];
+    size_t count[2];
+};
+
 /* A place between the values of an axis, from left to right. */
-static double between(const struct statistics_place *points, size_t count, double at)
+static double between(const struct panel *panel, int k, double at)
 {
-    const size_t i = at < 0 ? 0 : (size_t)at, next = i + 1 < count ? i + 1 : i;
+    const struct statistics_place *const points = panel->points[k];
+    const size_t i = at < 0 ? 0 : (size_t)at, next = i + 1 < panel->count[k] ? i + 1 : i;
     return points[i].value + (at - (double)i) * (points[next].value - points[i].value);
 }
 
-static void put_lines(struct page *page, const struct boundary *b,
-                      struct statistics_place *const points[2], const size_t count[2])
+static void put_lines(struct page *page, const struct boundary *b, const struct panel *panel)
 {
     gnuplot_block(&page->g, "outline%d", page->outlines);
     for (size_t l = 0; l < b->lines; l++) {
         const struct boundary_line *const line = &b->line[l];
         for (size_t k = 0; k < line->count + line->closed; k++) {
             const double *const at = b->point[line->first + k % line->count];
-            GNUPLOT_ROW(&page->g, between(points[0], count[0], at[0]),
-                        between(points[1], count[1], at[1]));
+            GNUPLOT_ROW(&page->g, between(panel, 0, at[0]), between(panel, 1, at[1]));
         }
-        gnuplot_set(&page->g, "%s", ""); /* lines are apart */
+        gnuplot_gap(&page->g);
     }
-    if (b->lines == 0)
-        GNUPLOT_ROW(&page->g, NAN, NAN);
-    gnuplot_end_block(&page->g);
 }
 
-/* Which cases of a panel are inside, from left to right and from below; freed by the caller. */
-static uint8_t *find_inside(const struct page *page, int f, const struct plot_layout *layout,
-                            int panel, struct statistics_place *const points[2],
-                            const size_t count[2], double *share)
+/* Which cases of a panel are inside; NULL: no memory. */
+static uint8_t *find_inside(struct page *page, const struct panel *panel)
 {
-    const struct results *const r = page->plots[f].r;
-    uint8_t *inside = malloc(count[0] * count[1]);
-    size_t sum = 0, done = 0;
-    for (size_t j = 0; inside && j < count[1]; j++) {
-        for (size_t i = 0; i < count[0]; i++) {
-            const uint64_t index =
-                plot_layout_index(layout, panel, points[0][i].index, points[1][j].index);
-            inside[j * count[0] + i] = r->kind[index] == page->of;
-            sum += r->kind[index] == page->of;
-            done += r->kind[index] < RESULTS_FAILED;
+    const struct results *const r = panel->layout->r;
+    uint8_t *const inside = gnuplot_room(&page->g, panel->count[0] * panel->count[1], 1);
+    for (size_t j = 0; inside && j < panel->count[1]; j++) {
+        for (size_t i = 0; i < panel->count[0]; i++) {
+            const uint64_t index = plot_layout_index(
+                panel->layout, panel->number, panel->points[0][i].index, panel->points[1][j].index);
+            inside[j * panel->count[0] + i] = r->kind[index] == page->of;
         }
     }
-    *share = done > 0 ? 100 * (double)sum / (double)done : 0;
     return inside;
 }
 
-static bool put_outline(struct page *page, int f, const struct plot_layout *layout, int panel,
-                        stance_message *message)
+/* "place, friction = 0.2", or the file's name before it. */
+static void put_legend(struct page *page, const struct panel *panel)
 {
-    const struct results *const r = page->plots[f].r;
-    const size_t count[2] = {axis_of(r, layout, 0)->count, axis_of(r, layout, 1)->count};
-    const struct plot_axis along[2] = {on_page(page, axis_of(r, layout, 0), 0),
-                                       on_page(page, axis_of(r, layout, 1), 1)};
-    struct statistics_place *points[2] = {plot_axis_points(&along[0], message),
-                                          plot_axis_points(&along[1], message)};
+    const size_t k = (size_t)page->outlines - 1;
+    char values[300], name[400], more[32];
+    plot_panel_title(&page->g, panel->layout, panel->number,
+                     page->swept ? PLOT_VALUES_ALONE : PLOT_NAMES, values, sizeof values);
+    if (page->files == 1)
+        snprintf(name, sizeof name, "%s", values[0] ? values : results_kind_names[page->of]);
+    else
+        snprintf(name, sizeof name, "%s%s%s",
+                 look_label(page->g.plot->look, panel->layout->r->name), values[0] ? ", " : "",
+                 values);
+    snprintf(more, sizeof more, "%.1f %%",
+             fmax(0, plot_layout_share(panel->layout, panel->number, page->of)));
+    gnuplot_legend(&page->g, gnuplot_hue(k), (int)k % DASHES + 1, marks[k / DASHES], name, more);
+}
+
+static void put_outline(struct page *page, int f, int number)
+{
+    struct gnuplot *const g = &page->g;
+    struct panel panel = {.layout = &page->layout[f], .number = number};
     struct boundary b = {0};
-    char values[300], name[400], more[32], colour[16];
-    double share = 0;
-    uint8_t *inside =
-        points[0] && points[1] ? find_inside(page, f, layout, panel, points, count, &share) : NULL;
-    const bool good =
-        (inside || no_memory(message)) && boundary_trace(&b, inside, count[0], count[1], message);
-    if (good) {
-        page->outlines++;
-        put_lines(page, &b, points, count);
-        /* "place, friction = 0.2", or the file's name before it */
-        plot_panel_title(&page->g, layout, panel, page->swept ? PLOT_VALUES_ALONE : PLOT_NAMES,
-                         values, sizeof values);
-        if (page->files == 1)
-            snprintf(name, sizeof name, "%s", values[0] ? values : results_kind_names[page->of]);
-        else
-            snprintf(name, sizeof name, "%s%s%s", look_label(page->g.look, r->name),
-                     values[0] ? ", " : "", values);
-        snprintf(more, sizeof more, "%.1f %%", share);
-        const int k = page->outlines - 1;
-        snprintf(colour, sizeof colour, "hue[%d]", k % HUES + 1);
-        gnuplot_legend_mark(&page->g, colour, k % DASHES + 1, marks[k / DASHES], name, more);
+    for (int k = 0; k < 2; k++) {
+        const struct plot_axis along = on_page(page, f, k);
+        panel.count[k] = along.axis->count;
+        panel.points[k] = plot_axis_points(&along, g);
     }
+    const uint8_t *const inside =
+        panel.points[0] && panel.points[1] ? find_inside(page, &panel) : NULL;
+    if (!inside || !gnuplot_needs(g, boundary_trace(&b, inside, panel.count[0], panel.count[1],
+                                                    g->plot->message)))
+        return;
+    page->outlines++;
+    put_lines(page, &b, &panel);
+    put_legend(page, &panel);
     boundary_free(&b);
-    free(inside);
-    free(points[0]);
-    free(points[1]);
-    return good;
 }
 
 /* ---- what linear theory allows -------------------------------------------------------------- */
 
 /* A line in the colour of each outline, or one for all where that is the same. */
-static bool put_allowed(struct page *page, int most, stance_message *message)
+static void put_allowed(struct page *page)
 {
-    const struct plot_frame frame = {{page->scale[0], page->scale[1]},
-                                     {page->low[0], page->low[1]},
-                                     {page->high[0], page->high[1]}};
-    struct plot_allowed allowed[MOST_OUTLINES] = {{0}};
     struct plot_allowed_panel panel[MOST_OUTLINES];
     int count = 0;
-    bool good = true, same = true;
-    for (int f = 0; good && f < page->files; f++) {
-        struct plot_layout layout;
-        plot_layout_make(&layout, page->plots[f].r, most);
-        good = plot_allowed_make(&allowed[f], &page->plots[f], &layout, &frame, message);
-        for (int k = 0; good && k < layout.panels; k++)
-            panel[count++] = allowed[f].panels > 0 ? allowed[f].panel[k]
-                                                   : (struct plot_allowed_panel){.share = NAN};
+    bool same = true;
+    for (int f = 0; f < page->files; f++) {
+        struct plot_allowed allowed;
+        const struct plot_axis along[] = {on_page(page, f, 0), on_page(page, f, 1)};
+        if (!plot_allowed_make(&allowed, &page->g, &page->layout[f], along))
+            return;
+        for (int k = 0; k < page->layout[f].panels; k++)
+            panel[count++] =
+                allowed.panels > 0 ? allowed.panel[k] : (struct plot_allowed_panel){.share = NAN};
     }
     for (int k = 1; k < count; k++)
         same = same && plot_allowed_same(&panel[0], &panel[k]);
-    for (int k = 0; good && k < (same ? 1 : count); k++)
+    for (int k = 0; k < (same ? 1 : count); k++)
         plot_allowed_write(&panel[k], &page->g, k + 1);
-    if (good) {
-        plot_allowed_legend(panel, count, same ? PLOT_ALLOWED_ONE : PLOT_ALLOWED_EACH, &page->g);
-        gnuplot_set(&page->g, "alloweds = allowed ? %d : 0", same ? 1 : count);
-    }
-    for (int f = 0; f < page->files; f++)
-        plot_allowed_free(&allowed[f]);
-    return good;
+    plot_allowed_legend(panel, count, same ? PLOT_ALLOWED_ONE : PLOT_ALLOWED_EACH, &page->g);
+    gnuplot_set(&page->g, "alloweds = allowed ? %d : 0", same ? 1 : count);
 }
 
 /* ---- the page ----------------------------------------------------------------------------- */
@@ -240,70 +199,60 @@ static const char *find_swept(const struct page *page)
 {
     const char *swept = NULL;
     for (int f = 0; f < page->files; f++) {
-        const struct results *const r = page->plots[f].r;
-        struct plot_layout layout;
-        plot_layout_make(&layout, r, MOST_OUTLINES);
-        const char *const own = layout.others > 0 ? r->axis[layout.other[0]].name : NULL;
-        if (layout.others > 1 || (swept && own && strcmp(swept, own) != 0))
+        const struct plot_layout *const layout = &page->layout[f];
+        const char *const own = layout->others > 0 ? layout->r->axis[layout->other[0]].name : NULL;
+        if (layout->others > 1 || (swept && own && strcmp(swept, own) != 0))
             return NULL;
         swept = own ? own : swept;
     }
     return swept;
 }
 
-static bool begin(struct page *page, stance_message *message)
+static void put(struct page *page)
 {
-    const struct results *const r = page->plots[0].r;
-    char title[300], what[200];
-    bool same = true;
-    for (int f = 1; f < page->files; f++)
-        same = same && strcmp(page->plots[f].r->title, r->title) == 0;
-    if (same)
-        snprintf(title, sizeof title, "%s", r->title[0] ? r->title : r->name);
-    else
-        snprintf(title, sizeof title, "Domains of %d files", page->files);
-    snprintf(what, sizeof what,
-             "Outlines of where the outcome is: %s; beside them its share of cases",
-             results_kind_names[page->of]);
-    return gnuplot_begin(&page->g, page->plots[0].look, plot_outline_gp, title, what, message);
+    struct gnuplot *const g = &page->g;
+    bool cross = true;
+    gnuplot_say(g, "Outlines of where the outcome is: %s; beside them its share of cases",
+                results_kind_names[page->of]);
+    for (int k = 0; k < 2; k++) {
+        choose_scale(page, k);
+        const struct plot_axis along = on_page(page, 0, k);
+        plot_axis_write(&along, g, k == 0 ? 'x' : 'y');
+        cross = cross && along.axis->offset && along.scale == PLOT_LINEAR && along.range.low < 0 &&
+                along.range.high > 0;
+    }
+    page->swept = find_swept(page); /* what the values in the legend are of */
+    const char *const swept = page->swept ? look_label(g->plot->look, page->swept) : "";
+    char head[200];
+    snprintf(head, sizeof head, "%s%s", swept[0] && page->files > 1 ? "file, " : "", swept);
+    gnuplot_text(g, head, "legend_head");
+    for (int f = 0; f < page->files; f++) {
+        for (int p = 0; p < page->layout[f].panels; p++)
+            put_outline(page, f, p);
+        plot_layout_note(&page->layout[f], g);
+    }
+    put_allowed(page);
+    gnuplot_set(g, "outlines = %d; cross = %d", page->outlines, cross);
+    if (cross)
+        gnuplot_legend(g, "0x000000", 0, 1, "equilibrium", "");
 }
 
-bool plot_outline(const struct plot *plots, int files, enum results_kind of,
-                  stance_message *message)
+bool plot_outline(const struct plot *plots, int files, enum results_kind of)
 {
     struct page page = {.plots = plots, .files = files};
-    struct plot_layout layout = {0};
-    char head[200];
-    bool good = true;
-    if (!plots[0].r->single && plots[0].r->axes >= 2)
-        plot_layout_make(&layout, plots[0].r, MOST_OUTLINES);
-    for (int f = 0; good && f < files; f++)
-        good = check_file(&page, f, &layout, message);
-    if (!good)
-        return false;
+    struct plot plot = plots[0];
+    char title[40];
+    bool same = true;
+    for (int f = 0; f < files; f++) {
+        if (!check_file(&page, f))
+            return false;
+        same = same && strcmp(plots[f].r->title, plots[0].r->title) == 0;
+    }
     page.of = of == RESULTS_KIND_COUNT ? statistics_judged(plots[0].r) : of;
-    choose_scales(&page);
-    if (!begin(&page, message))
+    snprintf(title, sizeof title, "Domains of %d files", files);
+    plot.title = same ? NULL : title;
+    if (!gnuplot_begin(&page.g, &plot, "outline", plot_outline_gp))
         return false;
-    put_axes(&page, &layout);
-    page.swept = find_swept(&page); /* what the values in the legend are of */
-    snprintf(head, sizeof head, "%s%s", page.swept && files > 1 ? "file, " : "",
-             page.swept ? look_label(page.g.look, page.swept) : "");
-    gnuplot_text(&page.g, head, "legend_head");
-    const int most = MOST_OUTLINES / files; /* files are fewer: command_plot.c */
-    for (int f = 0; good && f < files; f++) {
-        plot_layout_make(&layout, plots[f].r, most);
-        for (int p = 0; good && p < layout.panels; p++)
-            good = put_outline(&page, f, &layout, p, message);
-        plot_layout_note(&layout, &page.g);
-    }
-    good = good && put_allowed(&page, most, message);
-    if (!good) {
-        gnuplot_abandon(&page.g);
-        return false;
-    }
-    gnuplot_set(&page.g, "outlines = %d; cross = %d", page.outlines, page.cross);
-    if (page.cross)
-        gnuplot_legend_mark(&page.g, "0x000000", 0, 1, "equilibrium", "");
-    return plot_end(&plots[0], &page.g, "outline", message);
+    put(&page);
+    return gnuplot_end(&page.g);
 }

@@ -8,10 +8,8 @@
  */
 #include "analysis/draw/plot.h"
 #include "analysis/statistics/doe_bins.h"
-#include "runner/base/message.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 GNUPLOT_SCRIPT(plot_sample_gp, "analysis/plot/plot_sample.gp");
@@ -27,17 +25,19 @@ enum {
 struct span {
     bool logarithmic;
     bool none[2]; /* some values are -infinity, infinity: limits that there are not */
-    double low, high, absent[2]; /* the places of these */
+    struct plot_range shown;
+    double absent[2]; /* the places of these */
 };
 
 struct page {
     struct gnuplot g;
-    const struct plot *plot;
-    enum results_kind judged;
-    int x, y;          /* paths of the scatter, y -1: there is but one factor */
-    int scale;         /* the axis over initial.offset.scale, or -1 */
-    bool shares;       /* points stand for several cases */
+    const struct results *r;
     struct span *span; /* [varied] */
+    double most;       /* the end of the axis of shares in per cent */
+    enum results_kind judged;
+    int x, y;    /* paths of the scatter, y -1: there is but one factor */
+    int scale;   /* the axis over initial.offset.scale, or -1 */
+    bool shares; /* points stand for several cases */
 };
 
 /* ---- what is drawn ------------------------------------------------------------------------ */
@@ -49,7 +49,7 @@ static bool is_offset(const struct results_varied *v)
 
 static void choose_scatter(struct page *page)
 {
-    const struct results *r = page->plot->r;
+    const struct results *r = page->r;
     page->y = page->scale = -1;
     for (int k = 0; k < r->varied && page->y < 0; k++)
         page->y = r->vary[k].factor == 1 ? k : -1;
@@ -69,26 +69,24 @@ static void choose_scatter(struct page *page)
  * wide range; offsets are multiplied by the scale. */
 static void find_span(const struct page *page, int k)
 {
-    const struct results *r = page->plot->r;
+    const struct results *r = page->r;
     const struct results_varied *v = &r->vary[k];
     struct span *const span = &page->span[k];
-    double low = INFINITY, high = -INFINITY, sum = 0, sum_log = 0, n = 0;
+    struct plot_range of;
+    double sum = 0, sum_log = 0, n = 0;
 
-    *span = (struct span){0};
     for (size_t i = 0; i < v->of.count; i++) {
         const double value = v->of.value[i];
         if (isinf(value)) {
             span->none[value > 0] = true;
             continue;
         }
-        low = fmin(low, value);
-        high = fmax(high, value);
         sum += value;
         sum_log += value > 0 ? log(value) : 0;
         n++;
     }
-    if (n == 0)
-        low = high = 0;
+    const bool any = plot_range_of(&of, v->of.value, v->of.count);
+    double low = any ? of.low : 0, high = any ? of.high : 0;
     span->logarithmic = !v->word && low > 0 && high > 3 * low &&
                         fabs((sum_log / n - log(low)) / log(high / low) - 0.5) <
                             fabs((sum / n - low) / (high - low) - 0.5);
@@ -103,11 +101,9 @@ static void find_span(const struct page *page, int k)
     const double width = high > low ? high - low : 1;
     span->absent[0] = low - 0.3 * width;
     span->absent[1] = high + 0.3 * width;
-    span->low = span->none[0] ? span->absent[0] : low;
-    span->high = span->none[1] ? span->absent[1] : high;
-    const double margin = span->high > span->low ? 0.03 * (span->high - span->low) : 0.5;
-    span->low -= margin;
-    span->high += margin;
+    const double ends[] = {span->none[0] ? span->absent[0] : low,
+                           span->none[1] ? span->absent[1] : high};
+    span->shown = plot_roomy((struct plot_range){ends[0], ends[1]}, 0.03);
 }
 
 /* Where a value of a path stands; what is infinite, an absent limit, beside all others. */
@@ -119,29 +115,25 @@ static double place_of(const struct page *page, int k, double value)
 
 /* Tells the script of path k as an axis: words, and numbers that are few or among which some are
  * none, are a list. */
-static bool put_axis(struct page *page, int k, const char *which, stance_message *message)
+static void put_axis(struct page *page, int k, const char *which)
 {
-    const struct results_varied *v = &page->plot->r->vary[k];
+    const struct results_varied *v = &page->r->vary[k];
     struct gnuplot *g = &page->g;
     struct doe_bins bins;
     const struct span *span = &page->span[k];
-    double low = span->low, high = span->high;
     size_t words = 0;
 
-    if (!doe_bins_make(&bins, page->plot->r, k, TICS, message))
-        return false;
+    if (!gnuplot_needs(g, doe_bins_make(&bins, page->r, k, TICS, g->plot->message)))
+        return;
     const bool absent = span->none[0] || span->none[1],
                listed = absent || (bins.listed && !(page->scale >= 0 && is_offset(v)));
-    if (v->word) {
-        low = ceil(low) - 0.5;
-        high = floor(high) + 0.5;
-    }
     plot_label_write(&v->of, g, which);
     gnuplot_text(g, listed ? "list" : span->logarithmic ? "log" : "linear", "%s_scale", which);
-    gnuplot_set(g, "%s_low = %#.17g; %s_high = %#.17g; %s_wordy = %d", which, low, which, high,
-                which, v->word != NULL);
+    gnuplot_set(g, "%s_low = %#.17g; %s_high = %#.17g; %s_wordy = %d", which,
+                v->word ? ceil(span->shown.low) - 0.5 : span->shown.low, which,
+                v->word ? floor(span->shown.high) + 0.5 : span->shown.high, which, v->word != NULL);
     if (!listed)
-        return true;
+        return;
     gnuplot_set(g, "array %s_word[%zu]\narray %s_at[%zu]", which, bins.count + 2, which,
                 bins.count + 2);
     for (size_t b = 0; b < bins.count + 2; b++) {
@@ -152,10 +144,9 @@ static bool put_axis(struct page *page, int k, const char *which, stance_message
         char text[40];
         results_number_text(centre, 0, text, sizeof text);
         gnuplot_set(g, "%s_at[%zu] = %#.17g", which, ++words, place_of(page, k, centre));
-        plot_tic_text(g, v->word ? v->word[(int)centre] : text, "%s_word[%zu]", which, words);
+        gnuplot_tic(g, v->word ? v->word[(int)centre] : text, "%s_word[%zu]", which, words);
     }
     gnuplot_set(g, "%s_words = %zu", which, words);
-    return true;
 }
 
 /* ---- the scatter -------------------------------------------------------------------------- */
@@ -164,7 +155,7 @@ static bool put_axis(struct page *page, int k, const char *which, stance_message
  */
 static double place_at(const struct page *page, int k, size_t point, double scale)
 {
-    const struct results *r = page->plot->r;
+    const struct results *r = page->r;
     if (k < 0)
         return fmod(0.5 + 0.6180339887498949 * (double)point, 1);
     return is_offset(&r->vary[k]) ? scale * r->vary[k].of.value[point]
@@ -179,7 +170,7 @@ static uint64_t divisor_of(uint64_t a, uint64_t b)
 /* Every case, or every n-th where there are too many. */
 static void put_cases(struct page *page)
 {
-    const struct results *r = page->plot->r;
+    const struct results *r = page->r;
     uint64_t every = (r->cases + MOST_DRAWN - 1) / MOST_DRAWN;
 
     while (every > 1 && divisor_of(every, r->axis[r->sample].count) > 1)
@@ -193,124 +184,92 @@ static void put_cases(struct page *page)
     }
 }
 
-static bool put_shares(struct page *page, stance_message *message)
+static void put_shares(struct page *page)
 {
-    const struct results *r = page->plot->r;
+    const struct results *r = page->r;
     const size_t n = r->axis[r->sample].count, every = (n + MOST_DRAWN - 1) / MOST_DRAWN;
-    struct statistics_counts *counts = malloc(n * sizeof *counts);
-    if (!counts)
-        return no_memory(message);
-    statistics_count_axis(r, r->sample, counts);
-    for (size_t i = 0; i < n; i += every) {
+    struct statistics_counts *const counts = gnuplot_room(&page->g, n, sizeof *counts);
+    if (counts)
+        statistics_count_axis(r, r->sample, counts);
+    for (size_t i = 0; counts && i < n; i += every)
         GNUPLOT_ROW(&page->g, place_at(page, page->x, i, 1), place_at(page, page->y, i, 1),
                     counts[i].done
                         ? 100 * (double)counts[i].kind[page->judged] / (double)counts[i].done
                         : NAN);
-    }
-    free(counts);
-    return true;
 }
 
-static bool put_scatter(struct page *page, stance_message *message)
+static void put_scatter(struct page *page)
 {
-    const struct results *r = page->plot->r;
-    if (!put_axis(page, page->x, "x", message) ||
-        (page->y >= 0 && !put_axis(page, page->y, "y", message)))
-        return false;
+    const struct results *r = page->r;
+    put_axis(page, page->x, "x");
+    if (page->y >= 0)
+        put_axis(page, page->y, "y");
     gnuplot_set(&page->g,
                 "plane = %d; shares = bars = %d; points = %llu; judged_colour = colour_%s",
                 page->y >= 0, page->shares,
                 (unsigned long long)(page->shares ? r->axis[r->sample].count : r->cases),
                 results_kind_names[page->judged]);
     gnuplot_text(&page->g, results_kind_names[page->judged], "judged");
-    plot_kinds_write(r, &page->g, !page->shares);
+    plot_kinds_write(&page->g, !page->shares);
     gnuplot_block(&page->g, "scatter");
-    bool good = true;
-    if (page->shares)
-        good = put_shares(page, message);
-    else
-        put_cases(page);
-    gnuplot_end_block(&page->g);
-    return good;
+    (page->shares ? put_shares : put_cases)(page);
 }
 
 /* ---- shares ------------------------------------------------------------------------------- */
 
-/* Share of the kind judged by in each bin, with its interval, against the bin's median; the highest
- * interval widens *most, the end of the axis of shares in per cent. */
-static bool put_panel(struct page *page, int k, double *most, stance_message *message)
+/* Share of the kind judged by in each bin, with its interval, against the bin's median. */
+static void put_panel(struct page *page, int k)
 {
+    struct gnuplot *const g = &page->g;
     struct doe_bins bins;
     char which[32];
-    bool any = false;
 
     snprintf(which, sizeof which, "x%d", k + 1);
-    if (!doe_bins_make(&bins, page->plot->r, k, BINS, message) ||
-        !put_axis(page, k, which, message))
-        return false;
-    gnuplot_block(&page->g, "bins%d", k + 1);
+    put_axis(page, k, which);
+    if (!gnuplot_needs(g, doe_bins_make(&bins, page->r, k, BINS, g->plot->message)))
+        return;
+    gnuplot_block(g, "bins%d", k + 1);
     for (size_t b = 0; b < bins.count; b++) {
         const struct statistics_counts *c = &bins.bin[b].counts;
         const struct interval *interval = &bins.bin[b].of_kind[page->judged];
         if (c->done == 0)
             continue;
-        GNUPLOT_ROW(&page->g, place_of(page, k, bins.bin[b].centre),
+        GNUPLOT_ROW(g, place_of(page, k, bins.bin[b].centre),
                     100 * (double)c->kind[page->judged] / (double)c->done, 100 * interval->low,
                     100 * interval->high);
-        *most = fmax(*most, 104 * interval->high);
-        any = true;
+        page->most = fmax(page->most, 104 * interval->high);
     }
-    if (!any) /* a panel without bins is empty, not an error */
-        GNUPLOT_ROW(&page->g, NAN, NAN, NAN, NAN);
-    gnuplot_end_block(&page->g);
-    return true;
 }
 
 /* ---- the page ----------------------------------------------------------------------------- */
 
-static bool draw(struct page *page, stance_message *message)
-{
-    const struct results *r = page->plot->r;
-    const int panels = r->varied < MOST_PANELS ? r->varied : MOST_PANELS;
-    char what[800];
-    double most = 1;
-
-    choose_scatter(page);
-    for (int k = 0; k < r->varied; k++)
-        find_span(page, k);
-    snprintf(what, sizeof what, "%llu case%s at %zu point%s of a design, %s",
-             (unsigned long long)r->cases, r->cases == 1 ? "" : "s", r->axis[r->sample].count,
-             r->axis[r->sample].count == 1 ? "" : "s", r->method);
-    plot_failed_text(r, what, sizeof what);
-    plot_cut_text(r, page->judged, true, what, sizeof what);
-    if (!plot_begin(page->plot, &page->g, plot_sample_gp, what, message))
-        return false;
-    if (panels < r->varied) {
-        snprintf(what, sizeof what, "%d of the %d paths are drawn", panels, r->varied);
-        gnuplot_note(&page->g, what);
-    }
-    bool good = put_scatter(page, message);
-    for (int k = 0; good && k < panels; k++)
-        good = put_panel(page, k, &most, message);
-    if (!good) {
-        gnuplot_abandon(&page->g);
-        return false;
-    }
-    gnuplot_set(&page->g, "panels = %d; most = %#.10g", panels, fmin(most, 100));
-    return plot_end(page->plot, &page->g, "sample", message);
-}
-
-bool plot_sample(const struct plot *plot, stance_message *message)
+bool plot_sample(const struct plot *plot)
 {
     const struct results *r = plot->r;
+    struct page page = {.r = r, .most = 1};
+    struct gnuplot *const g = &page.g;
     if (r->sample < 0)
         return true;
-    struct page page = {.plot = plot,
-                        .judged = statistics_judged(r),
-                        .span = calloc((size_t)r->varied, sizeof *page.span)};
+    const int panels = r->varied < MOST_PANELS ? r->varied : MOST_PANELS;
+    const size_t points = r->axis[r->sample].count;
+    if (!gnuplot_begin(g, plot, "sample", plot_sample_gp))
+        return false;
+    page.judged = statistics_judged(r);
+    page.span = gnuplot_room(g, (size_t)r->varied, sizeof *page.span);
     if (!page.span)
-        return no_memory(message);
-    const bool good = draw(&page, message);
-    free(page.span);
-    return good;
+        return gnuplot_end(g);
+    choose_scatter(&page);
+    for (int k = 0; k < r->varied; k++)
+        find_span(&page, k);
+    gnuplot_say(g, "%llu case%s at %zu point%s of a design, %s", (unsigned long long)r->cases,
+                r->cases == 1 ? "" : "s", points, points == 1 ? "" : "s", r->method);
+    plot_say_failed(g);
+    plot_say_cut(g, page.judged, true);
+    if (panels < r->varied)
+        gnuplot_note(g, "%d of the %d paths are drawn", panels, r->varied);
+    put_scatter(&page);
+    for (int k = 0; k < panels; k++)
+        put_panel(&page, k);
+    gnuplot_set(g, "panels = %d; most = %#.10g", panels, fmin(page.most, 100));
+    return gnuplot_end(g);
 }

@@ -12,68 +12,165 @@
 
 GNUPLOT_SCRIPT(plot_shares_gp, "analysis/plot/plot_shares.gp");
 
-/* ---- shares against a parameter ----------------------------------------------------------- */
+enum { MAX_EXTENTS = 2, SHARES = 6 };
 
-enum { MAX_EXTENTS = 2 };
-
-/* One curve of shares: of a kind, over the counts of the axis's values, `stride` apart. */
-struct share {
-    int kind;
-    const struct statistics_counts *counts;
-    size_t stride;
-    char colour[32]; /* an expression of gnuplot's */
-    char label[96];
-    double *parts; /* [values][PARTS]; NULL: shares of a grid's cases, which have no ends */
-};
 /* A share, the ends of its likely error (95 %), and its bounds where there are any. */
 enum { SHARE, LOW, HIGH, LOWEST, HIGHEST, PARTS };
-enum { SHARES = 6 };
 
-static void share_at(const struct share *share, size_t i, double part[PARTS])
+/* One curve of shares of a kind. */
+struct share {
+    double (*part)[PARTS]; /* [values] */
+    enum results_kind kind;
+};
+
+struct page {
+    struct gnuplot g;
+    const struct results *r;
+    struct plot_axis along;
+    struct statistics_place *points; /* [values] */
+    struct statistics_counts *counts;
+    struct share share[SHARES];
+    size_t values;
+    int first, second; /* axes: that the page runs along, whose values have a curve each, or -1 */
+    int count;         /* of shares */
+    bool measured;     /* shares of a grid's cases, which have no ends, are not */
+    bool bounded;
+};
+
+/* ---- shares against a parameter ----------------------------------------------------------- */
+
+/* Kinds whose shares are drawn: of stabilised and rested those that there are, or the first. */
+static int choose_kinds(const struct statistics_counts *counts, size_t n, enum results_kind *kinds)
 {
-    const struct statistics_counts *c = &share->counts[i * share->stride];
-    for (int k = 0; k < PARTS; k++)
-        part[k] = NAN;
-    if (share->parts)
-        memcpy(part, share->parts + PARTS * i, PARTS * sizeof *part);
-    else if (c->done > 0)
-        part[SHARE] = part[LOW] = part[HIGH] = (double)c->kind[share->kind] / (double)c->done;
+    static const enum results_kind wanted[2] = {RESULTS_STABILISED, RESULTS_RESTED};
+    int found = 0;
+    for (int k = 0; k < 2; k++) {
+        bool any = false;
+        for (size_t i = 0; i < n && !any; i++)
+            any = counts[i].kind[wanted[k]] > 0;
+        if (any || (k == 1 && found == 0))
+            kinds[found++] = wanted[any ? k : 0];
+    }
+    return found;
 }
 
-/* Share with its interval, in per cent. */
-static void put_share(struct gnuplot *g, const struct plot_axis *along,
-                      const struct statistics_place *points, const struct share *share, int number,
-                      bool apart)
+/* The axis that the page runs along, and the second parameter, where there is one alone and it has
+ * few values, else -1: the one with more values is run along. */
+static void choose_parameters(struct page *page)
 {
-    static const int types[SHARES] = {7, 5, 9, 11, 13, 15}; /* of points */
-    double row[1 + PARTS];
-    gnuplot_block(g, "share%d", number);
-    for (size_t i = 0; i < along->axis->count; i++) {
-        row[0] = points[i].value;
-        share_at(share, points[i].index, row + 1);
-        for (int k = 0; k < PARTS; k++)
-            row[1 + k] *= 100;
-        gnuplot_row(g, row, 1 + PARTS);
+    const struct results *const r = page->r;
+    int parameters = 1, second = -1;
+    for (int a = 1; a < r->axes; a++) {
+        if (!r->axis[a].offset && a != r->sample) {
+            second = a;
+            parameters++;
+        }
     }
-    gnuplot_end_block(g);
-    const int dash = apart && !along->axis->word ? number : 0, type = apart ? types[number - 1] : 0;
-    gnuplot_legend_mark(g, share->colour, dash, type, share->label, "");
-    gnuplot_set(
-        g,
-        "k = %d; share_colour[k] = legend_colour[legends]; share_dash[k] = %d; share_type[k] = %d",
-        number, apart ? number : 1, apart ? type : 7);
+    const bool swap = parameters == 2 && r->axis[second].count > r->axis[0].count;
+    page->first = swap ? second : 0;
+    page->second = swap ? 0 : second;
+    if (parameters != 2 || r->axis[page->second].count < 2 ||
+        r->axis[page->second].count > SHARES) {
+        page->first = 0;
+        page->second = -1;
+    }
+}
+
+/* The curves, with the shares of the cases that are done: of each kind, or of the second axis's
+ * values of stabilised cases, or where there are none of rested ones. */
+static void make_shares(struct page *page)
+{
+    const bool pair = page->second >= 0;
+    const size_t stride = pair ? page->r->axis[page->second].count : 1;
+    enum results_kind kinds[2];
+    const int found = choose_kinds(page->counts, page->values * stride, kinds);
+    const int count = pair ? (int)stride : found;
+    page->count = count;
+    for (int k = 0; k < count; k++) {
+        struct share *const share = &page->share[k];
+        share->kind = kinds[pair ? 0 : k];
+        share->part = gnuplot_room(&page->g, page->values, sizeof *share->part);
+        for (size_t i = 0; share->part && i < page->values; i++) {
+            const struct statistics_counts *const c =
+                &page->counts[pair ? i * stride + (size_t)k : i];
+            double *const part = share->part[i];
+            part[SHARE] = part[LOW] = part[HIGH] =
+                c->done > 0 ? (double)c->kind[share->kind] / (double)c->done : NAN;
+            part[LOWEST] = part[HIGHEST] = NAN;
+        }
+    }
+}
+
+/* The intervals of shares of a sample that has no basins. */
+static bool measure_sample(struct page *page, struct share *share)
+{
+    struct interval *const interval = gnuplot_room(&page->g, page->values, sizeof *interval);
+    if (!interval ||
+        !intervals_find(page->r, share->kind, page->first, NULL, page->values, interval))
+        return no_memory(page->g.plot->message);
+    for (size_t i = 0; i < page->values; i++) {
+        share->part[i][LOW] = interval[i].low;
+        share->part[i][HIGH] = interval[i].high;
+    }
+    return true;
+}
+
+/* The volumes of basins, where there are starts, and intervals of samples. Share k is of its own
+ * kind or, with a second axis, of its point k. Of a grid of other things the shares are left as
+ * they are. */
+static bool measure(struct page *page)
+{
+    const struct results *const r = page->r;
+    const int second = page->second;
+    stance_message *const message = page->g.plot->message;
+    const char *by[] = {r->axis[page->first].name, second < 0 ? NULL : r->axis[second].name};
+    for (size_t k = 0; k < (size_t)page->count; k++) {
+        struct share *const share = &page->share[k];
+        const struct basin_choice choice = {
+            .of = share->kind, .by = by, .by_count = second < 0 ? 1 : 2, .side = 5, .level = 0.95};
+        struct basin_sample sample;
+        struct basin basin;
+        bool usage = false;
+        if (!share->part || !basin_sample_make(&sample, r, message))
+            return false;
+        if (!basin_make(&basin, r, &choice, &sample, &usage, message)) {
+            if (!usage || r->sample < 0 || second >= 0)
+                return usage;
+            if (!measure_sample(page, share))
+                return false;
+            page->measured = true;
+            continue;
+        }
+        page->measured = true;
+        page->bounded = basin.averaged < 0; /* over a sample of parameters nothing is certain */
+        for (size_t i = 0; i < page->values; i++) {
+            /* rows are in the order of the axes */
+            const struct basin_row *const row =
+                &basin.row[second < 0             ? i
+                           : page->first < second ? i * r->axis[second].count + k
+                                                  : k * page->values + i];
+            double *const part = share->part[i];
+            part[SHARE] = row->volume / basin.box;
+            part[LOW] = fmax(0, (row->volume - row->reach) / basin.box);
+            part[HIGH] = fmin(1, (row->volume + row->reach) / basin.box);
+            part[LOWEST] = page->bounded ? row->low / basin.box : NAN;
+            part[HIGHEST] = page->bounded ? row->high / basin.box : NAN;
+        }
+        basin_free(&basin);
+    }
+    return true;
 }
 
 /* The end of the axis in per cent: the highest end of a share of more than no case at all, of which
  * there is but the tiny end of an interval. */
-static double find_most(const struct share *shares, int count, size_t values)
+static double find_most(const struct page *page)
 {
-    double most = 0, part[PARTS];
-    for (int k = 0; k < count; k++) {
+    double most = 0;
+    for (int k = 0; k < page->count; k++) {
         double highest = 0;
         bool any = false;
-        for (size_t i = 0; i < values; i++) {
-            share_at(&shares[k], i, part);
+        for (size_t i = 0; i < page->values; i++) {
+            const double *const part = page->share[k].part[i];
             any = any || part[SHARE] > 0;
             highest = fmax(highest, fmax(part[HIGH], part[HIGHEST])); /* NAN is not looked at */
         }
@@ -82,142 +179,52 @@ static double find_most(const struct share *shares, int count, size_t values)
     return most > 0 ? fmin(100, 1.08 * most) : 100;
 }
 
-/* Shares of a sample that has no basins, with their intervals. */
-static bool measure_sample(const struct results *r, int axis, struct share *share)
+/* Share k with its interval, in per cent. */
+static void put_share(struct page *page, int k)
 {
-    const size_t values = r->axis[axis].count;
-    struct interval *interval = malloc(values * sizeof *interval);
-    share->parts = malloc(PARTS * values * sizeof *share->parts);
-    const bool good =
-        interval && share->parts &&
-        intervals_find(r, (enum results_kind)share->kind, axis, NULL, values, interval);
-    for (size_t i = 0; good && i < values; i++) {
-        const struct statistics_counts *c = &share->counts[i * share->stride];
-        double *part = share->parts + PARTS * i;
-        part[SHARE] = c->done > 0 ? (double)c->kind[share->kind] / (double)c->done : NAN;
-        part[LOW] = interval[i].low;
-        part[HIGH] = interval[i].high;
-        part[LOWEST] = part[HIGHEST] = NAN;
+    static const int types[SHARES] = {7, 5, 9, 11, 13, 15}; /* of points */
+    const struct share *const share = &page->share[k];
+    const bool apart = page->second >= 0;
+    struct gnuplot *const g = &page->g;
+    char colour[32], label[96];
+    gnuplot_block(g, "share%d", k + 1);
+    for (size_t i = 0; i < page->values; i++) {
+        double row[1 + PARTS] = {page->points[i].value};
+        for (int p = 0; p < PARTS; p++)
+            row[1 + p] = 100 * share->part[page->points[i].index][p];
+        gnuplot_row(g, row, 1 + PARTS);
     }
-    free(interval);
-    return good;
+    snprintf(colour, sizeof colour, "colour_%s", results_kind_names[share->kind]);
+    if (apart)
+        results_value_text(&page->r->axis[page->second], (size_t)k, true, label, sizeof label);
+    gnuplot_legend(g, apart ? gnuplot_hue((size_t)k) : colour,
+                   apart && !page->along.axis->word ? k + 1 : 0, apart ? types[k] : 0,
+                   apart ? label : results_kind_names[share->kind], "");
 }
 
-/* The volumes of basins, where there are starts, and intervals of samples. Share k is of its own
- * kind or, with a second axis, of its point k. Of a grid of other things the shares are left as
- * they are. */
-static bool measure_volumes(const struct results *r, int axis, int second, struct share *shares,
-                            int count, bool *bounded, stance_message *message)
-{
-    const char *by[] = {r->axis[axis].name, second < 0 ? NULL : r->axis[second].name};
-    for (int k = 0; k < count; k++) {
-        const struct basin_choice choice = {.of = (enum results_kind)shares[k].kind,
-                                            .by = by,
-                                            .by_count = second < 0 ? 1 : 2,
-                                            .side = 5,
-                                            .level = 0.95};
-        struct basin_sample sample;
-        struct basin basin;
-        bool usage = false;
-        if (!basin_sample_make(&sample, r, message))
-            return false;
-        if (!basin_make(&basin, r, &choice, &sample, &usage, message)) {
-            if (!usage || r->sample < 0 || second >= 0)
-                return usage;
-            if (!measure_sample(r, axis, &shares[k]))
-                return no_memory(message);
-            continue;
-        }
-        const size_t values = r->axis[axis].count;
-        shares[k].parts = malloc(PARTS * values * sizeof *shares[k].parts);
-        const bool good = shares[k].parts != NULL;
-        *bounded = basin.averaged < 0; /* over a sample of parameters nothing is certain */
-        for (size_t i = 0; good && i < values; i++) {
-            /* rows are in the order of the axes */
-            const struct basin_row *const row =
-                &basin.row[second < 0      ? i
-                           : axis < second ? i * r->axis[second].count + (size_t)k
-                                           : (size_t)k * values + i];
-            double *const part = shares[k].parts + PARTS * i;
-            part[SHARE] = row->volume / basin.box;
-            part[LOW] = fmax(0, (row->volume - row->reach) / basin.box);
-            part[HIGH] = fmin(1, (row->volume + row->reach) / basin.box);
-            part[LOWEST] = *bounded ? row->low / basin.box : NAN;
-            part[HIGHEST] = *bounded ? row->high / basin.box : NAN;
-        }
-        basin_free(&basin);
-        if (!good)
-            return no_memory(message);
-    }
-    return true;
-}
+/* ---- extents ------------------------------------------------------------------------------ */
 
-/* Kinds whose shares are drawn: of stabilised and rested those that there are, or the first. */
-static int choose_kinds(const struct statistics_counts *counts, size_t n, struct share *shares)
+/* Of the stabilised set along an axis of offsets, for every value of the first axis. */
+static void put_extent(struct page *page, int axis, int number)
 {
-    static const int wanted[2] = {RESULTS_STABILISED, RESULTS_RESTED};
-    int found = 0;
-    for (int k = 0; k < 2; k++) {
-        bool any = false;
-        for (size_t i = 0; i < n && !any; i++)
-            any = counts[i].kind[wanted[k]] > 0;
-        if (any || (k == 1 && found == 0)) {
-            int kind = any ? wanted[k] : wanted[0];
-            struct share *share = &shares[found++];
-            *share = (struct share){.kind = kind, .counts = counts, .stride = 1};
-            snprintf(share->colour, sizeof share->colour, "colour_%s", results_kind_names[kind]);
-            snprintf(share->label, sizeof share->label, "%s", results_kind_names[kind]);
-        }
-    }
-    return found;
-}
-
-/* The axis that the page runs along, and the second parameter, where there is one alone and it has
- * few values, else -1: the one with more values is run along. */
-static void choose_parameters(const struct results *r, int *along, int *second)
-{
-    int parameters = 1;
-    *along = 0;
-    *second = -1;
-    for (int a = 1; a < r->axes; a++) {
-        if (!r->axis[a].offset && a != r->sample) {
-            *second = a;
-            parameters++;
-        }
-    }
-    if (parameters == 2 && r->axis[*second].count > r->axis[0].count) {
-        *along = *second;
-        *second = 0;
-    }
-    if (parameters != 2 || r->axis[*second].count < 2 || r->axis[*second].count > SHARES) {
-        *along = 0;
-        *second = -1;
-    }
-}
-
-/* The extent of the stabilised set along an axis of offsets, for every value of the first axis. */
-static void put_extent(struct gnuplot *g, const struct results *r, const struct plot_axis *along,
-                       const struct statistics_place *points, int axis, int number)
-{
-    const struct results_axis *of = &r->axis[axis];
+    struct gnuplot *const g = &page->g;
+    const struct results_axis *of = &page->r->axis[axis];
     size_t point[SCENARIO_MAX_AXES] = {0};
     struct statistics_extent extent;
     struct plot_axis range;
     const char *dot = strrchr(of->name, '.');
 
-    gnuplot_text(g, of->name, "extent[%d]", number);
     gnuplot_text(g, dot ? dot + 1 : of->name, "extent_name[%d]", number);
     gnuplot_text(g, of->unit, "extent_unit[%d]", number);
     plot_axis_make_curve(&range, of);
-    gnuplot_set(g, "extent_low[%d] = %#.17g; extent_high[%d] = %#.17g", number, range.low, number,
-                range.high);
+    gnuplot_set(g, "extent_low[%d] = %#.17g; extent_high[%d] = %#.17g", number, range.range.low,
+                number, range.range.high);
     gnuplot_block(g, "extent%d", number);
-    for (size_t i = 0; i < along->axis->count; i++) {
-        point[0] = points[i].index;
-        bool any = statistics_extent(r, axis, point, &extent) && extent.any;
-        GNUPLOT_ROW(g, points[i].value, any ? extent.low : NAN, any ? extent.high : NAN);
+    for (size_t i = 0; i < page->values; i++) {
+        point[0] = page->points[i].index;
+        const bool any = statistics_extent(page->r, axis, point, &extent) && extent.any;
+        GNUPLOT_ROW(g, page->points[i].value, any ? extent.low : NAN, any ? extent.high : NAN);
     }
-    gnuplot_end_block(g);
 }
 
 /* Axes of offsets whose extents are drawn: none when a further parameter is varied, or no case was
@@ -238,89 +245,71 @@ static int choose_extents(const struct results *r, int *axes)
     return count;
 }
 
-/* `second`: the axis whose values have a curve each, or -1. */
-static bool draw_page(const struct plot *plot, const struct plot_axis *along,
-                      const struct statistics_place *points, const struct share *shares, int count,
-                      int second, bool bounded, stance_message *message)
-{
-    const struct results *r = plot->r;
-    struct gnuplot g;
-    char what[900];
-    int extents[MAX_EXTENTS], extent_count = choose_extents(r, extents);
-    const bool words = along->axis->word != NULL;
-    const size_t values = along->axis->count * (second < 0 ? 1 : r->axis[second].count);
-    const uint64_t each = r->cases / (values ? values : 1);
+/* ---- the page ----------------------------------------------------------------------------- */
 
-    snprintf(what, sizeof what, "%s cases against %s%s%s, %llu case%s per %s",
-             second < 0 && count > 1            ? "Stabilised and rested"
-             : shares[0].kind == RESULTS_RESTED ? "Rested"
-                                                : "Stabilised",
-             along->axis->name, second < 0 ? "" : " and ", second < 0 ? "" : r->axis[second].name,
-             (unsigned long long)each, each == 1 ? "" : "s",
-             second < 0 ? "value" : "pair of values");
-    plot_failed_text(r, what, sizeof what);
-    plot_cut_text(r, statistics_judged(r), true, what, sizeof what);
-    if (!plot_begin(plot, &g, plot_shares_gp, what, message))
-        return false;
-    plot_axis_write(along, &g, "x");
-    if (second >= 0)
-        gnuplot_text(&g, r->axis[second].name, "legend_head");
-    gnuplot_set(&g, "words = %d; volumes = %d; bounded = %d; most = %#.10g", words,
-                shares[0].parts != NULL, bounded, find_most(shares, count, along->axis->count));
-    gnuplot_set(&g, "shares = %d; extents = %d", count, extent_count);
-    gnuplot_arrays(&g, count, "share_colour share_dash share_type");
-    gnuplot_arrays(&g, MAX_EXTENTS, "extent extent_name extent_unit extent_low extent_high");
-    for (int k = 0; k < count; k++)
-        put_share(&g, along, points, &shares[k], k + 1, second >= 0);
-    for (int k = 0; k < extent_count; k++)
-        put_extent(&g, r, along, points, extents[k], k + 1);
-    snprintf(what, sizeof what, "%s: likely error (95 %%)%s", words ? "bars" : "band",
-             !bounded ? ""
-             : words  ? ", thin: certain bounds"
-                      : ", light: certain bounds");
-    if (shares[0].parts)
-        gnuplot_note(&g, what);
-    if (extent_count > 0)
-        gnuplot_note(&g, "below: how far it is stabilised along each axis through the equilibrium");
-    return plot_end(plot, &g, "curve", message);
+static void say(struct page *page)
+{
+    const struct results *const r = page->r;
+    const bool pair = page->second >= 0;
+    const size_t values = page->values * (pair ? r->axis[page->second].count : 1);
+    const uint64_t each = r->cases / (values ? values : 1);
+    gnuplot_say(&page->g, "%s cases against %s%s%s, %llu case%s per %s",
+                !pair && page->count > 1                ? "Stabilised and rested"
+                : page->share[0].kind == RESULTS_RESTED ? "Rested"
+                                                        : "Stabilised",
+                page->along.axis->name, pair ? " and " : "", pair ? r->axis[page->second].name : "",
+                (unsigned long long)each, each == 1 ? "" : "s", pair ? "pair of values" : "value");
+    plot_say_failed(&page->g);
+    plot_say_cut(&page->g, statistics_judged(r), true);
 }
 
-bool plot_shares(const struct plot *plot, stance_message *message)
+static void put(struct page *page)
 {
-    const struct results *r = plot->r;
-    struct plot_axis along;
-    struct share shares[SHARES];
-    int first, second, count = 0;
+    struct gnuplot *const g = &page->g;
+    int extents[MAX_EXTENTS];
+    const int extent_count = choose_extents(page->r, extents);
+    const bool words = page->along.axis->word != NULL;
+    say(page);
+    plot_axis_write(&page->along, g, 'x');
+    if (page->second >= 0)
+        gnuplot_text(g, page->r->axis[page->second].name, "legend_head");
+    gnuplot_set(g,
+                "words = %d; volumes = %d; bounded = %d; most = %#.10g; shares = %d; extents = %d",
+                words, page->measured, page->bounded, find_most(page), page->count, extent_count);
+    gnuplot_arrays(g, MAX_EXTENTS, "extent_name extent_unit extent_low extent_high");
+    for (int k = 0; k < page->count; k++)
+        put_share(page, k);
+    for (int k = 0; k < extent_count; k++)
+        put_extent(page, extents[k], k + 1);
+    if (page->measured)
+        gnuplot_note(g, "%s: likely error (95 %%)%s", words ? "bars" : "band",
+                     !page->bounded ? ""
+                     : words        ? ", thin: certain bounds"
+                                    : ", light: certain bounds");
+    if (extent_count > 0)
+        gnuplot_note(g, "below: how far it is stabilised along each axis through the equilibrium");
+}
+
+bool plot_shares(const struct plot *plot)
+{
+    const struct results *const r = plot->r;
+    struct page page = {.r = r};
     if (r->axes < 2 || r->axis[0].offset)
         return true;
-    choose_parameters(r, &first, &second);
-    plot_axis_make_curve(&along, &r->axis[first]);
-    struct statistics_place *points = plot_axis_points(&along, message);
-    size_t counted = r->axis[first].count * (second < 0 ? 1 : r->axis[second].count);
-    struct statistics_counts *counts = malloc(counted * sizeof *counts);
-    bool good = points && (counts || no_memory(message)), bounded = false;
-    if (good) {
-        if (second < 0) {
-            statistics_count_axis(r, first, counts);
-            count = choose_kinds(counts, counted, shares);
-        } else {
-            statistics_count_pair(r, first, second, counts);
-            struct share kinds[2]; /* of stabilised cases, or where there are none of rested ones */
-            choose_kinds(counts, counted, kinds);
-            for (size_t k = 0; k < r->axis[second].count; k++) {
-                struct share *const share = &shares[count++];
-                *share = (struct share){
-                    .kind = kinds[0].kind, .counts = counts + k, .stride = r->axis[second].count};
-                snprintf(share->colour, sizeof share->colour, "hue[%zu]", k + 1);
-                results_value_text(&r->axis[second], k, true, share->label, sizeof share->label);
-            }
-        }
-        good = measure_volumes(r, first, second, shares, count, &bounded, message) &&
-               draw_page(plot, &along, points, shares, count, second, bounded, message);
+    if (!gnuplot_begin(&page.g, plot, "curve", plot_shares_gp))
+        return false;
+    choose_parameters(&page);
+    plot_axis_make_curve(&page.along, &r->axis[page.first]);
+    page.values = page.along.axis->count;
+    page.points = plot_axis_points(&page.along, &page.g);
+    page.counts =
+        gnuplot_room(&page.g, page.values * (page.second < 0 ? 1 : r->axis[page.second].count),
+                     sizeof *page.counts);
+    if (page.points && page.counts) {
+        statistics_count_pair(r, page.first, page.second, page.counts);
+        make_shares(&page);
+        if (gnuplot_needs(&page.g, measure(&page)))
+            put(&page);
     }
-    for (int k = 0; k < count; k++)
-        free(shares[k].parts);
-    free(points);
-    free(counts);
-    return good;
+    return gnuplot_end(&page.g);
 }

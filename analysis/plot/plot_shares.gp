@@ -3,6 +3,8 @@
 left = 104
 width = wide(620, 1, left + legend_room)
 gap = 14
+share_type(k) = legend_point[k] > 0 ? legend_point[k] : 7
+share_dash(k) = legend_dash[k] > 0 ? legend_dash[k] : 1
 panel_top(p) = top + height + gap + (p - 1)*(low_height + gap)
 
 eval column_page
@@ -25,14 +27,14 @@ eval axis_tics('x', width/62, extents == 0)
 eval panel_tics(0, most, height)
 eval grid
 if (words) {
-    plot for [k=1:bounded*shares] '$share'.k using 1:2:5:6 with yerrorbars lc rgb share_colour[k] pt 0 lw 0.8 notitle, \
-        for [k=1:shares] '$share'.k using 1:2:3:4 with yerrorbars lc rgb share_colour[k] pt share_type[k] ps 1.1 lw 2.4 notitle
+    plot for [k=1:bounded*shares] '$share'.k using 1:2:5:6 with yerrorbars lc rgb legend_colour[k] pt 0 lw 0.8 notitle, \
+        for [k=1:shares] '$share'.k using 1:2:3:4 with yerrorbars lc rgb legend_colour[k] pt share_type(k) ps 1.1 lw 2.4 notitle
 } else {
-    plot for [k=1:bounded*shares] '$share'.k using 1:5:6 with filledcurves lc rgb share_colour[k] \
+    plot for [k=1:bounded*shares] '$share'.k using 1:5:6 with filledcurves lc rgb legend_colour[k] \
             fillstyle transparent solid 0.12 notitle, \
-        for [k=1:shares] '$share'.k using 1:3:4 with filledcurves lc rgb share_colour[k] \
+        for [k=1:shares] '$share'.k using 1:3:4 with filledcurves lc rgb legend_colour[k] \
             fillstyle transparent solid 0.35 notitle, \
-        for [k=1:shares] '$share'.k using 1:2 with linespoints lc rgb share_colour[k] lw 2 dt share_dash[k] pt share_type[k] ps 0.8 notitle
+        for [k=1:shares] '$share'.k using 1:2 with linespoints lc rgb legend_colour[k] lw 2 dt share_dash(k) pt share_type(k) ps 0.8 notitle
 }
 set arrow 1 from graph 0, first 0 to graph 1, first 0 nohead dt 2 lc rgb '#909090'
 do for [p=1:extents] {

@@ -2,11 +2,7 @@
  * intervals of time. Both directions have the same scale. */
 #include "plot_case.h"
 
-#include "runner/base/message.h"
-
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 GNUPLOT_SCRIPT(plot_strip_gp, "analysis/plot/plot_strip.gp");
 
@@ -18,55 +14,47 @@ struct strip {
     struct figure figure[MOST_FIGURES];
     struct figure other[MOST_FIGURES]; /* of the other case, without points from its end on */
     double fall;                       /* of the ground along x: a slope's tangent */
-    double spacing, low, high;         /* m: between figures; heights shown */
+    double spacing;                    /* m: between figures */
+    struct plot_range height;          /* m: what is shown */
     bool follows;                      /* places move with the figures */
 };
 
 /* ---- figures ------------------------------------------------------------------------------ */
 
-/* How far the points of a figure reach about a place: along x to either side, and from where down
- * and up. */
-static void reach(const struct figure *figure, double centre, double base, double size[3])
-{
-    for (int p = 0; p < figure->points; p++) {
-        size[0] = fmax(size[0], fabs(figure->point[p][0] - centre));
-        size[1] = fmin(size[1], figure->point[p][1] - base);
-        size[2] = fmax(size[2], figure->point[p][1] - base);
-    }
-}
-
-/* Of all figures; heights count from the ground below a figure's centre. */
+/* How far all figures reach to either side of their centres; heights count from the ground below
+ * these. */
 static double measure_figures(struct strip *strip)
 {
-    double size[3] = {0, 0, 1e-9};
-    for (int i = 0; i < strip->count; i++) {
-        struct figure *const figure = &strip->figure[i];
-        figure->base = -strip->fall * figure->centre;
-        reach(figure, figure->centre, figure->base, size);
-        reach(&strip->other[i], figure->centre, figure->base, size);
+    double half = 0;
+    strip->height = (struct plot_range){0, 1e-9};
+    for (int i = 0; i < 2 * strip->count; i++) {
+        struct figure *const own = &strip->figure[i / 2];
+        const struct figure *const figure = i % 2 ? &strip->other[i / 2] : own;
+        own->base = -strip->fall * own->centre;
+        for (int p = 0; p < figure->points; p++) {
+            half = fmax(half, fabs(figure->point[p][0] - own->centre));
+            plot_widen(&strip->height, figure->point[p][1] - own->base);
+        }
     }
-    strip->low = size[1];
-    strip->high = size[2];
-    return size[0];
+    return half;
 }
 
 /* Where and how large the figures are drawn. */
 static void measure(struct strip *strip)
 {
-    double low = INFINITY, high = -INFINITY;
+    struct plot_range centre = PLOT_NOTHING;
     measure_figures(strip);
-    for (int i = 0; i < strip->count; i++) {
-        low = fmin(low, strip->figure[i].centre);
-        high = fmax(high, strip->figure[i].centre);
-    }
+    for (int i = 0; i < strip->count; i++)
+        plot_widen(&centre, strip->figure[i].centre);
     /* Places stay put unless the figures travel further than they are tall. */
-    strip->follows = high - low > strip->high - strip->low;
+    strip->follows = centre.high - centre.low > strip->height.high - strip->height.low;
     for (int i = 0; i < strip->count && !strip->follows; i++)
-        strip->figure[i].centre = 0.5 * (low + high);
-    const double half = measure_figures(strip), tall = strip->high - strip->low;
+        strip->figure[i].centre = 0.5 * (centre.low + centre.high);
+    const double half = measure_figures(strip), tall = strip->height.high - strip->height.low;
     strip->spacing = 2.1 * fmax(half, 0.1 * tall);
-    strip->low = fmin(strip->low, -0.5 * fabs(strip->fall) * strip->spacing) - 0.05 * tall;
-    strip->high += 0.06 * tall;
+    strip->height.low =
+        fmin(strip->height.low, -0.5 * fabs(strip->fall) * strip->spacing) - 0.05 * tall;
+    strip->height.high += 0.06 * tall;
 }
 
 static void make_strip(struct strip *strip)
@@ -78,11 +66,11 @@ static void make_strip(struct strip *strip)
         size_t row = strip->count > 1 ? (size_t)i * (t->rows - 1) / (size_t)(strip->count - 1) : 0;
         const double time = t->time[row];
         figure_make(&strip->figure[i], strip->c, row);
-        /* The other case at the same instant. */
-        const struct results_trajectory *o = other ? other->t : NULL;
-        for (row = 0; o && row < o->rows && o->time[row] <= time + 1e-9; row++)
-            if (row + 1 == o->rows ? o->time[row] > time - 0.05 : o->time[row + 1] > time)
-                figure_make(&strip->other[i], other, row);
+        /* The other case at the same instant, up to its end. */
+        const struct results_trajectory *const o = other ? other->t : NULL;
+        row = o ? figure_row(o, time) : 0;
+        if (o && o->time[row] <= time + 1e-9 && (row + 1 < o->rows || o->time[row] > time - 0.05))
+            figure_make(&strip->other[i], other, row);
     }
     measure(strip);
 }
@@ -96,49 +84,39 @@ static void put_figures(struct gnuplot *g, const struct strip *strip)
     for (int i = 0; i < strip->count; i++) {
         for (int end = 0; end < 2; end++)
             GNUPLOT_ROW(g, (i + end) * strip->spacing, (0.5 - end) * strip->fall * strip->spacing);
-        gnuplot_set(g, "%s", "");
+        gnuplot_gap(g);
     }
-    gnuplot_end_block(g);
-    for (int part = FIGURE_SEGMENTS; part <= FIGURE_POINTS; part++) {
-        gnuplot_block(g, part == FIGURE_SEGMENTS ? "segments" : "points");
+    static const char *const blocks[] = {"segments", "points", "other"};
+    for (int k = 0; k < 3; k++) {
+        gnuplot_block(g, "%s", blocks[k]);
         for (int i = 0; i < strip->count; i++)
-            figure_put(g, &strip->figure[i], strip->contacts, (enum figure_part)part,
+            figure_put(g, k < 2 ? &strip->figure[i] : &strip->other[i], strip->contacts,
+                       k == 1 ? FIGURE_POINTS : FIGURE_SEGMENTS,
                        (i + 0.5) * strip->spacing - strip->figure[i].centre,
                        -strip->figure[i].base);
-        gnuplot_end_block(g);
     }
-    gnuplot_block(g, "other");
-    for (int i = 0; i < strip->count; i++)
-        if (strip->other[i].points > 0)
-            figure_put(g, &strip->other[i], strip->contacts, FIGURE_SEGMENTS,
-                       (i + 0.5) * strip->spacing - strip->figure[i].centre,
-                       -strip->figure[i].base);
-    GNUPLOT_ROW(g, NAN, NAN, NAN);
-    gnuplot_end_block(g);
 }
 
-bool plot_strip(const struct plot_case *c, stance_message *message)
+bool plot_strip(const struct plot_case *c)
 {
     struct gnuplot g;
-    struct strip *strip = calloc(1, sizeof *strip);
-    if (!strip)
-        return no_memory(message);
-    strip->c = c;
-    strip->fall = figure_fall(c);
-    make_strip(strip);
-    const bool good = plot_case_begin(c, &g, plot_strip_gp, "Stick figures", message);
-    if (good) {
+    if (!plot_case_begin(c, &g, "strip", plot_strip_gp, "Stick figures"))
+        return false;
+    struct strip *const strip = gnuplot_room(&g, 1, sizeof *strip);
+    if (strip) {
+        strip->c = c;
+        strip->fall = figure_fall(c);
+        make_strip(strip);
         gnuplot_set(&g,
                     "count = %d; spacing = %#.17g; low = %#.17g; high = %#.17g; travels = %d; "
                     "cases = %d",
-                    strip->count, strip->spacing, strip->low, strip->high, strip->follows,
-                    c->other ? 2 : 1);
+                    strip->count, strip->spacing, strip->height.low, strip->height.high,
+                    strip->follows, c->other ? 2 : 1);
         strip->contacts = figure_names(&g, c->scenario.scene);
-        gnuplot_arrays(&g, strip->count, "time");
+        gnuplot_arrays(&g, (size_t)strip->count, "time");
         for (int i = 0; i < strip->count; i++)
             gnuplot_number(&g, strip->figure[i].time, "time[%d]", i + 1);
         put_figures(&g, strip);
     }
-    free(strip);
-    return good && plot_end(c->plot, &g, "strip", message);
+    return gnuplot_end(&g);
 }

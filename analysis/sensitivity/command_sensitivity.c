@@ -23,12 +23,12 @@ static int work(struct report *report, const struct results *r, stance_message *
     const bool draws = look_given(look);
     struct sensitivity_study study;
     char own[1024];
+    const struct plot plot = {r, .directory = look_directory(look, r->file, own, sizeof own),
+                              .stem = r->name, .look = look, .message = message};
     int code = sensitivity_study_make(&study, r, &request->asked, message);
     if (code != EXIT_DONE)
         return code;
-    if (!sensitivity_print(&study, report->form) ||
-        (draws && !sensitivity_picture(&study, look, look_directory(look, r->file, own, sizeof own),
-                                       message)))
+    if (!sensitivity_print(&study, report->form) || (draws && !sensitivity_picture(&study, &plot)))
         code = EXIT_IO;
     else if (draws && !look_end(look, &command_sensitivity, r->file))
         code = EXIT_USAGE;

@@ -7,22 +7,20 @@
 #include "sensitivity_study.h"
 
 #include "analysis/draw/plot.h"
-#include "runner/base/message.h"
 
 #include <math.h>
-#include <string.h>
 
 GNUPLOT_SCRIPT(plot_sensitivity_gp, "analysis/sensitivity/plot_sensitivity.gp");
 
 enum { MOST_PANELS = 12 };
 
 struct drawing {
-    const struct sensitivity_study *study;
     struct gnuplot g;
-    bool morris;
-    size_t panels;
-    double low, high; /* range of indices; Morris: of mu* */
+    const struct sensitivity_study *study;
+    struct plot_range index; /* Morris: of mu* */
     double high_sigma;
+    size_t panels;
+    bool morris;
 };
 
 static const struct {
@@ -37,13 +35,11 @@ enum { SERIES = sizeof series / sizeof series[0] };
 /* ---- sizes -------------------------------------------------------------------------------- */
 
 /* Widens a range to hold estimates and intervals. */
-static void widen(double *low, double *high, const struct sensitivity_value *v, size_t n)
+static void widen(struct plot_range *range, const struct sensitivity_value *v, size_t n)
 {
     for (size_t j = 0; v && j < n; j++) {
-        const double least = isfinite(v[j].low) ? v[j].low : v[j].estimate;
-        const double most = isfinite(v[j].high) ? v[j].high : v[j].estimate;
-        *low = fmin(*low, least);
-        *high = fmax(*high, most);
+        plot_widen(range, isfinite(v[j].low) ? v[j].low : v[j].estimate);
+        plot_widen(range, isfinite(v[j].high) ? v[j].high : v[j].estimate);
     }
 }
 
@@ -51,38 +47,39 @@ static void widen(double *low, double *high, const struct sensitivity_value *v, 
 static void measure_ranges(struct drawing *d)
 {
     const size_t k = d->study->factors;
-    double zero = 0;
+    struct plot_range sigma = {0, 0};
     for (size_t t = 0; t < d->panels; t++) {
         const struct sensitivity *s = &d->study->table[t].s;
         for (int c = 0; c < SERIES; c++)
-            widen(&d->low, &d->high, s->measure[series[c].measure], k);
-        widen(&zero, &d->high, s->measure[SENSITIVITY_MU_STAR], k);
-        widen(&zero, &d->high_sigma, s->measure[SENSITIVITY_SIGMA], k);
+            widen(&d->index, s->measure[series[c].measure], k);
+        if (d->morris)
+            widen(&d->index, s->measure[SENSITIVITY_MU_STAR], k);
+        widen(&sigma, s->measure[SENSITIVITY_SIGMA], k);
     }
-    const double margin = 0.05 * (d->high - d->low);
-    d->low -= d->morris ? 0 : margin;
-    d->high = d->high > 0 ? d->high + margin : 1;
-    d->high_sigma = d->high_sigma > 0 ? 1.05 * d->high_sigma : 1;
+    const double margin = 0.05 * (d->index.high - d->index.low);
+    d->index.low -= d->morris ? 0 : margin;
+    d->index.high = d->index.high > 0 ? d->index.high + margin : 1;
+    d->high_sigma = sigma.high > 0 ? 1.05 * sigma.high : 1;
 }
 
-static void subtitle_of(const struct sensitivity_study *study, char *text, size_t size)
+static void say(struct drawing *d)
 {
-    char response[200];
+    const struct sensitivity_study *const study = d->study;
     const struct doe *design = study->design;
+    char response[200];
     uint64_t failed = 0;
     for (size_t t = 0; t < study->response.tables; t++)
         failed += study->response.table[t].failed;
     sensitivity_response_text(study, response, sizeof response);
-    snprintf(text, size, "What the %s depends on: %s with %g %% intervals, %llu %s.", response,
-             design->method == DOE_MORRIS ? "Morris's elementary effects over the ranges"
-                                          : "Sobol' indices",
-             100 * study->request.bootstrap.level, (unsigned long long)design->count,
-             design->method == DOE_MORRIS     ? "trajectories"
-             : design->method == DOE_SALTELLI ? "base points"
-                                              : "points");
+    gnuplot_say(&d->g, "What the %s depends on: %s with %g %% intervals, %llu %s.", response,
+                d->morris ? "Morris's elementary effects over the ranges" : "Sobol' indices",
+                100 * study->request.bootstrap.level, (unsigned long long)design->count,
+                d->morris                        ? "trajectories"
+                : design->method == DOE_SALTELLI ? "base points"
+                                                 : "points");
     if (failed > 0)
-        add_text(text, size, " %llu failed cases %s.", (unsigned long long)failed,
-                 study->request.fallen ? "count as fallen" : "are left out");
+        gnuplot_say(&d->g, " %llu failed cases %s.", (unsigned long long)failed,
+                    study->request.fallen ? "count as fallen" : "are left out");
 }
 
 /* ---- panels ------------------------------------------------------------------------------- */
@@ -99,7 +96,7 @@ static void put_names(struct drawing *d)
     gnuplot_set(&d->g, "factors = %zu\narray factor[%zu]", d->study->factors, d->study->factors);
     for (size_t i = 0; i < d->study->factors; i++) {
         sensitivity_factor_text(d->study, d->study->order[i], text, 128);
-        gnuplot_text(&d->g, look_label(d->g.look, text), "factor[%zu]", i + 1);
+        gnuplot_text(&d->g, look_label(d->g.plot->look, text), "factor[%zu]", i + 1);
     }
 }
 
@@ -118,7 +115,6 @@ static void put_rows(struct drawing *d, const struct sensitivity_value *const *m
         }
         gnuplot_row(&d->g, number, 3 * (size_t)count);
     }
-    gnuplot_end_block(&d->g);
 }
 
 static void put_indices(struct drawing *d, size_t t)
@@ -148,44 +144,37 @@ static void put_plane(struct drawing *d, size_t t)
 
 /* ---- the picture -------------------------------------------------------------------------- */
 
-bool sensitivity_picture(const struct sensitivity_study *study, struct look *look,
-                         const char *directory, stance_message *message)
+bool sensitivity_picture(const struct sensitivity_study *study, const struct plot *plot)
 {
-    const struct results *r = study->r;
-    const char *answer = study->request.answer;
-    struct drawing d = {.study = study};
-    char subtitle[400];
-
+    const char *const answer = study->request.answer;
+    const size_t tables = study->response.tables;
+    struct drawing d = {.study = study,
+                        .morris = study->design->method == DOE_MORRIS,
+                        .panels = tables < MOST_PANELS ? tables : MOST_PANELS};
+    char name[100];
     bool any = false;
-    for (size_t t = 0; t < study->response.tables; t++)
+    for (size_t t = 0; t < tables; t++)
         any = any || (study->table[t].s.blocks > 1 && study->table[t].s.deviation > 0);
     if (!any) {
         fprintf(stderr, "%s: too few points, or none that differ: no picture of sensitivity\n",
-                r->file);
+                plot->r->file);
         return true;
     }
-    d.morris = study->design->method == DOE_MORRIS;
-    d.panels = study->response.tables < MOST_PANELS ? study->response.tables : MOST_PANELS;
-    measure_ranges(&d);
-    subtitle_of(study, subtitle, sizeof subtitle);
-    if (!gnuplot_begin(&d.g, look, plot_sensitivity_gp, r->title[0] ? r->title : r->name, subtitle,
-                       message))
+    snprintf(name, sizeof name, "%.80s%ssensitivity", answer ? answer : "", answer ? "-" : "");
+    if (!gnuplot_begin(&d.g, plot, name, plot_sensitivity_gp))
         return false;
+    measure_ranges(&d);
+    say(&d);
     gnuplot_set(&d.g, "morris = %d; panels = %zu; low = %#.17g; high = %#.17g; high_sigma = %#.17g",
-                d.morris, d.panels, d.low, d.high, d.high_sigma);
-    if (study->response.tables > d.panels) {
-        snprintf(subtitle, sizeof subtitle, "the first %zu of %zu tables are drawn", d.panels,
-                 study->response.tables);
-        gnuplot_note(&d.g, subtitle);
-    }
+                d.morris, d.panels, d.index.low, d.index.high, d.high_sigma);
+    if (tables > d.panels)
+        gnuplot_note(&d.g, "the first %zu of %zu tables are drawn", d.panels, tables);
     put_names(&d);
     for (int k = 0; k < SERIES && !d.morris; k++)
         if (study->table[0].s.measure[series[k].measure])
-            gnuplot_legend(&d.g, series[k].colour, series[k].text, "");
-    gnuplot_arrays(&d.g, (int)(d.panels * study->factors), "mu_star sigma");
+            gnuplot_legend(&d.g, series[k].colour, 0, 0, series[k].text, "");
+    gnuplot_arrays(&d.g, d.panels * study->factors, "mu_star sigma");
     for (size_t t = 0; t < d.panels; t++)
         (d.morris ? put_plane : put_indices)(&d, t);
-    snprintf(subtitle, sizeof subtitle, "%.300s%s%.80s-sensitivity", r->name, answer ? "-" : "",
-             answer ? answer : "");
-    return gnuplot_end(&d.g, directory, subtitle, message);
+    return gnuplot_end(&d.g);
 }

@@ -68,9 +68,8 @@ void sensitivity_table_text(const struct sensitivity_study *study, size_t table,
 
 /* Prints the results; false: no memory, or the output failed. */
 bool sensitivity_print(const struct sensitivity_study *study, enum table_form form);
-/* DIRECTORY/NAME[-ANSWER]-sensitivity of the file's NAME, as the look has it. */
-struct look;
-bool sensitivity_picture(const struct sensitivity_study *study, struct look *look,
-                         const char *directory, stance_message *message);
+/* NAME[-ANSWER]-sensitivity of the plot's file. */
+struct plot;
+bool sensitivity_picture(const struct sensitivity_study *study, const struct plot *plot);
 
 #endif

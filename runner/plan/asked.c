@@ -1,6 +1,7 @@
 /* asked.c - commands that look at one scenario. */
 #include "asked.h"
 #include "instruction_set.h"
+#include "plan.h"
 
 #include <errno.h>
 #include <stdio.h>
@@ -46,4 +47,27 @@ int asked_run(const struct command *command, int argc, char **argv,
         return code;
     return instruction_set_usable(command->name) ? asked_work(command, request, work, request)
                                                  : EXIT_USAGE;
+}
+
+int asked_first(const struct command *command, const struct scenario *s,
+                int (*work)(const struct scenario *s, const stance_case *c, void *request),
+                void *request)
+{
+    const struct parallel alone = parallel_alone();
+    struct plan plan;
+    struct plan_error error = {0};
+    stance_case *const c = calloc(1, sizeof *c);
+    const char *why = c ? error.message.text : strerror(ENOMEM);
+    int method, code = EXIT_USAGE;
+    const bool made = c && plan_make(&plan, s, true, 0, false, &error);
+    if (made && plan_compute_designs(&plan, &alone, &error) && plan_check_cases(&plan, &error)) {
+        why = plan_resolve(&plan, 0, c, &method) ? NULL : "the first case does not exist";
+        code = why ? EXIT_USAGE : work(s, c, request);
+    }
+    if (why)
+        fprintf(stderr, "stance %s: %s\n", command->name, why);
+    if (made)
+        plan_free(&plan);
+    free(c);
+    return code;
 }

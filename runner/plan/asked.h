@@ -19,5 +19,10 @@ int asked_work(const struct command *command, const struct asked *asked,
 /* The same from the command line on, of a request that begins with what is asked. */
 int asked_run(const struct command *command, int argc, char **argv,
               int (*work)(const struct scenario *s, void *request), void *request);
+/* Works on a scenario's first case; whether it exists is known when its design has been computed.
+ */
+int asked_first(const struct command *command, const struct scenario *s,
+                int (*work)(const struct scenario *s, const stance_case *c, void *request),
+                void *request);
 
 #endif

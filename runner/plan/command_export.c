@@ -1,10 +1,8 @@
 /* command_export.c - `stance export`: a robot for other programs. */
 #include "asked.h"
 #include "mjcf.h"
-#include "plan.h"
 
 #include <errno.h>
-#include <stdlib.h>
 #include <string.h>
 
 extern const struct command command_export; /* below */
@@ -15,14 +13,9 @@ struct request {
     bool mjcf;
 };
 
-static int fail(const char *text)
+static int write_model(const struct scenario *s, const stance_case *c, void *asked)
 {
-    fprintf(stderr, "stance export: %s\n", text);
-    return EXIT_USAGE;
-}
-
-static int write_model(const struct scenario *s, const stance_case *c, const char *path)
-{
+    const char *const path = ((const struct request *)asked)->path;
     FILE *const out = path ? fopen(path, "w") : stdout;
     if (out)
         mjcf_write(out, s->scene, c, s->title[0] ? s->title : s->name);
@@ -34,28 +27,9 @@ static int write_model(const struct scenario *s, const stance_case *c, const cha
     return EXIT_DONE;
 }
 
-/* The first case; whether it exists is known when its design has been computed. */
 static int export(const struct scenario *s, void *asked)
 {
-    const struct request *const request = asked;
-    const struct parallel alone = parallel_alone();
-    struct plan plan;
-    struct plan_error error;
-    stance_case *const c = calloc(1, sizeof *c);
-    int method, code = EXIT_USAGE;
-    if (!c || !plan_make(&plan, s, true, 0, false, &error)) {
-        free(c);
-        return fail(c ? error.message.text : strerror(ENOMEM));
-    }
-    if (!plan_compute_designs(&plan, &alone, &error) || !plan_check_cases(&plan, &error))
-        fail(error.message.text);
-    else if (!plan_resolve(&plan, 0, c, &method))
-        fail("the first case does not exist");
-    else
-        code = write_model(s, c, request->path);
-    plan_free(&plan);
-    free(c);
-    return code;
+    return asked_first(&command_export, s, write_model, asked);
 }
 
 static int run(int argc, char **argv)

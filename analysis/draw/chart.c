@@ -1,0 +1,251 @@
+/* chart.c - what scripts are told of a picture: texts, numbers, data blocks, panels, axes, series,
+ * legend. */
+#include "gnuplot.h"
+
+#include "runner/store/results.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <string.h>
+
+/* As printf has it: to the data; to the end of a text. */
+#define PUT_FORMATTED(g, format)                                                                   \
+    do {                                                                                           \
+        va_list arguments;                                                                         \
+        va_start(arguments, format);                                                               \
+        vfprintf((g)->data, format, arguments);                                                    \
+        va_end(arguments);                                                                         \
+    } while (0)
+#define ADD_FORMATTED(text, format)                                                                \
+    do {                                                                                           \
+        va_list arguments;                                                                         \
+        va_start(arguments, format);                                                               \
+        vsnprintf((text) + strlen(text), sizeof(text) - strlen(text), format, arguments);          \
+        va_end(arguments);                                                                         \
+    } while (0)
+
+/* ---- texts and numbers -------------------------------------------------------------------- */
+
+/* In single quotes gnuplot expands nothing; a quote itself is doubled. */
+void gnuplot_quote(FILE *out, const char *text)
+{
+    putc('\'', out);
+    while (*text) {
+        int length = results_letter(text);
+        if ((unsigned char)*text <= ' ' || *text == 0x7f)
+            putc(' ', out);
+        else if (length == 0)
+            putc('?', out);
+        else if (*text == '\'')
+            fputs("''", out);
+        else
+            fwrite(text, 1, (size_t)length, out);
+        text += length > 0 ? length : 1;
+    }
+    putc('\'', out);
+}
+
+static void close_block(struct gnuplot *g)
+{
+    if (g->rows == 0)
+        fputs("NaN NaN NaN NaN NaN NaN NaN NaN\n", g->data);
+    if (g->rows >= 0)
+        fputs("EOD\n", g->data);
+    g->rows = -1;
+}
+
+void gnuplot_say(struct gnuplot *g, const char *format, ...)
+{
+    ADD_FORMATTED(g->subtitle, format);
+}
+
+void gnuplot_set(struct gnuplot *g, const char *format, ...)
+{
+    close_block(g);
+    PUT_FORMATTED(g, format);
+    putc('\n', g->data);
+}
+
+void gnuplot_arrays(struct gnuplot *g, size_t size, const char *names)
+{
+    for (size_t length; *names; names += length + (names[length] == ' ')) {
+        length = strcspn(names, " ");
+        gnuplot_set(g, "array %.*s[%zu]", (int)length, names, size);
+    }
+}
+
+static void put_text(struct gnuplot *g, const char *text)
+{
+    fputs(" = ", g->data);
+    gnuplot_quote(g->data, text);
+    putc('\n', g->data);
+}
+
+void gnuplot_text(struct gnuplot *g, const char *text, const char *name, ...)
+{
+    close_block(g);
+    PUT_FORMATTED(g, name);
+    put_text(g, text);
+}
+
+void gnuplot_tic(struct gnuplot *g, const char *text, const char *name, ...)
+{
+    char escaped[160];
+    size_t n = 0;
+    for (; *text && n + 3 < sizeof escaped; text++) {
+        escaped[n++] = *text;
+        if (*text == '%')
+            escaped[n++] = '%';
+    }
+    escaped[n] = '\0';
+    close_block(g);
+    PUT_FORMATTED(g, name);
+    put_text(g, escaped);
+}
+
+void gnuplot_number(struct gnuplot *g, double value, const char *name, ...)
+{
+    close_block(g);
+    PUT_FORMATTED(g, name);
+    if (isfinite(value))
+        fprintf(g->data, " = %#.17g\n", value); /* always real: gnuplot divides integers */
+    else
+        fputs(" = NaN\n", g->data);
+}
+
+/* ---- rows --------------------------------------------------------------------------------- */
+
+void gnuplot_block(struct gnuplot *g, const char *name, ...)
+{
+    close_block(g);
+    putc('$', g->data);
+    PUT_FORMATTED(g, name);
+    fputs(" << EOD\n", g->data);
+    g->rows = 0;
+}
+
+void gnuplot_row(struct gnuplot *g, const double *values, size_t count)
+{
+    g->rows = 1;
+    for (size_t i = 0; i < count; i++) {
+        fputs(i ? " " : "", g->data);
+        if (isfinite(values[i]))
+            fprintf(g->data, "%.16g", values[i]);
+        else
+            fputs("NaN", g->data);
+    }
+    putc('\n', g->data);
+}
+
+void gnuplot_gap(struct gnuplot *g)
+{
+    putc('\n', g->data);
+}
+
+/* ---- panels ------------------------------------------------------------------------------- */
+
+void plot_widen(struct plot_range *range, double value)
+{
+    if (isfinite(value)) {
+        range->low = fmin(range->low, value);
+        range->high = fmax(range->high, value);
+    }
+}
+
+bool plot_range_of(struct plot_range *range, const double *values, size_t n)
+{
+    *range = PLOT_NOTHING;
+    for (size_t i = 0; i < n; i++)
+        plot_widen(range, values[i]);
+    return range->low <= range->high;
+}
+
+struct plot_range plot_roomy(struct plot_range range, double part)
+{
+    const double room = range.high > range.low ? part * (range.high - range.low) : 0.5;
+    return range.low <= range.high ? (struct plot_range){range.low - room, range.high + room}
+                                   : (struct plot_range){0, 1};
+}
+
+const char *gnuplot_axis(struct gnuplot *g, char which, enum plot_scale scale,
+                         struct plot_range range, const char *name, const char *unit)
+{
+    static const char *const scales[] = {
+        [PLOT_LINEAR] = "linear", [PLOT_LOG] = "log", [PLOT_LIST] = "list"};
+    char *const axis = g->axis, label[400];
+    snprintf(axis, sizeof g->axis, g->panels ? "%c%d" : "%c", which, g->panels);
+    snprintf(label, sizeof label, unit[0] ? "%s (%s)" : "%s", name, unit);
+    gnuplot_text(g, "", "%s_text", axis);
+    gnuplot_text(g, label, "%s_path", axis);
+    gnuplot_set(g, "%s_scale = '%s'\n%s_low = %#.17g\n%s_high = %#.17g", axis, scales[scale], axis,
+                range.low, axis, range.high);
+    if (g->panels)
+        gnuplot_set(g, "panel_y[panels] = '%s'", axis);
+    return axis;
+}
+
+void gnuplot_panel(struct gnuplot *g, double height, const char *heading)
+{
+    g->panels++;
+    gnuplot_set(g,
+                "panels = panels + 1; panel_own[panels] = %g; panel_y[panels] = ''; "
+                "panel_plot[panels] = ''",
+                height);
+    gnuplot_text(g, heading, "panel_heading[panels]");
+}
+
+void gnuplot_series(struct gnuplot *g, const char *style, ...)
+{
+    const int number = ++g->series;
+    close_block(g);
+    fprintf(g->data, "panel_plot[panels] = panel_plot[panels].\", '$series%d' ", number);
+    PUT_FORMATTED(g, style);
+    fputs(" notitle\"\n", g->data);
+    gnuplot_block(g, "series%d", number);
+}
+
+/* ---- legend ------------------------------------------------------------------------------- */
+
+const char *gnuplot_hue(size_t k)
+{
+    static const char *const hues[] = {"hue[1]", "hue[2]", "hue[3]", "hue[4]",
+                                       "hue[5]", "hue[6]", "hue[7]"};
+    return hues[k % (sizeof hues / sizeof *hues)];
+}
+
+void gnuplot_colour(struct gnuplot *g, const char *colour, const char *name)
+{
+    const char *value = look_colour(g->plot->look, name);
+    if (value)
+        gnuplot_set(g, "%s = 0x%s", colour, value + 1);
+}
+
+void gnuplot_legend(struct gnuplot *g, const char *colour, int dash, int point, const char *name,
+                    const char *more)
+{
+    char text[400];
+    gnuplot_colour(g, colour, name);
+    snprintf(text, sizeof text, "%s%s%s", look_label(g->plot->look, name), more[0] ? "  " : "",
+             more);
+    gnuplot_set(g,
+                "legends = legends + 1; legend_colour[legends] = %s; legend_dash[legends] = %d; "
+                "legend_point[legends] = %d",
+                colour, dash, point);
+    gnuplot_text(g, text, "legend_text[legends]");
+    gnuplot_set(g, "legend_about[legends] = ''");
+}
+
+void gnuplot_about(struct gnuplot *g, const char *format, ...)
+{
+    char text[200] = "";
+    ADD_FORMATTED(text, format);
+    gnuplot_text(g, text, "about");
+    gnuplot_set(g, "legend_about[legends] = legend_about[legends].\"\\n\".about");
+}
+
+void gnuplot_note(struct gnuplot *g, const char *format, ...)
+{
+    char text[400] = "";
+    ADD_FORMATTED(text, format);
+    gnuplot_text(g, text, "notes = notes + 1; note[notes]");
+}
