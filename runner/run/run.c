@@ -372,7 +372,7 @@ static void stage_create(struct run *run)
         if (run->replace && unlink(run->file) != 0) {
             run_fail(run, EXIT_IO, "stance run: cannot replace %.150s: %s", run->file,
                      strerror(errno));
-        } else if (!store_create(run->file, &run->plan, run->parallel.size, hosts, &run->message)) {
+        } else if (!store_create(run->file, &run->plan, NULL, run->parallel.size, hosts, &run->message)) {
             run_fail_io(run);
         }
     }

@@ -269,8 +269,7 @@ static bool make(struct making *making, struct plan *before, int ranks, const ch
         good = false;
     }
     unlink(making->made); /* of an attempt that was killed */
-    good = good && store_create(making->made, plan, ranks, hosts, message) &&
-           store_add_history(making->made, plan, making->origin, message);
+    good = good && store_create(making->made, plan, making->origin, ranks, hosts, message);
     plan->ancestors = before->ancestors + 1;
     good = good && store_open(&to, making->made, plan, 1, message) && copy_rows(making, from, to);
     if (good) {

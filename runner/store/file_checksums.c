@@ -4,7 +4,7 @@
  * neither an answer nor a trajectory nor a time has a checksum.
  */
 #include "file_checksums.h"
-#include "store_make.h"
+#include "store_private.h"
 
 #include "runner/base/checksum.h"
 #include "runner/base/problem.h"
@@ -77,7 +77,7 @@ static bool put_checksum(hid_t dataset, const char *name)
 {
     uint32_t crc = 0;
     return checksum_of(dataset, name, &crc) &&
-           put_number(dataset, CHECKSUM_ATTRIBUTE, KIND_uint32_t, &crc);
+           put_attribute(dataset, CHECKSUM_ATTRIBUTE, KIND_uint32_t, &crc);
 }
 
 static bool say_damaged(const struct walk *walk, const char *variable, const char *what)
@@ -188,12 +188,6 @@ bool file_checksums_put(int64_t file)
 {
     struct walk walk = {.put = true};
     return walk_file((hid_t)file, &walk, visit_group);
-}
-
-bool file_checksums_put_group(int64_t file, const char *group)
-{
-    struct walk walk = {.put = true};
-    return walk_group((hid_t)file, &walk, group, visit_group);
 }
 
 bool file_checksums_verify(int64_t file, const char *name, const char *scenario, const char *hash,

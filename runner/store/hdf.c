@@ -21,6 +21,11 @@ hid_t hdf_type(enum store_kind kind)
     return types[kind];
 }
 
+size_t hdf_size(enum store_kind kind)
+{
+    return kind == KIND_uint8_t ? 1 : kind == KIND_uint32_t || kind == KIND_int32_t ? 4 : 8;
+}
+
 void hdf_close_all(const hid_t *id, size_t count)
 {
     for (size_t i = 0; i < count; i++)

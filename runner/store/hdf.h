@@ -19,10 +19,12 @@ enum store_kind {
     KIND_int32_t,
     KIND_int64_t,
     KIND_uint64_t,
-    KIND_double
+    KIND_double,
+    KIND_text /* which has no type of its own */
 };
-/* The type of a kind, in the file and in memory. */
+/* The type of a kind, in the file and in memory, and its bytes. */
 hid_t hdf_type(enum store_kind kind);
+size_t hdf_size(enum store_kind kind);
 
 /* Closes whatever is open of these spaces, types, attributes, datasets, groups, property lists. */
 #define hdf_close(...)                                                                             \

@@ -281,7 +281,7 @@ bool merge_write(struct merge *m, const char *file, bool *usage, stance_message 
     }
     const char *hosts = m->part[0].origin.hosts ? m->part[0].origin.hosts : "";
     bool good = collect_designs(m, &plan, usage, message) &&
-                store_create(file, &plan, ranks, hosts, message);
+                store_create(file, &plan, NULL, ranks, hosts, message);
     if (good) {
         struct store *store = NULL;
         good = store_open(&store, file, &plan, 1, message) &&

@@ -17,26 +17,19 @@
 
 /* ---- tables ------------------------------------------------------------------------------- */
 
-const struct variable store_columns[COLUMNS] = {
-#define FILL_uint8_t false, 0 /* every number of a code is one of its words */
-#define FILL_int64_t true, (double)STANCE_NO_COUNT
-#define FILL_double true, NAN
-#define COLUMN(name, type, unit, text, ...)                                                        \
-    {                                                                                              \
-        name, KIND_##type, unit, text, __VA_ARGS__, NULL, sizeof(type)                             \
-    }
+const struct dataset store_columns[COLUMNS] = {
 #define STORE_COLUMN(name, type, how, told, unit, text)                                            \
-    [STANCE_ANSWER_##name] = COLUMN(#name, type, unit, text, FILL_##type),
+    [STANCE_ANSWER_##name] = {#name, KIND_##type, KIND_##type != KIND_uint8_t, unit, text},
+    /* every number of a code is one of its words */
     STANCE_ANSWERS(STORE_COLUMN)[COLUMN_FINAL_STATE] =
-        COLUMN("final_state", double, NULL,
-               "coordinates and their rates when the simulation stopped", FILL_double),
-    [COLUMN_SCENARIO_NUMBER] = COLUMN("scenario_number", uint8_t, NULL,
-                                      "scenario that the case was computed with: places of the "
-                                      "group history, then the file's own",
-                                      false, 0),
-    [COLUMN_CHECKSUM] =
-        COLUMN("checksum", uint32_t, "1", "CRC-32C over the answers of the case", false, 0),
-    [COLUMN_STATUS] = COLUMN("status", uint8_t, "1", "whether the case was computed", false, 0),
+        {"final_state", KIND_double, true, NULL,
+         "coordinates and their rates when the simulation stopped"},
+    [COLUMN_SCENARIO_NUMBER] = {"scenario_number", KIND_uint8_t, false, NULL,
+                                "scenario that the case was computed with: places of the group "
+                                "history, then the file's own"},
+    [COLUMN_CHECKSUM] = {"checksum", KIND_uint32_t, false, "1",
+                         "CRC-32C over the answers of the case"},
+    [COLUMN_STATUS] = {"status", KIND_uint8_t, false, "1", "whether the case was computed"},
 };
 
 #define TRACK(member, unit, text, over, parts)                                                     \
@@ -101,34 +94,27 @@ int store_dimensions(const struct plan *plan, hsize_t lengths[SCENARIO_MAX_AXES]
     return s->axes;
 }
 
-void store_design_columns(const stance_scene *scene,
-                          struct store_design_column columns[DESIGN_COLUMNS])
-{
-    const int n = scene->coordinates, m = scene->actuators, p = 2 * scene->postures;
-    /* name, in struct resolved_design, unit, rows x columns, row length there, dimensions */
-#define VECTOR(name, member, unit, n, over, text)                                                  \
+#define VECTOR(name, member, unit, n, text)                                                        \
     {                                                                                              \
-        name, offsetof(struct resolved_design, member), unit, 1, n, n, 1, {over}, text             \
+        name, unit, text, offsetof(struct resolved_design, member), 0,                             \
+        {                                                                                          \
+            DESIGN_ONE, n                                                                          \
+        }                                                                                          \
     }
-    const struct store_design_column all[DESIGN_COLUMNS] = {
-        {"gain",
-         offsetof(struct resolved_design, gain),
-         NULL,
-         m,
-         p,
-         2 * STANCE_MAX_POSTURE,
-         2,
-         {DESIGN_ACTUATOR, DESIGN_POSTURE},
-         "gains of the linear law: torque = feedforward - gain * error"},
-        VECTOR("equilibrium_position", equilibrium, NULL, n, DESIGN_COORDINATE,
-               "coordinates of the controller's equilibrium"),
-        VECTOR("equilibrium_torque", torque, "N m", m, DESIGN_ACTUATOR,
-               "torques that hold the controller's equilibrium"),
-        VECTOR("start_position", start, NULL, n, DESIGN_COORDINATE,
-               "coordinates of the initial equilibrium, foot at the origin"),
-    };
-    memcpy(columns, all, sizeof all);
-}
+const struct store_design_column store_design_columns[DESIGN_COLUMNS] = {
+    {"gain",
+     NULL,
+     "gains of the linear law: torque = feedforward - gain * error",
+     offsetof(struct resolved_design, gain),
+     2 * STANCE_MAX_POSTURE,
+     {DESIGN_ACTUATOR, DESIGN_POSTURE}},
+    VECTOR("equilibrium_position", equilibrium, NULL, DESIGN_COORDINATE,
+           "coordinates of the controller's equilibrium"),
+    VECTOR("equilibrium_torque", torque, "N m", DESIGN_ACTUATOR,
+           "torques that hold the controller's equilibrium"),
+    VECTOR("start_position", start, NULL, DESIGN_COORDINATE,
+           "coordinates of the initial equilibrium, foot at the origin"),
+};
 
 /* ---- the library -------------------------------------------------------------------------- */
 
@@ -215,7 +201,9 @@ static bool open_columns(struct store *store, stance_message *message)
         const bool history = c == COLUMN_SCENARIO_NUMBER && store->plan->ancestors > 0;
         if (!store_has_column(s, c) && !history)
             continue;
-        size_t width = store->width[c] = store_column_width(s, c);
+        const size_t width = store_column_width(s, c);
+        store->width[c] = width;
+        store->size[c] = width * hdf_size(store_columns[c].kind);
         const int rank = store->rank + (width > 1);
         const bool all = s->answers == UINT64_MAX && c < STANCE_ANSWER_COUNT;
         bool there = true;
@@ -334,7 +322,7 @@ bool store_move_rows(struct store *store, struct store_block *block, size_t slot
         if (store->column[c] < 0)
             continue;
         const hsize_t width = store->width[c], n = rows->count * width;
-        char *data = (char *)block->column[c] + slot * width * store_columns[c].size;
+        char *data = (char *)block->column[c] + slot * store->size[c];
         const hid_t dataset = store->column[c], type = hdf_type(store_columns[c].kind),
                     space = width > 1 ? wide : narrow, memory = H5Screate_simple(1, &n, NULL);
         good = memory >= 0 &&
@@ -354,7 +342,7 @@ size_t store_row_size(const struct store *store)
 {
     size_t size = 0;
     for (int c = 0; c < COLUMNS; c++)
-        size += store->column[c] >= 0 ? store->width[c] * store_columns[c].size : 0;
+        size += store->column[c] >= 0 ? store->size[c] : 0;
     return size;
 }
 
@@ -364,7 +352,7 @@ struct store_block *store_block_make(const struct store *store, size_t rows)
     bool good = block != NULL;
     for (int c = 0; good && c < COLUMNS; c++) {
         if (store->column[c] >= 0) {
-            block->column[c] = malloc(rows * store->width[c] * store_columns[c].size);
+            block->column[c] = malloc(rows * store->size[c]);
             good = block->column[c] != NULL;
         }
     }
@@ -389,7 +377,7 @@ uint32_t store_row_checksum(const struct store_block *block, size_t slot)
     uint32_t crc = 0;
     for (int c = 0; c < COLUMNS; c++) {
         if (block->column[c] && c != COLUMN_CHECKSUM) {
-            size_t size = block->store->width[c] * store_columns[c].size;
+            const size_t size = block->store->size[c];
             crc = checksum_crc32c(crc, (const char *)block->column[c] + slot * size, size);
         }
     }
@@ -450,7 +438,7 @@ static bool write_span(struct store *store, const struct store_block *block, siz
     if (!store_move_rows(store, between, 0, &span, HDF_READ, message))
         return false;
     for (int c = 0; c < COLUMNS; c++) {
-        const size_t size = store->width[c] * store_columns[c].size;
+        const size_t size = store->size[c];
         for (uint64_t k = 0; store->column[c] >= 0 && k < rows->count; k++)
             memcpy((char *)between->column[c] + (rows_at(rows, k) - first) * size,
                    (const char *)block->column[c] + (slot + k) * size, size);
@@ -567,42 +555,61 @@ bool store_verify(struct store *store, const struct rows *rows, stance_result *r
 
 /* ---- designs and timing ------------------------------------------------------------------- */
 
-bool store_move_design(const struct plan *plan, struct plan *into,
-                       const struct store_design_column *column, hid_t dataset)
+static size_t design_length(const stance_scene *scene, enum design_dimension over)
 {
-    const size_t rows = (size_t)column->rows, length = (size_t)column->columns;
-    double *data = malloc(plan->designs * rows * length * sizeof *data);
-    bool good = data && (!into || hdf_read(dataset, KIND_double, data));
-    for (size_t i = 0; good && i < plan->designs * rows; i++) {
-        struct resolved_design own = plan_design_at(plan, i / rows);
-        double *design =
-            (double *)(void *)((char *)&own + column->offset) + i % rows * (size_t)column->stride;
-        const bool exists = plan->design_status[i / rows] == STANCE_DONE;
-        for (size_t k = 0; k < length; k++)
+    return (size_t)(over == DESIGN_COORDINATE ? scene->coordinates
+                    : over == DESIGN_ACTUATOR ? scene->actuators
+                    : over == DESIGN_POSTURE  ? 2 * scene->postures
+                                              : 1);
+}
+
+size_t store_design_width(const stance_scene *scene, int column)
+{
+    const enum design_dimension *const over = store_design_columns[column].over;
+    return design_length(scene, over[0]) * design_length(scene, over[1]);
+}
+
+double *store_design_room(const struct plan *plan, int column)
+{
+    return malloc(plan->designs * store_design_width(plan->scenario->scene, column) *
+                  sizeof(double));
+}
+
+void store_move_design(const struct plan *plan, struct plan *into, int column, double *data)
+{
+    const struct store_design_column *const c = &store_design_columns[column];
+    const size_t width = store_design_width(plan->scenario->scene, column),
+                 length = design_length(plan->scenario->scene, c->over[1]);
+    for (size_t d = 0; d < plan->designs; d++) {
+        struct resolved_design own = plan_design_at(plan, d);
+        double *const design = (double *)(void *)((char *)&own + c->offset);
+        const bool exists = plan->design_status[d] == STANCE_DONE;
+        for (size_t i = 0; i < width; i++) {
+            double *const number = &design[i / length * c->stride + i % length];
             if (into)
-                design[k] = data[i * length + k];
+                *number = data[d * width + i];
             else
-                data[i * length + k] = exists ? design[k] : NAN;
+                data[d * width + i] = exists ? *number : NAN;
+        }
         if (into)
-            plan_design_put(into, i / rows, &own);
+            plan_design_put(into, d, &own);
     }
-    good = good && (into || hdf_write(dataset, KIND_double, data));
-    free(data);
-    return good;
 }
 
 bool store_read_designs(struct store *store, struct plan *plan, stance_message *message)
 {
-    struct store_design_column columns[DESIGN_COLUMNS];
     bool good = true;
-    store_design_columns(plan->scenario->scene, columns);
     for (int k = 0; k < DESIGN_COLUMNS; k++) { /* all of them, even when this rank has failed */
-        if (columns[k].rows * columns[k].columns == 0)
-            continue;
         char name[64];
-        snprintf(name, sizeof name, "design/%s", columns[k].name);
+        if (store_design_width(plan->scenario->scene, k) == 0)
+            continue;
+        snprintf(name, sizeof name, "design/%s", store_design_columns[k].name);
         const hid_t dataset = open_dataset(store, name);
-        good = store_move_design(plan, plan, &columns[k], dataset) && good;
+        double *const data = store_design_room(plan, k);
+        good = data && hdf_read(dataset, KIND_double, data) && good;
+        if (good)
+            store_move_design(plan, plan, k, data);
+        free(data);
         hdf_close(dataset);
     }
     const hid_t dataset = open_dataset(store, "design/status");

@@ -71,22 +71,25 @@ uint64_t store_size(const struct plan *plan, int ranks);
 
 /* Rank 0 alone: creates the file, which must not exist, with everything but the cases, and
  * reserves its space, but for a shard, whose file has holes. On failure nothing is left behind.
- * Designs must have been computed. */
-bool store_create(const char *file, const struct plan *plan, int ranks, const char *hosts,
-                  stance_message *message);
+ * Designs must have been computed. `before`: the origin of a file whose rows it takes over to go on
+ * with another scenario (changed_scenario.h), for the group `history`; NULL: there is none. */
+struct store_origin;
+bool store_create(const char *file, const struct plan *plan, const struct store_origin *before,
+                  int ranks, const char *hosts, stance_message *message);
 
 /* Whether axes, designs and scenario of a file are as their checksums say (file_checksums.h). To
  * `resume` asks for more: that there are checksums, and that nothing in the file is out of order.
  * Damage may crash the HDF5 library: call it where that does no harm (sandbox.h). */
 bool store_check(const char *file, bool resume, stance_message *message);
 
-enum { STORE_MOST_ANCESTORS = 200 };
+enum { STORE_MOST_ANCESTORS = 200, STORE_TEXTS = 3 };
 
-/* A scenario that cases of a file were computed with before it went on with another. */
+/* A scenario that cases of a file were computed with before it went on with another: its resolved
+ * text, git_revision and date, as the group `history` names them. */
 struct store_ancestor {
-    char *scenario; /* resolved text */
-    char *revision, *date;
+    char *text[STORE_TEXTS];
 };
+extern const char *const store_text_names[STORE_TEXTS];
 
 /* What a file was made from, for a resume; release with store_origin_free. */
 struct store_origin {
@@ -169,11 +172,6 @@ bool store_copy_timing(struct store *from, struct store *to, int *rank, stance_m
 bool store_annotate(struct store *store, const char *name, const char *text,
                     stance_message *message);
 
-/* A file that goes on with another scenario (changed_scenario.h): for a file that store_create has
- * just made, the group `history` with the scenarios of `origin`, and the variable
- * `scenario_number`. */
-bool store_add_history(const char *file, const struct plan *plan, const struct store_origin *origin,
-                       stance_message *message);
 /* Adds to the timing group; for rank 0. wall_time[ranks], cases[ranks]. */
 bool store_add_timing(struct store *store, int ranks, const double *wall_time, const double *cases,
                       stance_message *message);

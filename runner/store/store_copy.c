@@ -1,5 +1,5 @@
 /* store_copy.c - rows, trajectories and times of one results file into another. */
-#include "store_make.h"
+#include "store_private.h"
 
 #include "runner/base/message.h"
 
@@ -32,7 +32,7 @@ static void translate(struct store_block *block, int64_t no_count, size_t rows)
 static bool same_row(const struct store_block *a, const struct store_block *b, size_t slot)
 {
     for (int c = 0; c < COLUMNS; c++) {
-        const size_t size = a->store->width[c] * store_columns[c].size;
+        const size_t size = a->store->size[c];
         if (c == COLUMN_CHECKSUM)
             continue;
         if (a->column[c] && b->column[c] &&
@@ -48,7 +48,7 @@ static void take_row(const struct store_block *from, size_t slot, struct store_b
                      size_t to_slot)
 {
     for (int c = 0; c < COLUMNS; c++) {
-        const size_t size = to->store->width[c] * store_columns[c].size;
+        const size_t size = to->store->size[c];
         if (to->column[c] && from->column[c]) {
             memcpy((char *)to->column[c] + to_slot * size,
                    (const char *)from->column[c] + slot * size, size);
@@ -194,6 +194,6 @@ bool store_copy_timing(struct store *from, struct store *to, int *rank, stance_m
 bool store_annotate(struct store *store, const char *name, const char *text,
                     stance_message *message)
 {
-    return put_text(store->id, name, text) ||
+    return put_attribute(store->id, name, KIND_text, text) ||
            store_failed(message, store->file, "write an attribute");
 }

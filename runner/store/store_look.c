@@ -41,6 +41,33 @@ bool store_check(const char *file, bool resume, stance_message *message)
     return good;
 }
 
+const char *const store_text_names[STORE_TEXTS] = {"scenario", "git_revision", "date"};
+
+/* The scenarios of a file before its own, whose texts must be as many of each kind; none without a
+ * group `history`. */
+static bool read_history(hid_t file, struct store_origin *origin)
+{
+    const bool there = H5Lexists(file, "history", H5P_DEFAULT) > 0;
+    hid_t group = there ? H5Gopen2(file, "history", H5P_DEFAULT) : -1;
+    bool good = true;
+    for (int k = 0; there && good && k < STORE_TEXTS; k++) {
+        const hid_t dataset = H5Dopen2(group, store_text_names[k], H5P_DEFAULT);
+        const size_t n = hdf_elements(dataset);
+        if (k == 0 && n <= STORE_MOST_ANCESTORS) {
+            origin->ancestor = calloc(n + 1, sizeof *origin->ancestor);
+            origin->ancestors = origin->ancestor ? n : 0;
+        }
+        char **words = n > 0 && n == origin->ancestors ? hdf_words(dataset, 0, n) : NULL;
+        for (size_t i = 0; words && i < n; i++)
+            origin->ancestor[i].text[k] = words[i];
+        good = words != NULL;
+        free(words);
+        hdf_close(dataset);
+    }
+    hdf_close(group);
+    return good;
+}
+
 bool store_read_origin(const char *file, struct store_origin *origin, stance_message *message)
 {
     *origin = (struct store_origin){0};
@@ -59,7 +86,7 @@ bool store_read_origin(const char *file, struct store_origin *origin, stance_mes
     hdf_close(sample);
     const bool good =
         read_shard(id, file, &origin->shard, message) &&
-        (store_read_history(id, origin) || store_failed(message, file, "read its history")) &&
+        (read_history(id, origin) || store_failed(message, file, "read its history")) &&
         (origin->scenario || not_resumable(id, file, message));
     H5Fclose(id);
     free(revision);
@@ -71,11 +98,9 @@ bool store_read_origin(const char *file, struct store_origin *origin, stance_mes
 
 void store_origin_free(struct store_origin *origin)
 {
-    for (size_t k = 0; k < origin->ancestors; k++) {
-        free(origin->ancestor[k].scenario);
-        free(origin->ancestor[k].revision);
-        free(origin->ancestor[k].date);
-    }
+    for (size_t k = 0; k < origin->ancestors; k++)
+        for (int t = 0; t < STORE_TEXTS; t++)
+            free(origin->ancestor[k].text[t]);
     free(origin->ancestor);
     free(origin->scenario);
     free(origin->title);
@@ -187,6 +212,7 @@ static bool open_columns(struct store *store, hid_t file, uint64_t cases)
         good = good && elements > 0 && (uint64_t)elements % cases == 0 &&
                (uint64_t)elements / cases <= SCENARIO_MAX_STATES;
         store->width[c] = good ? (size_t)((uint64_t)elements / cases) : 1;
+        store->size[c] = store->width[c] * hdf_size(store_columns[c].kind);
     }
     return good;
 }

@@ -1,12 +1,11 @@
 /* store_private.h - shared by those who write results files: store.c (rows), store_copy.c (rows of
- * another file), store_make.c and store_layout.c (creation), store_history.c (files of several
- * scenarios), store_space.c (room on the disk), store_look.c (questions) and file_checksums.c
- * (checksums). */
+ * another file), store_make.c and store_layout.c (creation), store_space.c (room on the disk),
+ * store_look.c (questions) and file_checksums.c (checksums). */
 #ifndef STANCE_STORE_STORE_PRIVATE_H
 #define STANCE_STORE_STORE_PRIVATE_H
 
-#include "hdf.h"
 #include "store.h"
+#include "store_make.h"
 
 #include "runner/plan/plan.h"
 
@@ -21,17 +20,7 @@ enum {
     COLUMNS,
 };
 
-/* A variable, and what it says of itself. */
-struct variable {
-    const char *name;
-    enum store_kind kind;
-    const char *unit, *text; /* may be NULL */
-    bool filled;
-    double fill;       /* where `filled`: `_FillValue`, in the variable's own type */
-    const char *flags; /* see put_flags; NULL: none */
-    size_t size;       /* of one element of a column */
-};
-extern const struct variable store_columns[COLUMNS];
+extern const struct dataset store_columns[COLUMNS];
 
 /* The variables of a trajectory: (case, time, what it is over, parts). */
 enum { TRAJECTORIES = 5 };
@@ -50,45 +39,34 @@ size_t store_column_width(const struct scenario *scenario, int column);
 /* Elements per row of a trajectory; 0: the variable is left out. */
 size_t store_trajectory_width(const stance_scene *scene, int variable);
 
-/* A new HDF5 file that netCDF-4 reads; HDF5 identifier, or -1. */
-hid_t store_create_hdf(const char *file);
-
 /* Lengths of the dimensions of the cases; returns how many (>= 1). */
 int store_dimensions(const struct plan *plan, hsize_t lengths[SCENARIO_MAX_AXES]);
-
-/* The scenarios of a file before its own; none without a group `history`. false: no memory, or it
- * cannot be read. */
-bool store_read_history(hid_t file, struct store_origin *origin);
 
 /* "FILE: cannot ...: reason" of a system call. Returns false. */
 bool store_system_failed(stance_message *message, const char *file, const char *what, int error);
 /* Reserves the space of the whole file and brings it to the disk. */
 bool store_reserve(const char *file, stance_message *message);
 
-/* Dimensions of the columns of group `design` beside the axes. */
+/* Columns of group `design`: matrices in struct resolved_design, over the axes and these. */
 enum design_dimension {
+    DESIGN_ONE,
     DESIGN_COORDINATE,
     DESIGN_ACTUATOR,
     DESIGN_POSTURE, /* posture_state */
     DESIGN_DIMENSIONS,
 };
-
-/* Columns of group `design`, in struct resolved_design: name, first element, width per design. */
-struct store_design_column {
-    const char *name;
-    size_t offset; /* in struct resolved_design */
-    const char *unit;
-    int rows, columns, stride; /* of the matrix; its row length in memory; rows 0: left out */
-    int dimensions;
-    enum design_dimension over[2];
-    const char *text;
-};
 enum { DESIGN_COLUMNS = 4 };
-void store_design_columns(const stance_scene *scene,
-                          struct store_design_column columns[DESIGN_COLUMNS]);
-/* Moves a column of all designs between the plan and its variable; NAN where there is none. */
-bool store_move_design(const struct plan *plan, struct plan *into,
-                       const struct store_design_column *column, hid_t dataset);
+extern const struct store_design_column {
+    const char *name, *unit, *text;
+    size_t offset, stride; /* of the first element; a row's length in memory */
+    enum design_dimension over[2];
+} store_design_columns[DESIGN_COLUMNS];
+/* Numbers of one design; 0: the column is left out. */
+size_t store_design_width(const stance_scene *scene, int column);
+/* Memory for those of all designs; NULL: none. */
+double *store_design_room(const struct plan *plan, int column);
+/* Moves them from the plan, NAN where there is none, or into one. */
+void store_move_design(const struct plan *plan, struct plan *into, int column, double *data);
 
 struct store {
     char file[1024];
@@ -97,7 +75,8 @@ struct store {
     int ranks;                   /* that have it open together */
     bool spans;                  /* see store_set_spans */
     hid_t column[COLUMNS];       /* -1: not stored */
-    size_t width[COLUMNS];       /* elements per case */
+    size_t width[COLUMNS];       /* elements per case, and */
+    size_t size[COLUMNS];        /* ... bytes */
     int64_t no_count;            /* what it has for a count that there is none of: `_FillValue` */
     struct store_block *checked; /* [STORE_ROWS], for store_verify; made when it is needed */
     hid_t trajectory[TRAJECTORIES];       /* -1: not stored */
