@@ -95,7 +95,7 @@ static bool put_axis_values(struct page *p)
         const size_t count = axis->count * (size_t)axis->paths;
         char name[32];
         double *const value = malloc(count * sizeof *value);
-        good = (value || no_memory(p->message)) && store_read_axis(p->r->file, axis, p->message);
+        good = (value || no_memory(p->message)) && store_read_axes(p->r->file, axis, 1, p->message);
         for (size_t i = 0; good && i < count; i++)
             value[i] =
                 scenario_axis_value(axis, i / (size_t)axis->paths, (int)(i % (size_t)axis->paths));

@@ -178,6 +178,13 @@ void plan_design_put(struct plan *plan, size_t d, const struct resolved_design *
     resolve_pack(plan->scenario->scene, design, &plan->design[d * plan->design_size]);
 }
 
+void plan_take_design(struct plan *plan, size_t place, const struct plan *from, size_t d)
+{
+    memcpy(&plan->design[place * plan->design_size], &from->design[d * from->design_size],
+           plan->design_size * sizeof *plan->design);
+    plan->design_status[place] = from->design_status[d];
+}
+
 /* ---- where things are --------------------------------------------------------------------- */
 
 uint64_t plan_case(const struct plan *plan, uint64_t row)

@@ -221,7 +221,7 @@ int run_through(struct run *run, int argc, char **argv, const struct stage *stag
     run->argc = argc;
     run->argv = argv;
     run->start = clock_seconds();
-    run->lock.descriptor = -1;
+    run->lock.descriptor = run->old_lock.descriptor = -1;
     run->parallel = parallel_alone();
     return take_ranks(run) ? go_through(run, stages, conclude) : EXIT_USAGE;
 }
@@ -232,6 +232,7 @@ void run_end(struct run *run)
         scenario_free(run->scenario);
     free(run->scenario);
     lock_release(&run->lock);
+    lock_release(&run->old_lock);
     heartbeat_end(&run->heartbeat);
     parallel_finish(&run->parallel);
 }

@@ -124,7 +124,7 @@ bool run_same_scenario(struct run *run, const char *file, const char *old)
 /* A file keeps to the shard that it was made for, or to all cases. */
 static bool same_shard(struct run *run)
 {
-    const struct shard *own = &run->origin.shard, *asked = &run->options.shard;
+    const struct shard *own = &run->old.origin.shard, *asked = &run->options.shard;
     char text[SHARD_TEXT];
     if (own->number == asked->number && own->count == asked->count)
         return true;
@@ -140,33 +140,27 @@ static bool same_shard(struct run *run)
 }
 
 /* An existing file that is to be gone on with. */
-static void look_into_file(struct run *run)
+static bool look_into_file(struct run *run)
 {
+    struct scenario *const s = run->scenario;
+    const struct store_origin *const origin = &run->old.origin;
     run->failure.code = run_check_file(run, run_check_results, run->file);
     if (run->failure.code != EXIT_DONE)
-        return; /* it has been said why */
-    if (euidaccess(run->file, W_OK) != 0) {
-        run_fail(run, EXIT_IO, "stance run: %.150s: cannot write there: %s", run->file,
-                 strerror(errno));
-        return;
-    }
-    if (!store_read_origin(run->file, &run->origin, &run->message)) {
-        run_fail_io(run);
-        return;
-    }
-    if (!same_shard(run) || !run_same_scenario(run, run->file, run->origin.scenario))
-        return;
-    if ((run->succeed &&
-         !changed_scenario_check_sweep(run->file, &run->origin, run->scenario, &run->message)) ||
-        !store_same_points(run->file, &run->origin, run->scenario, &run->message)) {
-        run_fail(run, EXIT_USAGE, "stance run: %s", run->message.text);
-        return;
-    }
+        return false; /* it has been said why */
+    if (euidaccess(run->file, W_OK) != 0)
+        return run_fail(run, EXIT_IO, "stance run: %.150s: cannot write there: %s", run->file,
+                        strerror(errno));
+    run->old.file = run->file;
+    if (!store_read_origin(run->file, &run->old.origin, &run->message))
+        return run_fail_io(run);
+    if (!same_shard(run) || !run_same_scenario(run, run->file, origin->scenario))
+        return false;
+    if ((run->succeed && !changed_scenario_check_sweep(&run->old, s, &run->message)) ||
+        !store_same_points(run->file, origin, s, &run->message))
+        return run_fail(run, EXIT_USAGE, "stance run: %s", run->message.text);
     if (!run->succeed)
-        run_warn_of_revision(run, run->file, run->origin.revision);
-    for (int a = 0; a < run->scenario->axes; a++)
-        if (!store_read_axis(run->file, &run->scenario->axis[a], &run->message))
-            run_fail_io(run);
+        run_warn_of_revision(run, run->file, origin->revision);
+    return store_read_axes(run->file, s->axis, s->axes, &run->message) || run_fail_io(run);
 }
 
 /* Rank 0: where the results go, whether they may, and nobody else writes there. */
@@ -238,7 +232,7 @@ static void stage_plan(struct run *run)
     else if (!plan_make(&run->plan, run->scenario, o->single, o->single_case, o->trace, &error) ||
              (o->shard.count > 0 && !plan_cut(&run->plan, &o->shard, &error)))
         fail_scenario(run, &error);
-    run->plan.ancestors = run->origin.ancestors;
+    run->plan.ancestors = run->old.origin.ancestors;
     parallel_broadcast(&run->parallel, &run->plan.ancestors, sizeof run->plan.ancestors);
     run->plan.stop = out_of_time;
     run->plan.stop_context = run;
@@ -261,11 +255,9 @@ static bool take_designs(struct run *run)
 
     if (run->options.extend_count == 0 || run->options.dry_run)
         return true;
-    if (run->extension)
-        good = run_extend_designs(run, &run->message);
+    if (run->parallel.rank == 0)
+        good = run_extend_designs(run);
     parallel_broadcast(&run->parallel, &good, sizeof good);
-    if (!good && run->parallel.rank == 0)
-        run_fail_io(run);
     parallel_broadcast(&run->parallel, plan->design,
                        plan->designs * plan->design_size * sizeof *plan->design);
     parallel_broadcast(&run->parallel, plan->design_status, plan->designs);
@@ -344,18 +336,19 @@ static char *collect_hosts(const struct parallel *parallel)
 /* The file goes on with a scenario that is not its own. */
 static void succeed(struct run *run, const char *hosts)
 {
-    struct changed_scenario_counts counts;
-    if (changed_scenario_make(run->file, &run->origin, &run->plan, run->parallel.size, hosts,
-                              &counts, &run->message)) {
+    struct store_copied copied;
+    bool refused;
+    if (changed_scenario_make(&run->old, &run->plan, run->parallel.size, hosts, &copied, &refused,
+                              &run->message)) {
         fprintf(stderr,
                 "stance run: %.200s goes on with another scenario; %" PRIu64 " of its %" PRIu64
                 " cases are done and stay as they are",
-                run->file, counts.kept, run->plan.rows);
-        if (counts.damaged > 0)
-            fprintf(stderr, ", %" PRIu64 " did not verify", counts.damaged);
+                run->file, copied.copied, run->plan.rows);
+        if (copied.damaged > 0)
+            fprintf(stderr, ", %" PRIu64 " did not verify", copied.damaged);
         fputc('\n', stderr);
     } else if (run->message.text[0]) {
-        run_fail(run, counts.refused ? EXIT_USAGE : EXIT_IO, "stance run: %s", run->message.text);
+        run_fail(run, refused ? EXIT_USAGE : EXIT_IO, "stance run: %s", run->message.text);
     } else {
         stop_early(run, "stopped before the file could go on with another scenario");
     }
@@ -372,7 +365,8 @@ static void stage_create(struct run *run)
         if (run->replace && unlink(run->file) != 0) {
             run_fail(run, EXIT_IO, "stance run: cannot replace %.150s: %s", run->file,
                      strerror(errno));
-        } else if (!store_create(run->file, &run->plan, NULL, run->parallel.size, hosts, &run->message)) {
+        } else if (!store_create(run->file, &run->plan, NULL, run->parallel.size, hosts,
+                                 &run->message)) {
             run_fail_io(run);
         }
     }
@@ -392,12 +386,13 @@ static void stage_open(struct run *run)
         store_set_spans(run->store, one_host);
 }
 
-/* Rows of the old file. */
+/* Rows of the old file, which is let go. */
 static void stage_extend(struct run *run)
 {
-    if (run->extension && !run_extend_copy(run, &run->message))
-        run_fail_io(run);
-    run_extend_close(run);
+    if (run->old.store && run->options.extend_count > 0)
+        run_extend_copy(run);
+    adopt_close(&run->old);
+    lock_release(&run->old_lock);
 }
 
 static void stage_compute(struct run *run)
@@ -475,8 +470,8 @@ int run_run(int argc, char **argv)
         store_abandon(run->store);
         kernels_give_back(&run->kernels);
         plan_free(&run->plan);
-        store_origin_free(&run->origin);
-        run_extend_close(run);
+        adopt_close(&run->old);
+        store_origin_free(&run->old.origin);
         run_end(run);
     }
     free(run);

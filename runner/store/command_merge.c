@@ -25,12 +25,12 @@ struct request {
 static void name_missing_shards(const struct merge *m)
 {
     enum { NAMED = 8 };
-    const uint64_t count = m->kind == MERGE_EQUAL ? m->part[0].origin.shard.count : 0;
+    const uint64_t count = m->kind == MERGE_EQUAL ? m->part[0].of.origin.shard.count : 0;
     bool *const there = count > 0 ? calloc(count + 1, 1) : NULL;
     uint64_t missing = count;
 
     for (size_t p = 0; there && p < m->parts; p++) {
-        const struct shard *const shard = &m->part[p].origin.shard;
+        const struct shard *const shard = &m->part[p].of.origin.shard;
         if (shard->count != count) {
             missing = 0;
             break;
@@ -78,12 +78,12 @@ static void print_result(const struct request *request, const struct merge *m)
                 "run of the whole has other ones (attribute merge_note)\n");
     }
     for (size_t p = 1; p < m->parts; p++) {
-        if (strcmp(m->part[p].origin.revision, m->part[0].origin.revision) != 0) {
+        if (strcmp(m->part[p].of.origin.revision, m->part[0].of.origin.revision) != 0) {
             fprintf(stderr,
                     "stance merge: warning: %s was begun by revision %s, %s by %s: results "
                     "may differ\n",
-                    m->part[p].file, m->part[p].origin.revision, m->part[0].file,
-                    m->part[0].origin.revision);
+                    m->part[p].of.file, m->part[p].of.origin.revision, m->part[0].of.file,
+                    m->part[0].of.origin.revision);
             break;
         }
     }

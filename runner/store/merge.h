@@ -11,15 +11,12 @@
 #ifndef STANCE_STORE_MERGE_H
 #define STANCE_STORE_MERGE_H
 
-#include "store.h"
-
-#include "runner/plan/plan.h"
+#include "adopt.h"
 
 enum merge_kind { MERGE_EQUAL, MERGE_AXIS, MERGE_VALUE };
 
 struct merge_part {
-    const char *file;
-    struct store_origin origin;
+    struct adopted of;
     size_t points;    /* along the axis; 1 where it has none */
     size_t *position; /* [points] in the merged axis; NULL: the only one */
     uint64_t taken;   /* rows */
@@ -58,9 +55,5 @@ static inline uint64_t merge_row(const struct merge *merge, const struct merge_p
     const size_t place = part->position ? part->position[point] : 0;
     return (outer * merge->points + place) * merge->inner + row % merge->inner;
 }
-
-/* The scenario of a part, its axes as its file has them; released by scenario_free. */
-bool merge_read_part(const struct merge_part *part, struct scenario *scenario,
-                     stance_message *message);
 
 #endif

@@ -19,11 +19,11 @@ static bool read_tree(struct tree *tree, const struct merge_part *part, stance_m
     struct problems *problems = calloc(1, sizeof *problems);
     *tree = (struct tree){0};
     const bool good =
-        problems && part->origin.scenario &&
-        tree_parse(tree, part->origin.scenario, strlen(part->origin.scenario), problems);
+        problems && part->of.origin.scenario &&
+        tree_parse(tree, part->of.origin.scenario, strlen(part->of.origin.scenario), problems);
     free(problems);
     if (!good)
-        complain(message, "%.100s: its scenario cannot be read", part->file);
+        complain(message, "%.100s: its scenario cannot be read", part->of.file);
     return good;
 }
 
@@ -104,7 +104,7 @@ static bool misfit(const struct merge *m, const struct differences *found, size_
         message,
         "%.32s: differs from %.32s in %.70s: parts may differ along one axis or in one value "
         "that can be swept",
-        m->part[part].file, m->part[0].file, list);
+        m->part[part].of.file, m->part[0].of.file, list);
 }
 
 /* A value that stands in every part and may become an axis. */
@@ -201,51 +201,47 @@ static bool add_point(struct points *points, const char *text, double number, si
     return point->text != NULL;
 }
 
-static bool same_paths(const struct scenario_axis *a, const char paths[][96], int count)
+/* The points that a part has along the axis, as YAML: "0.1", or "0.1, 2" for several paths. */
+static bool add_points(const struct scenario_axis *axis, struct points *points, size_t part)
 {
-    bool same = a->paths == count;
-    for (int k = 0; same && k < count; k++)
-        same = strcmp(a->path[k], paths[k]) == 0;
-    return same;
+    char text[1024], value[128];
+    const bool number = !axis->words && axis->paths == 1;
+    bool good = true;
+    for (size_t i = 0; good && i < axis->count; i++) {
+        text[0] = '\0';
+        for (int k = 0; k < axis->paths; k++) {
+            scenario_axis_text(axis, i, k, value, sizeof value);
+            words_add(text, sizeof text, "%s%s", k ? ", " : "", value);
+        }
+        good = add_point(points, text, number ? scenario_axis_value(axis, i, 0) : NAN, part, i);
+    }
+    return good;
 }
 
-/* The points that the parts have along the axis. */
+/* Of all parts, whose axes must have the same paths. */
 static bool collect_axis(struct merge *m, struct points *points, stance_message *message)
 {
-    char(*paths)[96] = calloc(SCENARIO_MAX_PATHS, sizeof *paths), text[1024];
-    struct scenario *s = calloc(1, sizeof *s);
-    int path_count = 0;
-    bool good = (paths && s) || no_memory(message);
-
+    struct scenario_axis *first = calloc(1, sizeof *first);
+    bool good = first || no_memory(message);
     for (size_t p = 0; good && p < m->parts; p++) {
-        good = merge_read_part(&m->part[p], s, message);
+        struct adopted *const part = &m->part[p].of;
+        good = adopt_scenario(part, message);
         if (!good)
             break;
-        const struct scenario_axis *axis = &s->axis[m->axis];
-        if (p == 0) {
-            path_count = axis->paths;
-            memcpy(paths, axis->path, (size_t)path_count * sizeof *paths);
-            snprintf(m->path, sizeof m->path, "%s", axis->name);
-        } else if (!same_paths(axis, (const char(*)[96])paths, path_count)) {
-            good = complain(message, "%.80s: its axis %.40s is not that of %.80s", m->part[p].file,
-                            axis->name, m->part[0].file);
-        }
+        const struct scenario_axis *axis = &part->scenario->axis[m->axis];
+        if (p == 0)
+            *first = *axis; /* its paths, which are no pointers */
         m->part[p].points = axis->count;
-        for (size_t i = 0; good && i < axis->count; i++) {
-            const bool number = !axis->words && axis->paths == 1;
-            text[0] = '\0'; /* as YAML: "0.1", or "0.1, 2" for several paths */
-            for (int k = 0; k < axis->paths; k++) {
-                char value[128];
-                scenario_axis_text(axis, i, k, value, sizeof value);
-                words_add(text, sizeof text, "%s%s", k ? ", " : "", value);
-            }
-            good = add_point(points, text, number ? scenario_axis_value(axis, i, 0) : NAN, p, i) ||
-                   no_memory(message);
-        }
-        scenario_free(s);
+        good = axis->paths == first->paths;
+        for (int k = 0; good && k < axis->paths; k++)
+            good = strcmp(axis->path[k], first->path[k]) == 0;
+        good = good ? add_points(axis, points, p) || no_memory(message)
+                    : complain(message, "%.80s: its axis %.40s is not that of %.80s", part->file,
+                               axis->name, m->part[0].of.file);
+        adopt_close(part);
     }
-    free(paths);
-    free(s);
+    snprintf(m->path, sizeof m->path, "%s", good ? first->name : "");
+    free(first);
     return good;
 }
 
@@ -402,24 +398,24 @@ struct recorded {
 static bool collect_recorded(const struct merge *m, bool all, struct recorded *list,
                              stance_message *message)
 {
-    struct scenario *s = calloc(1, sizeof *s);
-    bool good = s || no_memory(message);
+    bool good = true;
     for (size_t p = 0; good && p < m->parts; p++) {
-        good = merge_read_part(&m->part[p], s, message);
+        struct merge_part *const part = &m->part[p];
+        good = adopt_scenario(&part->of, message);
+        const struct scenario *const s = part->of.scenario;
         if (good && (s->record_cases == RECORD_ALL) != all) {
             good = complain(message, "%.60s: record.cases is `all` in some of the files only",
-                            m->part[p].file);
+                            part->of.file);
         } else if (good) {
             uint64_t *larger =
                 realloc(list->row, (list->count + s->record_count + 1) * sizeof *larger);
             list->row = larger ? larger : list->row;
             for (size_t i = 0; larger && i < s->record_count; i++)
-                larger[list->count++] = merge_row(m, &m->part[p], s->record_list[i]);
+                larger[list->count++] = merge_row(m, part, s->record_list[i]);
             good = larger || no_memory(message);
         }
-        scenario_free(s);
+        adopt_close(&part->of);
     }
-    free(s);
     list->count = list->row ? numbers_unite(list->row, list->count) : 0;
     return good;
 }
@@ -452,37 +448,21 @@ static bool set_recorded(struct merge *m, const struct scenario *first, struct t
     return good;
 }
 
-/* From a text; the first error is the message. */
-static bool read_scenario(struct scenario *scenario, const char *file, const char *text,
-                          stance_message *message)
-{
-    char *said = NULL;
-    size_t size = 0;
-    FILE *errors = open_memstream(&said, &size);
-    if (!errors)
-        return no_memory(message);
-    const bool good = scenario_read(scenario, file, text, NULL, 0, errors);
-    fclose(errors);
-    if (!good)
-        complain(message, "%.*s", (int)strcspn(said, "\n"), said);
-    free(said);
-    return good;
-}
-
 static bool read_merged(struct merge *m, const struct tree *tree, stance_message *message)
 {
     char *text = tree_write(tree->root);
-    bool good = text ? read_scenario(&m->scenario, "the merged scenario", text, message)
-                     : no_memory(message);
+    bool good =
+        text ? adopt_text(&m->scenario, "the merged scenario", text, message) : no_memory(message);
     free(text);
-    if (good && m->part[0].origin.title)
-        snprintf(m->scenario.title, sizeof m->scenario.title, "%s", m->part[0].origin.title);
+    if (good && m->part[0].of.origin.title)
+        snprintf(m->scenario.title, sizeof m->scenario.title, "%s", m->part[0].of.origin.title);
     /* Computed axes as the first file has them: they may differ in last bits between processors. */
-    for (int a = 0; good && a < m->scenario.axes; a++) {
-        good = (a == m->axis && m->kind != MERGE_EQUAL) ||
-               store_read_axis(m->part[0].file, &m->scenario.axis[a], message);
-    }
-    return good;
+    const char *const first = m->part[0].of.file;
+    struct scenario_axis *const axis = m->scenario.axis;
+    const int axes = m->scenario.axes, before = m->kind == MERGE_EQUAL ? axes : m->axis;
+    return good && store_read_axes(first, axis, before, message) &&
+           (before == axes ||
+            store_read_axes(first, axis + before + 1, axes - before - 1, message));
 }
 
 static bool make_scenario(struct merge *m, struct tree *trees, stance_message *message)
@@ -492,17 +472,17 @@ static bool make_scenario(struct merge *m, struct tree *trees, stance_message *m
     struct scenario *first = calloc(1, sizeof *first);
     bool good = (problems && first) || no_memory(message);
 
-    good = good && (m->kind == MERGE_EQUAL
-                        ? true
-                        : (m->kind == MERGE_AXIS ? collect_axis(m, &points, message)
-                                                 : collect_values(m, trees, &points, message)) &&
-                              place_points(m, &points, message));
-    if (good && m->kind != MERGE_EQUAL && !set_axis(m, &points, &trees[0], problems)) {
-        good = no_memory(message);
-        if (problems->count > 0)
-            complain(message, "the merged axis: %.200s", problems->list[0].text);
+    if (good && m->kind != MERGE_EQUAL) {
+        good = (m->kind == MERGE_AXIS ? collect_axis(m, &points, message)
+                                      : collect_values(m, trees, &points, message)) &&
+               place_points(m, &points, message);
+        if (good && !set_axis(m, &points, &trees[0], problems)) {
+            good = no_memory(message);
+            if (problems->count > 0)
+                complain(message, "the merged axis: %.200s", problems->list[0].text);
+        }
     }
-    good = good && merge_read_part(&m->part[0], first, message);
+    good = good && adopt_text(first, m->part[0].of.file, m->part[0].of.origin.scenario, message);
     if (good) {
         m->inner = first->cases;
         for (int a = 0; m->kind == MERGE_AXIS && a <= m->axis; a++)
@@ -518,18 +498,6 @@ static bool make_scenario(struct merge *m, struct tree *trees, stance_message *m
 
 /* ---- parts -------------------------------------------------------------------------------- */
 
-bool merge_read_part(const struct merge_part *part, struct scenario *scenario,
-                     stance_message *message)
-{
-    bool good = read_scenario(scenario, part->file, part->origin.scenario, message);
-    for (int a = 0; good && a < scenario->axes; a++) {
-        good = store_read_axis(part->file, &scenario->axis[a], message);
-        if (!good)
-            scenario_free(scenario);
-    }
-    return good;
-}
-
 static bool open_parts(struct merge *m, const char *const *files, size_t count,
                        stance_message *message)
 {
@@ -538,10 +506,10 @@ static bool open_parts(struct merge *m, const char *const *files, size_t count,
         return no_memory(message);
     for (; m->parts < count; m->parts++) {
         struct merge_part *part = &m->part[m->parts];
-        part->file = files[m->parts];
+        part->of.file = files[m->parts];
         part->points = 1;
-        if (!store_check(part->file, true, message) ||
-            !store_read_origin(part->file, &part->origin, message))
+        if (!store_check(part->of.file, true, message) ||
+            !store_read_origin(part->of.file, &part->of.origin, message))
             return false;
     }
     return true;
@@ -574,13 +542,13 @@ bool merge_plan(struct merge *m, const char *const *files, size_t count, bool *u
         /* Of the values of keys that cases of several scenarios have, a file tells those of the
          * last one. */
         for (size_t p = 0; good && p < count; p++)
-            good = m->part[p].origin.ancestors == 0 ||
+            good = m->part[p].of.origin.ancestors == 0 ||
                    complain(message, "%.120s: was made from several scenarios: it cannot be merged",
-                            m->part[p].file);
+                            m->part[p].of.file);
         good = good && classify(m, trees, message) && make_scenario(m, trees, message);
     }
     for (size_t p = 0; good && p < count; p++)
-        good = store_same_points(m->part[p].file, &m->part[p].origin, &m->scenario, message);
+        good = store_same_points(m->part[p].of.file, &m->part[p].of.origin, &m->scenario, message);
     for (size_t p = 0; trees && p < count; p++)
         tree_free(&trees[p]);
     free(trees);
@@ -592,7 +560,7 @@ bool merge_plan(struct merge *m, const char *const *files, size_t count, bool *u
 void merge_free(struct merge *m)
 {
     for (size_t p = 0; p < m->parts; p++) {
-        store_origin_free(&m->part[p].origin);
+        store_origin_free(&m->part[p].of.origin);
         free(m->part[p].position);
     }
     free(m->part);

@@ -108,9 +108,10 @@ void store_origin_free(struct store_origin *origin);
  * generator made them. */
 bool store_same_points(const char *file, const struct store_origin *origin,
                        const struct scenario *scenario, stance_message *message);
-/* Values of a logarithmic axis or of a sample as the file has them, into axis->value; other axes
- * are left. */
-bool store_read_axis(const char *file, struct scenario_axis *axis, stance_message *message);
+/* Values of logarithmic axes and of a sample as the file has them, into axis->value; other axes are
+ * left. */
+bool store_read_axes(const char *file, struct scenario_axis *axis, int axes,
+                     stance_message *message);
 
 /* Collective when `ranks` > 1: opens a file of this plan for writing. */
 bool store_open(struct store **store, const char *file, const struct plan *plan, int ranks,

@@ -123,32 +123,44 @@ bool store_same_points(const char *file, const struct store_origin *origin,
         file, doe_words[method]);
 }
 
-bool store_read_axis(const char *file, struct scenario_axis *axis, stance_message *message)
+/* *fits: it has as many points there. */
+static bool read_axis(hid_t file, struct scenario_axis *axis, double *value, bool *fits)
 {
-    if (!axis->log && !axis->sample)
-        return true;
-    hid_t id = hdf_open_to_read(file, message);
-    if (id < 0)
-        return false;
     const size_t paths = (size_t)axis->paths;
-    hsize_t length[H5S_MAX_RANK];
-    double *value = malloc(axis->count * sizeof *value);
-    bool good = value != NULL, fits = true;
+    bool good = value != NULL;
     for (size_t k = 0; good && k < paths; k++) {
-        hid_t dataset = H5Dopen2(id, axis->path[k], H5P_DEFAULT);
-        fits = dataset < 0 || (hdf_shape(dataset, length) == 1 && length[0] == axis->count);
-        good = fits && hdf_read(dataset, KIND_double, value);
+        hsize_t length[H5S_MAX_RANK];
+        hid_t dataset = H5Dopen2(file, axis->path[k], H5P_DEFAULT);
+        *fits = dataset < 0 || (hdf_shape(dataset, length) == 1 && length[0] == axis->count);
+        good = *fits && hdf_read(dataset, KIND_double, value);
         for (size_t i = 0; good && i < axis->count; i++)
             axis->value[i * paths + k] = value[i];
         hdf_close(dataset);
     }
-    free(value);
-    H5Fclose(id);
-    if (!fits) {
-        return complain(message, "%.100s: holds one case of a sweep (run --only), not the sweep",
-                        file);
+    return good;
+}
+
+bool store_read_axes(const char *file, struct scenario_axis *axis, int axes,
+                     stance_message *message)
+{
+    hid_t id = -1;
+    bool good = true, fits = true;
+    for (int a = 0; good && a < axes; a++) {
+        if (!axis[a].log && !axis[a].sample)
+            continue;
+        if (id < 0 && (id = hdf_open_to_read(file, message)) < 0)
+            return false;
+        double *value = malloc(axis[a].count * sizeof *value);
+        good = read_axis(id, &axis[a], value, &fits);
+        free(value);
     }
-    return good || store_failed(message, file, "read an axis");
+    if (!good)
+        fits ? store_failed(message, file, "read an axis")
+             : complain(message, "%.100s: holds one case of a sweep (run --only), not the sweep",
+                        file);
+    if (id >= 0)
+        H5Fclose(id);
+    return good;
 }
 
 /* Reads the status variable, whatever its shape, in pieces. */
