@@ -29,58 +29,36 @@
 
 /* ---- design ---------------------------------------------------------------------------------- */
 
-/* The parts of a design that a scene uses: rows of so many numbers, a row every so many. */
-struct part {
-    size_t offset, rows, length, stride;
-};
-enum { DESIGN_PARTS = 4 };
-
-static void design_parts(const stance_scene *scene, struct part part[DESIGN_PARTS])
+struct resolved_part resolve_part(const stance_scene *scene, enum resolved_parts k)
 {
 #define AT(field) offsetof(struct resolved_design, field) / sizeof(double)
     const size_t n = (size_t)scene->coordinates, m = (size_t)scene->actuators,
                  states = 2 * (size_t)scene->postures, room = 2 * STANCE_MAX_POSTURE;
-    const struct part all[DESIGN_PARTS] = {
-        {AT(start), 1, n, 0},
-        {AT(equilibrium), 1, n, 0},
-        {AT(torque), 1, m, 0},
-        {AT(gain), m, states, room},
+    const struct resolved_part part[] = {
+        [RESOLVED_START] = {AT(start), 0, 1, n, 0},
+        [RESOLVED_EQUILIBRIUM] = {AT(equilibrium), n, 1, n, 0},
+        [RESOLVED_TORQUE] = {AT(torque), 2 * n, 1, m, 0},
+        [RESOLVED_GAIN] = {AT(gain), 2 * n + m, m, states, room},
+        [RESOLVED_PARTS] = {0, 2 * n + m + m * states, 0, 0, 0},
     };
 #undef AT
-    memcpy(part, all, sizeof all);
+    return part[k];
 }
 
-size_t resolve_packed(const stance_scene *scene)
+void resolve_move(const stance_scene *scene, bool pack, struct resolved_design *design,
+                  double *number)
 {
-    struct part part[DESIGN_PARTS];
-    size_t count = 0;
-    design_parts(scene, part);
-    for (int k = 0; k < DESIGN_PARTS; k++)
-        count += part[k].rows * part[k].length;
-    return count;
-}
-
-void resolve_pack(const stance_scene *scene, const struct resolved_design *design, double *number)
-{
-    struct part part[DESIGN_PARTS];
-    const double *const from = (const double *)(const void *)design;
-    design_parts(scene, part);
-    for (int k = 0; k < DESIGN_PARTS; k++)
-        for (size_t row = 0; row < part[k].rows; row++, number += part[k].length)
-            memcpy(number, &from[part[k].offset + row * part[k].stride],
-                   part[k].length * sizeof *number);
-}
-
-void resolve_unpack(const stance_scene *scene, const double *number, struct resolved_design *design)
-{
-    struct part part[DESIGN_PARTS];
-    double *const to = (double *)(void *)design;
-    design_parts(scene, part);
-    memset(design, 0, sizeof *design);
-    for (int k = 0; k < DESIGN_PARTS; k++)
-        for (size_t row = 0; row < part[k].rows; row++, number += part[k].length)
-            memcpy(&to[part[k].offset + row * part[k].stride], number,
-                   part[k].length * sizeof *number);
+    double *const all = (double *)(void *)design;
+    if (!pack)
+        memset(design, 0, sizeof *design);
+    for (enum resolved_parts k = 0; k < RESOLVED_PARTS; k++) {
+        const struct resolved_part p = resolve_part(scene, k);
+        for (size_t row = 0; row < p.rows; row++) {
+            double *const own = &all[p.offset + row * p.stride],
+                          *const packed = &number[p.place + row * p.length];
+            memcpy(pack ? packed : own, pack ? own : packed, p.length * sizeof *own);
+        }
+    }
 }
 
 static bool solve_equilibrium(const stance_scene *scene, const double *robot,

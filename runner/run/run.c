@@ -284,9 +284,9 @@ static void stage_designs(struct run *run)
     if (!good)
         fail_scenario(run, &error);
     else if (run->options.dry_run && run->parallel.rank == 0)
-        report_plan(&run->plan, run->parallel.size, run->file, false, "stance run", stdout);
+        report_plan(&run->plan, run->parallel.size, run->file, false, "stance run");
     if (good && run->parallel.rank == 0)
-        run->warned = warnings_print(&run->plan, "stance run", stderr);
+        run->warned = warnings_print(&run->plan, "stance run");
     run->over = run->options.dry_run;
 }
 

@@ -94,8 +94,7 @@ int run_conclude(struct run *run)
                     sums.failed, sums.failed == 1 ? "" : "s", run->file);
         }
         if (complete && !run->warned && !run->plan.single)
-            warnings_of_ends(run->scenario, sums.outcome, sums.finished, false, "stance run",
-                             stderr);
+            warnings_of_ends(run->scenario, sums.outcome, sums.finished, false, "stance run");
     }
     return !complete ? EXIT_INTERRUPTED : sums.failed > 0 ? EXIT_CASES_FAILED : EXIT_DONE;
 }

@@ -70,9 +70,8 @@ bool hdf_move(hid_t object, hid_t type, hsize_t at, hsize_t n, enum hdf_directio
 char **hdf_words(hid_t object, hsize_t at, size_t n);
 void hdf_free_words(char **words, size_t n);
 
-/* File space of a variable over the cases, of `width` elements each, with some rows selected (one
- * at least); or -1. */
-hid_t hdf_select_rows(int dimensions, const hsize_t *lengths, size_t width,
-                      const struct rows *rows);
+/* The same of `width` elements in each of some rows, one at least, of a dataset. */
+bool hdf_move_rows(hid_t dataset, hid_t type, size_t width, const struct rows *rows,
+                   enum hdf_direction way, void *data);
 
 #endif

@@ -82,38 +82,38 @@ size_t store_trajectory_width(const stance_scene *scene, int variable)
     return (size_t)over[t->over] * t->parts;
 }
 
-int store_dimensions(const struct plan *plan, hsize_t lengths[SCENARIO_MAX_AXES])
+/* Lengths of the dimensions of the cases; returns how many (>= 1). */
+static int case_dimensions(const struct plan *plan, hsize_t lengths[SCENARIO_MAX_AXES])
 {
     const struct scenario *s = plan->scenario;
-    if (plan->single || s->axes == 0) {
-        lengths[0] = 1;
-        return 1;
-    }
-    for (int a = 0; a < s->axes; a++)
+    const int axes = plan->single ? 0 : s->axes;
+    lengths[0] = 1;
+    for (int a = 0; a < axes; a++)
         lengths[a] = s->axis[a].count;
-    return s->axes;
+    return axes > 0 ? axes : 1;
 }
 
-#define VECTOR(name, member, unit, n, text)                                                        \
-    {                                                                                              \
-        name, unit, text, offsetof(struct resolved_design, member), 0,                             \
-        {                                                                                          \
-            DESIGN_ONE, n                                                                          \
-        }                                                                                          \
-    }
-const struct store_design_column store_design_columns[DESIGN_COLUMNS] = {
+const struct store_design_column store_design_columns[RESOLVED_PARTS] = {
     {"gain",
      NULL,
      "gains of the linear law: torque = feedforward - gain * error",
-     offsetof(struct resolved_design, gain),
-     2 * STANCE_MAX_POSTURE,
+     RESOLVED_GAIN,
      {DESIGN_ACTUATOR, DESIGN_POSTURE}},
-    VECTOR("equilibrium_position", equilibrium, NULL, DESIGN_COORDINATE,
-           "coordinates of the controller's equilibrium"),
-    VECTOR("equilibrium_torque", torque, "N m", DESIGN_ACTUATOR,
-           "torques that hold the controller's equilibrium"),
-    VECTOR("start_position", start, NULL, DESIGN_COORDINATE,
-           "coordinates of the initial equilibrium, foot at the origin"),
+    {"equilibrium_position",
+     NULL,
+     "coordinates of the controller's equilibrium",
+     RESOLVED_EQUILIBRIUM,
+     {DESIGN_ONE, DESIGN_COORDINATE}},
+    {"equilibrium_torque",
+     "N m",
+     "torques that hold the controller's equilibrium",
+     RESOLVED_TORQUE,
+     {DESIGN_ONE, DESIGN_ACTUATOR}},
+    {"start_position",
+     NULL,
+     "coordinates of the initial equilibrium, foot at the origin",
+     RESOLVED_START,
+     {DESIGN_ONE, DESIGN_COORDINATE}},
 };
 
 /* ---- the library -------------------------------------------------------------------------- */
@@ -195,7 +195,7 @@ static bool open_columns(struct store *store, stance_message *message)
 {
     const struct scenario *s = store->plan->scenario;
     hsize_t length[SCENARIO_MAX_AXES + 1], found[H5S_MAX_RANK];
-    memcpy(length, store->length, sizeof store->length);
+    const int dimensions = case_dimensions(store->plan, length);
 
     for (int c = 0; c < COLUMNS; c++) {
         const bool history = c == COLUMN_SCENARIO_NUMBER && store->plan->ancestors > 0;
@@ -204,13 +204,13 @@ static bool open_columns(struct store *store, stance_message *message)
         const size_t width = store_column_width(s, c);
         store->width[c] = width;
         store->size[c] = width * hdf_size(store_columns[c].kind);
-        const int rank = store->rank + (width > 1);
+        const int rank = dimensions + (width > 1);
         const bool all = s->answers == UINT64_MAX && c < STANCE_ANSWER_COUNT;
         bool there = true;
         store->column[c] = find_dataset(store, store_columns[c].name, all ? &there : NULL);
         if (!there) /* all answers that the version knew which made the file */
             continue;
-        length[store->rank] = width;
+        length[dimensions] = width;
         if (store->column[c] < 0 || hdf_shape(store->column[c], found) != rank ||
             memcmp(found, length, (size_t)rank * sizeof *length) != 0) {
             return complain(message, "%.100s: variable '%s' is not as this scenario needs it",
@@ -256,7 +256,6 @@ static bool open_store(struct store **result, hid_t id, const char *file, const 
     store->plan = plan;
     store->id = id;
     store->ranks = ranks;
-    store->rank = store_dimensions(plan, store->length);
     store->trajectory_checksum = -1;
     store->no_count = STANCE_NO_COUNT;
     for (int c = 0; c < COLUMNS; c++)
@@ -310,30 +309,16 @@ bool store_close(struct store *store, stance_message *message)
 /* ---- rows --------------------------------------------------------------------------------- */
 
 /* All columns, in order: the checksum and then the status are the last ones. */
-bool store_move_rows(struct store *store, struct store_block *block, size_t slot,
+bool store_move_rows(const struct store *store, const struct store_block *block, size_t slot,
                      const struct rows *rows, enum hdf_direction way, stance_message *message)
 {
-    const size_t state = 2 * (size_t)store->plan->scenario->scene->coordinates;
-    hid_t narrow = hdf_select_rows(store->rank, store->length, 1, rows);
-    hid_t wide = hdf_select_rows(store->rank, store->length, state, rows);
-    bool good = (narrow >= 0 && wide >= 0) ||
-                store_failed(message, store->file, "select rows of the results");
-    for (int c = 0; good && c < COLUMNS; c++) {
-        if (store->column[c] < 0)
-            continue;
-        const hsize_t width = store->width[c], n = rows->count * width;
-        char *data = (char *)block->column[c] + slot * store->size[c];
-        const hid_t dataset = store->column[c], type = hdf_type(store_columns[c].kind),
-                    space = width > 1 ? wide : narrow, memory = H5Screate_simple(1, &n, NULL);
-        good = memory >= 0 &&
-               (way == HDF_WRITE ? H5Dwrite(dataset, type, memory, space, H5P_DEFAULT, data)
-                                 : H5Dread(dataset, type, memory, space, H5P_DEFAULT, data)) >= 0;
-        good = good || store_failed(message, store->file,
-                                    way == HDF_WRITE ? "write the results" : "read the results");
-        hdf_close(memory);
-    }
-    hdf_close(narrow, wide);
-    return good;
+    bool good = true;
+    for (int c = 0; good && c < COLUMNS; c++)
+        good = store->column[c] < 0 ||
+               hdf_move_rows(store->column[c], hdf_type(store_columns[c].kind), store->width[c],
+                             rows, way, (char *)block->column[c] + slot * store->size[c]);
+    return good || store_failed(message, store->file,
+                                way == HDF_WRITE ? "write the results" : "read the results");
 }
 
 /* ---- rows in memory ----------------------------------------------------------------------- */
@@ -555,60 +540,58 @@ bool store_verify(struct store *store, const struct rows *rows, stance_result *r
 
 /* ---- designs and timing ------------------------------------------------------------------- */
 
-static size_t design_length(const stance_scene *scene, enum design_dimension over)
+static struct resolved_part part_of(const stance_scene *scene, int column)
 {
-    return (size_t)(over == DESIGN_COORDINATE ? scene->coordinates
-                    : over == DESIGN_ACTUATOR ? scene->actuators
-                    : over == DESIGN_POSTURE  ? 2 * scene->postures
-                                              : 1);
+    return resolve_part(scene, store_design_columns[column].part);
 }
 
 size_t store_design_width(const stance_scene *scene, int column)
 {
-    const enum design_dimension *const over = store_design_columns[column].over;
-    return design_length(scene, over[0]) * design_length(scene, over[1]);
+    return part_of(scene, column).rows * part_of(scene, column).length;
 }
 
-double *store_design_room(const struct plan *plan, int column)
+/* Moves them from the plan, NAN where there is none, or into it. */
+static void move_designs(const struct plan *plan, bool into, int column, double *data)
+{
+    const size_t width = store_design_width(plan->scenario->scene, column),
+                 place = part_of(plan->scenario->scene, column).place;
+    for (size_t d = 0; d < plan->designs; d++) {
+        double *const own = &plan->design[d * plan->design_size + place];
+        for (size_t i = 0; i < width; i++, data++)
+            if (into)
+                own[i] = *data;
+            else
+                *data = plan->design_status[d] == STANCE_DONE ? own[i] : NAN;
+    }
+}
+
+static double *design_room(const struct plan *plan, int column)
 {
     return malloc(plan->designs * store_design_width(plan->scenario->scene, column) *
                   sizeof(double));
 }
 
-void store_move_design(const struct plan *plan, struct plan *into, int column, double *data)
+double *store_design_values(const struct plan *plan, int column)
 {
-    const struct store_design_column *const c = &store_design_columns[column];
-    const size_t width = store_design_width(plan->scenario->scene, column),
-                 length = design_length(plan->scenario->scene, c->over[1]);
-    for (size_t d = 0; d < plan->designs; d++) {
-        struct resolved_design own = plan_design_at(plan, d);
-        double *const design = (double *)(void *)((char *)&own + c->offset);
-        const bool exists = plan->design_status[d] == STANCE_DONE;
-        for (size_t i = 0; i < width; i++) {
-            double *const number = &design[i / length * c->stride + i % length];
-            if (into)
-                *number = data[d * width + i];
-            else
-                data[d * width + i] = exists ? *number : NAN;
-        }
-        if (into)
-            plan_design_put(into, d, &own);
-    }
+    double *const data = design_room(plan, column);
+    if (data)
+        move_designs(plan, false, column, data);
+    return data;
 }
 
 bool store_read_designs(struct store *store, struct plan *plan, stance_message *message)
 {
     bool good = true;
-    for (int k = 0; k < DESIGN_COLUMNS; k++) { /* all of them, even when this rank has failed */
+    for (int k = 0; k < RESOLVED_PARTS; k++) { /* all of them, even when this rank has failed */
         char name[64];
         if (store_design_width(plan->scenario->scene, k) == 0)
             continue;
         snprintf(name, sizeof name, "design/%s", store_design_columns[k].name);
         const hid_t dataset = open_dataset(store, name);
-        double *const data = store_design_room(plan, k);
+        double *const data = design_room(plan, k);
         good = data && hdf_read(dataset, KIND_double, data) && good;
         if (good)
-            store_move_design(plan, plan, k, data);
+            move_designs(plan, true, k, data);
         free(data);
         hdf_close(dataset);
     }
@@ -618,15 +601,15 @@ bool store_read_designs(struct store *store, struct plan *plan, stance_message *
     return good || store_failed(message, store->file, "read the designs");
 }
 
-/* Adds to a variable of the group, which may have fewer places than there are ranks. */
-static bool add_times(const struct store *store, const char *name, int ranks, const double *more)
+bool store_add_times(const struct store *store, const char *name, size_t first, size_t count,
+                     const double *more)
 {
     const hid_t dataset = H5Dopen2(store->id, name, H5P_DEFAULT);
     hsize_t length[H5S_MAX_RANK] = {0};
     double *total = hdf_shape(dataset, length) == 1 ? calloc(length[0] + 1, sizeof *total) : NULL;
     bool good = total && length[0] > 0 && hdf_read(dataset, KIND_double, total);
-    for (int rank = 0; good && rank < ranks; rank++)
-        total[(hsize_t)rank % length[0]] += more[rank];
+    for (size_t i = 0; good && i < count; i++)
+        total[(first + i) % length[0]] += more[i];
     good = good && hdf_write(dataset, KIND_double, total);
     free(total);
     hdf_close(dataset);
@@ -636,7 +619,8 @@ static bool add_times(const struct store *store, const char *name, int ranks, co
 bool store_add_timing(struct store *store, int ranks, const double *wall_time, const double *cases,
                       stance_message *message)
 {
-    return (add_times(store, "timing/wall_time", ranks, wall_time) &&
-            add_times(store, "timing/cases", ranks, cases)) ||
+    const size_t count = (size_t)ranks;
+    return (store_add_times(store, "timing/wall_time", 0, count, wall_time) &&
+            store_add_times(store, "timing/cases", 0, count, cases)) ||
            store_failed(message, store->file, "write the timing");
 }

@@ -163,7 +163,8 @@ bool store_copy(struct store *from, struct store *to,
     return good && (rows.count == 0 || copy_some(from, &rows, to, aim, copied, message));
 }
 
-/* The times of one file to as many places of the other, from `rank` on, as it has for them. */
+/* The times of one file to as many places of the other, which has none yet, from `rank` on, as it
+ * has for them. */
 static bool copy_times(struct store *from, struct store *to, const char *name, int rank,
                        size_t *count)
 {
@@ -173,9 +174,8 @@ static bool copy_times(struct store *from, struct store *to, const char *name, i
     const size_t left = room > (size_t)rank ? room - (size_t)rank : 0;
     double *values = there > 0 ? calloc(there, sizeof *values) : NULL;
     *count = there < left ? there : left;
-    const bool good =
-        values && hdf_read(source, KIND_double, values) &&
-        (*count == 0 || hdf_move(target, H5T_IEEE_F64LE, (hsize_t)rank, *count, HDF_WRITE, values));
+    const bool good = values && hdf_read(source, KIND_double, values) &&
+                      store_add_times(to, name, (size_t)rank, *count, values);
     free(values);
     hdf_close(source, target);
     return good;

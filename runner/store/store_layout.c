@@ -285,14 +285,12 @@ static void put_designs(struct layout *l)
     make_coordinates(l, &inner[DESIGN_COORDINATE], &inner[DESIGN_ACTUATOR]);
     if (s->scene->actuators > 0 && s->scene->postures > 0)
         make_state_names(l, "posture_state", true, &inner[DESIGN_POSTURE]);
-    for (int k = 0; k < DESIGN_COLUMNS; k++) {
+    for (int k = 0; k < RESOLVED_PARTS; k++) {
         const struct store_design_column *const c = &store_design_columns[k];
-        double *const values = store_design_room(plan, k);
+        double *const values = store_design_values(plan, k);
         struct dataset d = {c->name, KIND_double, true, c->unit, c->text, .values = values};
         if (store_design_width(s->scene, k) > 0) {
             l->make.failed = l->make.failed || !values;
-            if (values)
-                store_move_design(plan, NULL, k, values);
             memcpy(d.over, over, sizeof over);
             for (int i = 0; i < 2; i++)
                 if (c->over[i] != DESIGN_ONE)

@@ -229,20 +229,10 @@ static bool open_columns(struct store *store, hid_t file, uint64_t cases)
     return good;
 }
 
-static bool read_rows(const struct store *store, struct store_block *block, uint64_t at, size_t n)
-{
-    bool good = true;
-    for (int c = 0; good && c < COLUMNS; c++) {
-        const size_t width = store->width[c];
-        good = store->column[c] < 0 || hdf_move(store->column[c], hdf_type(store_columns[c].kind),
-                                                at * width, n * width, HDF_READ, block->column[c]);
-    }
-    return good;
-}
-
 bool store_distrust(int64_t file, uint8_t *status, uint64_t cases, struct store_damage *damage)
 {
     struct store store = {.id = (hid_t)file};
+    stance_message ignored;
     bool good = open_columns(&store, store.id, cases);
     struct store_block *block =
         good ? store_block_make(&store, cases < VERIFIED_ROWS ? (size_t)cases : VERIFIED_ROWS)
@@ -257,7 +247,8 @@ bool store_distrust(int64_t file, uint8_t *status, uint64_t cases, struct store_
             marked = status[i] != STANCE_PENDING;
         if (!marked)
             continue;
-        good = read_rows(&store, block, at, n);
+        good = store_move_rows(&store, block, 0, &(struct rows){.first = at, .count = n}, HDF_READ,
+                               &ignored);
         const uint32_t *stored = good ? block->column[COLUMN_CHECKSUM] : NULL;
         for (uint64_t i = 0; stored && i < n; i++) {
             if (status[at + i] != STANCE_PENDING &&

@@ -39,15 +39,12 @@ size_t store_column_width(const struct scenario *scenario, int column);
 /* Elements per row of a trajectory; 0: the variable is left out. */
 size_t store_trajectory_width(const stance_scene *scene, int variable);
 
-/* Lengths of the dimensions of the cases; returns how many (>= 1). */
-int store_dimensions(const struct plan *plan, hsize_t lengths[SCENARIO_MAX_AXES]);
-
 /* "FILE: cannot ...: reason" of a system call. Returns false. */
 bool store_system_failed(stance_message *message, const char *file, const char *what, int error);
 /* Reserves the space of the whole file and brings it to the disk. */
 bool store_reserve(const char *file, stance_message *message);
 
-/* Columns of group `design`: matrices in struct resolved_design, over the axes and these. */
+/* Columns of group `design`: parts of designs, over the axes and these. */
 enum design_dimension {
     DESIGN_ONE,
     DESIGN_COORDINATE,
@@ -55,18 +52,16 @@ enum design_dimension {
     DESIGN_POSTURE, /* posture_state */
     DESIGN_DIMENSIONS,
 };
-enum { DESIGN_COLUMNS = 4 };
+/* In the order of the file. */
 extern const struct store_design_column {
     const char *name, *unit, *text;
-    size_t offset, stride; /* of the first element; a row's length in memory */
+    enum resolved_parts part;
     enum design_dimension over[2];
-} store_design_columns[DESIGN_COLUMNS];
+} store_design_columns[RESOLVED_PARTS];
 /* Numbers of one design; 0: the column is left out. */
 size_t store_design_width(const stance_scene *scene, int column);
-/* Memory for those of all designs; NULL: none. */
-double *store_design_room(const struct plan *plan, int column);
-/* Moves them from the plan, NAN where there is none, or into one. */
-void store_move_design(const struct plan *plan, struct plan *into, int column, double *data);
+/* Those of all designs, NAN where there is none, freed by the caller; NULL: no memory. */
+double *store_design_values(const struct plan *plan, int column);
 
 struct store {
     char file[1024];
@@ -82,8 +77,6 @@ struct store {
     hid_t trajectory[TRAJECTORIES];       /* -1: not stored */
     size_t trajectory_size[TRAJECTORIES]; /* elements per case; 0: not stored */
     hid_t trajectory_checksum;
-    int rank; /* dimensions of the cases */
-    hsize_t length[SCENARIO_MAX_AXES];
 };
 
 /* Rows in memory, column after column. */
@@ -95,7 +88,7 @@ struct store_block {
 
 /* Moves rows between the file and a block, from `slot` on: all columns in order, the checksum and
  * then the status last. */
-bool store_move_rows(struct store *store, struct store_block *block, size_t slot,
+bool store_move_rows(const struct store *store, const struct store_block *block, size_t slot,
                      const struct rows *rows, enum hdf_direction way, stance_message *message);
 /* What the checksum of a row of a block ought to be. */
 uint32_t store_row_checksum(const struct store_block *block, size_t slot);
@@ -103,6 +96,10 @@ uint32_t store_row_checksum(const struct store_block *block, size_t slot);
  * as it is in the file. */
 bool store_move_trajectory(struct store *store, uint64_t place, enum hdf_direction way,
                            const stance_trajectory *trajectory, uint32_t *crc, uint32_t *stored);
+
+/* Adds to a variable of group `timing` from place `first` on, modulo its length. */
+bool store_add_times(const struct store *store, const char *name, size_t first, size_t count,
+                     const double *more);
 
 /* File access for one process: no HDF5 locks (ours is another), no buffering of raw data, so that
  * writes reach the system in the order in which they are made. Close with H5Pclose. */
