@@ -3,7 +3,7 @@
  */
 #include "best.h"
 #include "linear_limit.h"
-#include "search_plan.h"
+#include "search.h"
 
 #include "runner/base/message.h"
 #include "runner/base/units.h"
@@ -291,14 +291,13 @@ static void stage_make(struct run *run)
     o->search.save = save;
     o->search.context = o;
     o->before = o->search.record.seconds;
-    if (run->parallel.rank == 0 &&
-        run->scenario->search.candidates < (uint64_t)search_lambda(&o->search)) {
+    const int lambda = o->search.stage[o->search.stages - 1].lambda;
+    if (run->parallel.rank == 0 && run->scenario->search.candidates < (uint64_t)lambda) {
         char line[120];
         snprintf(line, sizeof line,
                  "optimise.candidates: %" PRIu64 " are less than one generation%s, %d",
                  run->scenario->search.candidates,
-                 run->scenario->search.restarts > 0 ? " after the restarts" : "",
-                 search_lambda(&o->search));
+                 run->scenario->search.restarts > 0 ? " after the restarts" : "", lambda);
         say_place(o, line, line);
     }
 }
