@@ -2,7 +2,6 @@
 #include "search.h"
 #include "cma.h"
 #include "elsewhere.h"
-#include "linear_limit.h"
 
 #include "runner/base/message.h"
 #include "runner/base/units.h"
@@ -144,7 +143,7 @@ static bool make_record(struct search *search, const char *text)
     f->title = strdup(s->title);
     f->scenario = strdup(text);
     f->first_scenario = strdup(s->text);
-    f->revision = strdup(build_revision());
+    f->revision = strdup(build_revision);
     f->date = strdup(date);
     const bool good = search_file_room(f) && f->title && f->scenario && f->first_scenario &&
                       f->revision && f->date;

@@ -121,7 +121,7 @@ static bool write_inferred(struct refinement *refinement, stance_message *messag
             const int label = refine_label(refinement->refine, list.row[k]);
             work_tally(work, STANCE_DONE, (stance_outcome)(label - 1));
         }
-        work->inferred += list.count;
+        work->sums.inferred += list.count;
         list.count = 0;
     }
     return true;

@@ -33,42 +33,22 @@ static void fail_scenario(struct run *run, const struct plan_error *error)
 
 /* ---- the scenario ------------------------------------------------------------------------- */
 
-/* From the file, with what --set changes; --extend changes the count of a sample that there is. */
-static bool read_scenario(struct run *run)
-{
-    const struct options *o = &run->options;
-    struct scenario *s = run->scenario;
-    const struct option_texts *sets = &o->asked.sets;
-
-    if (o->extend_count > 0) {
-        if (!scenario_read(s, o->asked.file, NULL, sets->text, sets->count - 1, stderr))
-            return false;
-        const bool good = run_extend_check(run);
-        scenario_free(s);
-        if (!good)
-            return false;
-    }
-    return scenario_read(s, o->asked.file, NULL, sets->text, sets->count, stderr);
-}
-
-/* Rank 0 reads the file; the others read the text that it resolved to. */
+/* Rank 0 reads the file; the others read the text that it resolved to. --extend changes the count
+ * of a sample that there is. */
 static void stage_scenario(struct run *run)
 {
-    struct options *o = &run->options;
-    bool read = false;
-
-    run->scenario = calloc(1, sizeof *run->scenario);
-    if (run->parallel.rank == 0 && run->scenario) {
-        read = read_scenario(run);
-        if (!read && run->failure.code == EXIT_DONE) /* the reader has printed why */
-            run->failure.code = access(o->asked.file, R_OK) == 0 ? EXIT_USAGE : EXIT_IO;
+    const struct options *o = &run->options;
+    const size_t sets = o->asked.sets.count;
+    if (run->parallel.rank == 0) {
+        struct scenario *const own = o->extend_count > 0 ? run_read_scenario(run, sets - 1) : NULL;
+        if (o->extend_count == 0 || (own && run_extend_check(run, own)))
+            run->scenario = run_read_scenario(run, sets);
+        scenario_drop(own);
     }
-    run_share_scenario(run, read);
-    if (run->scenario && o->single && o->single_case >= run->scenario->cases) {
+    if (run_share_scenario(run) && o->single && o->single_case >= run->scenario->cases)
         run_fail(run, EXIT_USAGE,
                  "stance run: --only %" PRIu64 ": the scenario's cases are 0 ... %" PRIu64,
                  o->single_case, run->scenario->cases - 1);
-    }
 }
 
 /* ---- the file ----------------------------------------------------------------------------- */
@@ -299,8 +279,9 @@ static void stage_kernels(struct run *run)
         return;
     if (run->resume && !run->store) /* later: they are tried on cases, whose designs are there */
         return;
+    const struct kernels_choice choice = {.quiet = run->options.quiet};
     const enum exit_code code =
-        kernels_take(&run->kernels, &run->plan, NULL, &run->parallel, run->options.quiet, &message);
+        kernels_take(&run->kernels, &run->plan, &choice, &run->parallel, &message);
     if (code == EXIT_INTERRUPTED)
         stop_early(run, run->resume ? "stopped while kernels were compiled"
                                     : "stopped while kernels were compiled: nothing is stored");
@@ -418,7 +399,7 @@ static void stage_compute(struct run *run)
 /* Rank 0 stores how long each rank computed. */
 static void stage_timing(struct run *run)
 {
-    const double computed = (double)run->work.computed;
+    const double computed = (double)run->work.sums.computed;
     double *seconds = parallel_gather(&run->parallel, &run->work.seconds, sizeof *seconds);
     double *cases = parallel_gather(&run->parallel, &computed, sizeof computed);
     if (run->parallel.rank == 0 &&

@@ -90,16 +90,18 @@ int run_through(struct run *run, int argc, char **argv, const struct stage *stag
 void run_end(struct run *run);
 /* Collective: command_begin(). Whether the command goes on. */
 bool run_take_options(struct run *run, const struct command *command);
-/* Collective: rank 0's scenario, which it has read (`read`), is read from its text by the others.
- * false: it has not, or this rank cannot, and fails; then there is none. */
-bool run_share_scenario(struct run *run, bool read);
+/* The scenario that is asked for, with the first of its --set; NULL: fails. */
+struct scenario *run_read_scenario(struct run *run, size_t sets);
+/* Collective: rank 0's scenario is read from its text by the others. false: it has none, or this
+ * rank cannot, and fails; then there is none. */
+bool run_share_scenario(struct run *run);
 /* Rank 0: the file may be written, --force replaces one that exists, --resume goes on with it, and
  * nobody else writes it: the lock is taken, signs of life are given. Without -o its directory is
  * `results`, which is made. */
 bool run_claim_file(struct run *run, bool *exists);
 
-/* run_extend.c. Whether the scenario can be extended; fails where not. */
-bool run_extend_check(struct run *run);
+/* run_extend.c. Whether a scenario can be extended; fails where not. */
+bool run_extend_check(struct run *run, const struct scenario *s);
 /* On rank 0: locks the old file and takes over its axes; then its designs into those of the plan;
  * its rows into the open file. These fail where that cannot be. */
 bool run_extend_open(struct run *run);

@@ -20,9 +20,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-bool run_extend_check(struct run *run)
+bool run_extend_check(struct run *run, const struct scenario *s)
 {
-    const struct scenario *s = run->scenario;
     if (s->sample.given && s->sample.design.method != DOE_LHS)
         return true;
     return run_fail(run, EXIT_USAGE, "stance run: %.300s: --extend: %s", s->file,
@@ -44,18 +43,12 @@ static bool is_same_file(const char *a, const char *b)
 static bool read_old_scenario(struct run *run)
 {
     const char *set = run->options.extend_set, *text = run->old.origin.scenario;
-    struct scenario *larger = calloc(1, sizeof *larger);
-    if (!larger)
-        return run_fail(run, EXIT_IO, "stance run: not enough memory");
-    bool good = scenario_read(larger, run->scenario->file, text, &set, 1, NULL);
-    if (!good) { /* most likely another scenario, or one of another version */
-        run_same_scenario(run, run->old.file, text);
-    } else {
-        good = run_same_scenario(run, run->old.file, larger->text) &&
-               (adopt_scenario(&run->old, &run->message) || run_fail_io(run));
-        scenario_free(larger);
-    }
-    free(larger);
+    struct scenario *larger = scenario_new(run->scenario->file, text, &set, 1, NULL);
+    /* None: most likely another scenario, or one of another version. */
+    const bool same = run_same_scenario(run, run->old.file, larger ? larger->text : text);
+    const bool good =
+        same && larger && (adopt_scenario(&run->old, &run->message) || run_fail_io(run));
+    scenario_drop(larger);
     return good;
 }
 

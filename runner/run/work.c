@@ -179,11 +179,11 @@ static void task_leave(struct job *job, struct task *task)
 
 void work_tally(struct work *work, stance_status status, stance_outcome outcome)
 {
-    work->finished++;
+    work->sums.finished++;
     if (status == STANCE_FAILED)
-        work->failed++;
+        work->sums.failed++;
     else if ((int)outcome >= 0 && (int)outcome < STANCE_OUTCOME_COUNT)
-        work->outcome[outcome]++;
+        work->sums.outcome[outcome]++;
 }
 
 /* Counts the row at a place of the schedule. */
@@ -262,7 +262,7 @@ static void end_row(struct job *job, struct block *block, size_t slot, const sta
         job->work->ends(job->work->context, row_at(job, block, slot), result);
     tally(job, block->first + slot, result->status, result->outcome);
     block->state[slot] = ENDED;
-    job->work->computed++;
+    job->work->sums.computed++;
     job->ended++;
     if (--block->open == 0) {
         write_block(job, block, 1);
@@ -297,18 +297,15 @@ static bool attend(void *context);
 /* Counts a row that is marked done but does not verify; the lowest ones are named. */
 static void note_damage(struct work *work, uint64_t row)
 {
-    uint64_t index = plan_case(work->plan, row);
-    const uint64_t named = work->damaged < WORK_NAMED ? work->damaged : WORK_NAMED;
-    work->damaged++;
-    for (uint64_t k = 0; k < named; k++) {
-        if (index < work->damaged_case[k]) {
+    uint64_t key = ~plan_case(work->plan, row);
+    work->sums.damaged++;
+    for (int k = 0; k < WORK_NAMED; k++) {
+        if (key > work->damaged_case[k]) {
             const uint64_t higher = work->damaged_case[k];
-            work->damaged_case[k] = index;
-            index = higher;
+            work->damaged_case[k] = key;
+            key = higher;
         }
     }
-    if (named < WORK_NAMED)
-        work->damaged_case[named] = index;
 }
 
 bool work_verify(struct work *work, const struct rows *rows, stance_result *results, bool *whole,

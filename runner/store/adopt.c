@@ -5,28 +5,26 @@
 
 #include <stdlib.h>
 
-bool adopt_text(struct scenario *scenario, const char *file, const char *text,
-                stance_message *message)
+struct scenario *adopt_text(const char *file, const char *text, stance_message *message)
 {
     char *said = NULL;
     size_t size = 0;
     FILE *errors = open_memstream(&said, &size);
-    if (!errors)
-        return no_memory(message);
-    const bool good = scenario_read(scenario, file, text, NULL, 0, errors);
-    fclose(errors);
-    if (!good)
+    struct scenario *const s = errors ? scenario_new(file, text, NULL, 0, errors) : NULL;
+    if (errors)
+        fclose(errors);
+    if (!s && said)
         complain(message, "%.*s", (int)strcspn(said, "\n"), said);
+    else if (!s)
+        no_memory(message);
     free(said);
-    return good;
+    return s;
 }
 
 bool adopt_scenario(struct adopted *a, stance_message *message)
 {
-    struct scenario *const s = a->scenario = calloc(1, sizeof *s);
-    const bool good = s ? adopt_text(s, a->file, a->origin.scenario, message) &&
-                              store_read_axes(a->file, s->axis, s->axes, message)
-                        : no_memory(message);
+    struct scenario *const s = a->scenario = adopt_text(a->file, a->origin.scenario, message);
+    const bool good = s && store_read_axes(a->file, s->axis, s->axes, message);
     if (!good)
         adopt_close(a);
     return good;
@@ -48,9 +46,7 @@ void adopt_close(struct adopted *a)
     if (a->store)
         store_close(a->store, &ignored);
     plan_free(&a->plan);
-    if (a->scenario)
-        scenario_free(a->scenario);
-    free(a->scenario);
+    scenario_drop(a->scenario);
     a->scenario = NULL;
     a->store = NULL;
 }

@@ -17,9 +17,9 @@ struct adopted {
     struct store *store;       /* open for reading; NULL: not */
 };
 
-/* A scenario's text under the name of a file; the first error is the message. */
-bool adopt_text(struct scenario *scenario, const char *file, const char *text,
-                stance_message *message);
+/* The scenario of a text under the name of a file, by scenario_new; the first error is the message.
+ */
+struct scenario *adopt_text(const char *file, const char *text, stance_message *message);
 /* False: *message says why, and nothing more is read. */
 bool adopt_scenario(struct adopted *adopted, stance_message *message);
 /* Once it has a scenario: rows and designs. */

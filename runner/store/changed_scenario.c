@@ -106,24 +106,6 @@ static bool same_axis(const struct scenario_axis *a, const struct scenario_axis 
     return equal;
 }
 
-static bool same_axes(const struct scenario *a, const struct scenario *b)
-{
-    bool equal = scenario_same_scene(a, b) && a->axes == b->axes;
-    for (int k = 0; equal && k < a->axes; k++)
-        equal = same_axis(&a->axis[k], &b->axis[k]);
-    return equal;
-}
-
-/* The seed is among what its points are made from. */
-static bool same_sample(const struct scenario *a, const struct scenario *b)
-{
-    const struct doe *x = &a->sample.design, *y = &b->sample.design;
-    return a->sample.given == b->sample.given &&
-           (!a->sample.given ||
-            (x->method == y->method && x->count == y->count && x->factors == y->factors &&
-             x->levels == y->levels && x->second_order == y->second_order && x->seed == y->seed));
-}
-
 /* Bit for bit, of structs whose memory was zero before they were filled in. */
 static bool same_bits(const void *a, const void *b, size_t size)
 {
@@ -144,31 +126,22 @@ static bool same_designs(const struct scenario *a, const struct scenario *b)
            resolve_keep_design_inputs(b->scene, &y, sampled) && same_bits(&x, &y, sizeof x);
 }
 
-static bool same_cases(const struct scenario *a, const struct scenario *b)
-{
-    return same_bits(&a->base, &b->base, sizeof a->base) && a->seed == b->seed &&
-           a->refine.given == b->refine.given && a->refine.start == b->refine.start &&
-           a->refine.margin == b->refine.margin && a->refine.probes == b->refine.probes;
-}
-
-static bool same_record(const struct plan *a, const struct plan *b)
-{
-    bool equal = a->record_rows == b->record_rows && a->record_interval == b->record_interval &&
-                 a->record_cases == b->record_cases;
-    for (uint64_t k = 0; equal && a->record_rows > 0 && k < a->record_cases; k++)
-        equal = plan_recorded_case(a, k) == plan_recorded_case(b, k);
-    return equal;
-}
-
 static bool may_follow(const char *file, const struct plan *before, const struct plan *after,
                        stance_message *message)
 {
     const struct scenario *a = before->scenario, *b = after->scenario;
-    const bool equal = same_cases(a, b);
+    const struct scenario_refine *x = &a->refine, *y = &b->refine;
+    const bool equal = same_bits(&a->base, &b->base, sizeof a->base) && a->seed == b->seed &&
+                       x->given == y->given && x->start == y->start && x->margin == y->margin &&
+                       x->probes == y->probes;
+    bool recorded = before->record_rows == after->record_rows &&
+                    before->record_interval == after->record_interval &&
+                    before->record_cases == after->record_cases;
+    for (uint64_t k = 0; recorded && after->record_rows > 0 && k < after->record_cases; k++)
+        recorded = plan_recorded_case(before, k) == plan_recorded_case(after, k);
     return (a->answers == b->answers || refuse(message, file, "which answers are stored")) &&
-           (same_record(before, after) ||
-            refuse(message, file, "which trajectories are recorded, and when")) &&
-           (equal || !(a->refine.given || b->refine.given) ||
+           (recorded || refuse(message, file, "which trajectories are recorded, and when")) &&
+           (equal || !(x->given || y->given) ||
             refuse(message, file, "the cases of a refined map, which follow from each other")) &&
            (equal || same_designs(a, b) ||
             refuse(message, file, "what its controller designs depend on"));
@@ -180,9 +153,19 @@ bool changed_scenario_check_sweep(struct adopted *old, const struct scenario *sc
     const char *const file = old->file;
     if (!adopt_scenario(old, message))
         return refuse(message, file, "a scenario that this version cannot read");
-    return (same_sample(old->scenario, scenario) ||
-            refuse(message, file, "sweep.sample or the seed of its points")) &&
-           (same_axes(old->scenario, scenario) || refuse(message, file, "the scene or the sweep"));
+    const struct doe *x = &old->scenario->sample.design, *y = &scenario->sample.design;
+    const bool given = scenario->sample.given;
+    /* The seed is among what its points are made from. */
+    if (old->scenario->sample.given != given ||
+        (given &&
+         (x->method != y->method || x->count != y->count || x->factors != y->factors ||
+          x->levels != y->levels || x->second_order != y->second_order || x->seed != y->seed)))
+        return refuse(message, file, "sweep.sample or the seed of its points");
+    bool equal =
+        scenario_same_scene(old->scenario, scenario) && old->scenario->axes == scenario->axes;
+    for (int k = 0; equal && k < scenario->axes; k++)
+        equal = same_axis(&old->scenario->axis[k], &scenario->axis[k]);
+    return equal || refuse(message, file, "the scene or the sweep");
 }
 
 /* ---- the successor -------------------------------------------------------------------------- */

@@ -12,14 +12,15 @@
 
 static const double last_bits = 1e-9; /* relative difference of designs that are the same */
 
-static bool open_part(struct adopted *part, stance_message *message)
+static bool open_part(struct merge *m, struct adopted *part)
 {
     struct store_counts counts;
-    if (!adopt_scenario(part, message) || !store_count(part->file, &counts, message))
+    if (!adopt_scenario(part, &m->message) || !store_count(part->file, &counts, &m->message))
         return false;
     return counts.cases == part->scenario->cases
-               ? adopt_open(part, message)
-               : complain(message, "%.100s: holds one case of a sweep (run --only), not the sweep",
+               ? adopt_open(part, &m->message)
+               : complain(&m->message,
+                          "%.100s: holds one case of a sweep (run --only), not the sweep",
                           part->file);
 }
 
@@ -43,16 +44,16 @@ static double axis_distance(const struct scenario_axis *a, const struct scenario
 
 /* The points of a sample or of a logarithmic axis are what the program that made the part computed:
  * equal scenarios of two versions need not have equal ones. */
-static bool check_axes(struct merge *m, const struct adopted *part, stance_message *message)
+static bool check_axes(struct merge *m, const struct adopted *part)
 {
     const int shift = m->kind == MERGE_VALUE; /* the new axis is the first one */
     for (int a = 0; a < part->scenario->axes; a++) {
         const struct scenario_axis *axis = &part->scenario->axis[a];
         if ((!axis->log && !axis->sample) || (m->kind == MERGE_AXIS && a == m->axis))
             continue;
-        const double distance = axis_distance(axis, &m->scenario.axis[a + shift]);
+        const double distance = axis_distance(axis, &m->scenario->axis[a + shift]);
         if (distance > last_bits) {
-            return complain(message, "%.70s: its points along %.50s are not those of %.70s",
+            return complain(&m->message, "%.70s: its points along %.50s are not those of %.70s",
                             part->file, axis->name, m->part[0].of.file);
         }
         m->designs_differ = m->designs_differ || distance > 0;
@@ -80,7 +81,7 @@ static double distance_between(const double *x, const double *y, size_t count)
 
 /* Takes the designs that a part has into the merged plan, where they are not yet. */
 static bool take_designs(struct merge *m, const struct merge_part *part, struct plan *plan,
-                         bool *taken, stance_message *message)
+                         bool *taken)
 {
     const struct plan *const own = &part->of.plan;
     for (size_t d = 0; d < own->designs; d++) {
@@ -94,7 +95,7 @@ static bool take_designs(struct merge *m, const struct merge_part *part, struct 
             distance_between(&plan->design[at * plan->design_size],
                              &own->design[d * plan->design_size], plan->design_size);
         if (plan->design_status[at] != own->design_status[d] || distance > last_bits) {
-            return complain(message,
+            return complain(&m->message,
                             "%.100s: its controller design differs from that of another part",
                             part->of.file);
         }
@@ -103,22 +104,20 @@ static bool take_designs(struct merge *m, const struct merge_part *part, struct 
     return true;
 }
 
-static bool collect_designs(struct merge *m, struct plan *plan, bool *usage,
-                            stance_message *message)
+static bool collect_designs(struct merge *m, struct plan *plan)
 {
     bool *taken = calloc(plan->designs, sizeof *taken);
-    bool good = taken || no_memory(message);
+    bool good = taken || no_memory(&m->message);
     for (size_t p = 0; good && p < m->parts; p++) {
         struct adopted *const part = &m->part[p].of;
-        good = open_part(part, message);
+        good = open_part(m, part);
         if (good) {
             good = (part->plan.record_rows == plan->record_rows ||
-                    complain(message,
+                    complain(&m->message,
                              "%.100s: its trajectories have another length than those of the whole",
                              part->file)) &&
-                   check_axes(m, part, message) &&
-                   take_designs(m, &m->part[p], plan, taken, message);
-            *usage = !good;
+                   check_axes(m, part) && take_designs(m, &m->part[p], plan, taken);
+            m->usage = !good;
         }
         adopt_close(part);
     }
@@ -129,7 +128,7 @@ static bool collect_designs(struct merge *m, struct plan *plan, bool *usage,
 /* ---- rows --------------------------------------------------------------------------------- */
 
 struct moving {
-    const struct merge *merge;
+    struct merge *merge;
     const struct merge_part *part;
 };
 
@@ -139,22 +138,22 @@ static uint64_t target_of(void *context, uint64_t row)
     return merge_row(moving->merge, moving->part, row);
 }
 
-static bool copy_parts(struct merge *m, struct store *store, bool *usage, stance_message *message)
+static bool copy_parts(struct merge *m, struct store *store)
 {
     int rank = 0;
     bool good = true;
     for (size_t p = 0; good && p < m->parts; p++) {
         struct merge_part *const part = &m->part[p];
         const uint64_t before = m->copied.copied + m->copied.same;
-        good = open_part(&part->of, message) &&
+        good = open_part(m, &part->of) &&
                store_copy(part->of.store, store, target_of, &(struct moving){m, part}, &m->copied,
-                          message) &&
-               store_copy_timing(part->of.store, store, &rank, message);
+                          &m->message) &&
+               store_copy_timing(part->of.store, store, &rank, &m->message);
         part->taken = m->copied.copied + m->copied.same - before;
         adopt_close(&part->of);
         if (good && m->copied.conflicting > 0) {
-            *usage = true;
-            good = complain(message,
+            m->usage = true;
+            good = complain(&m->message,
                             "%.80s: %llu case%s from what another part has, the first is case %llu "
                             "of the whole",
                             part->of.file, (unsigned long long)m->copied.conflicting,
@@ -177,7 +176,7 @@ static const char designs_note[] =
     "that has them are in this file.";
 
 /* One line for each part; freed by the caller. */
-static char *history(const struct merge *m)
+static char *history(struct merge *m)
 {
     char *text = NULL;
     size_t size = 0;
@@ -193,7 +192,7 @@ static char *history(const struct merge *m)
     return fclose(out) == 0 ? text : (free(text), NULL);
 }
 
-static bool annotate(const struct merge *m, struct store *store, stance_message *message)
+static bool annotate(struct merge *m, struct store *store)
 {
     const char *const notes[] = {m->keyed ? keys_note : "", m->refined ? refined_note : "",
                                  m->designs_differ ? designs_note : ""};
@@ -201,37 +200,37 @@ static bool annotate(const struct merge *m, struct store *store, stance_message 
     char *text = history(m);
     for (size_t i = 0; i < sizeof notes / sizeof notes[0]; i++)
         words_add(note, sizeof note, "%s%s", note[0] && notes[i][0] ? " " : "", notes[i]);
-    bool good = (text || no_memory(message)) &&
-                store_annotate(store, "merged_from", text, message) &&
-                (!note[0] || store_annotate(store, "merge_note", note, message));
+    bool good = (text || no_memory(&m->message)) &&
+                store_annotate(store, "merged_from", text, &m->message) &&
+                (!note[0] || store_annotate(store, "merge_note", note, &m->message));
     free(text);
     return good;
 }
 
 /* ---- all of it ---------------------------------------------------------------------------- */
 
-bool merge_write(struct merge *m, const char *file, bool *usage, stance_message *message)
+bool merge_write(struct merge *m, const char *file)
 {
     struct plan plan;
     struct plan_error error;
     int ranks = 0;
 
-    *usage = false;
+    m->usage = false;
     for (size_t p = 0; p < m->parts; p++)
         ranks += m->part[p].of.origin.ranks > 0 ? m->part[p].of.origin.ranks : 1;
-    if (!plan_make(&plan, &m->scenario, false, 0, false, &error)) {
-        *message = error.message;
+    if (!plan_make(&plan, m->scenario, false, 0, false, &error)) {
+        m->message = error.message;
         return false;
     }
     const char *hosts = m->part[0].of.origin.hosts ? m->part[0].of.origin.hosts : "";
-    bool good = collect_designs(m, &plan, usage, message) &&
-                store_create(file, &plan, NULL, ranks, hosts, message);
+    bool good =
+        collect_designs(m, &plan) && store_create(file, &plan, NULL, ranks, hosts, &m->message);
     if (good) {
         struct store *store = NULL;
-        good = store_open(&store, file, &plan, 1, message) &&
-               copy_parts(m, store, usage, message) && annotate(m, store, message);
+        good = store_open(&store, file, &plan, 1, &m->message) && copy_parts(m, store) &&
+               annotate(m, store);
         if (good)
-            good = store_close(store, message);
+            good = store_close(store, &m->message);
         else
             store_abandon(store);
         if (!good)

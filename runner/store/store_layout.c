@@ -414,7 +414,7 @@ static void put_provenance(struct layout *l)
         axes[0] = '\0';
     for (int a = 0; !plan->single && a < s->axes; a++)
         words_add(axes, sizeof axes, "%s%s", a ? "," : "", s->axis[a].name);
-    snprintf(compiler, sizeof compiler, "%s; %s", build_compiler(), build_flags());
+    snprintf(compiler, sizeof compiler, "%s; %s", build_compiler, build_flags);
     strftime(date, sizeof date, "%Y-%m-%dT%H:%M:%SZ", gmtime_r(&now, &utc));
     build_libraries(libraries);
     kernels_instruction_sets(plan, isas);
@@ -425,7 +425,7 @@ static void put_provenance(struct layout *l)
         {"title", KIND_text, s->title},
         {"format_version", KIND_int32_t, &version},
         {"program_version", KIND_text, STANCE_VERSION},
-        {"git_revision", KIND_text, build_revision()},
+        {"git_revision", KIND_text, build_revision},
         {"compiler", KIND_text, compiler},
         {"library_versions", KIND_text, libraries},
         {"instruction_set", KIND_text, isas},
