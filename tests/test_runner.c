@@ -359,7 +359,7 @@ static void store_results(struct store *store, struct rows rows, const stance_re
     for (size_t i = 0; i < rows.count; i++)
         store_put(block, i + 2, &results[i]);
     assert_true(store_write(store, block, 2, &rows, &message));
-    store_block_free(block);
+    free(block);
 }
 
 static void write_rows(struct store *store, uint64_t first, size_t n)

@@ -234,17 +234,6 @@ static bool stop_designs(void *context)
     return parallel_add(t->parallel, COUNTER_STOP, stop) != 0 || stop;
 }
 
-static bool take_room(struct trials *t, size_t pairs, uint64_t starts)
-{
-    free(t->label);
-    free(t->worth);
-    free(t->loop);
-    t->label = calloc(pairs * starts, 1);
-    t->worth = calloc(pairs, sizeof *t->worth);
-    t->loop = calloc(pairs, sizeof *t->loop);
-    return t->label && t->worth && t->loop;
-}
-
 static enum trials_end take_kernels(struct trials *t, const struct plan *plan,
                                     stance_message *message)
 {
@@ -277,7 +266,13 @@ enum trials_end trials_run(struct trials *t, size_t candidates, double *value,
     bool good = plan_make(&plan, at, false, 0, false, &error);
     if (!good)
         *message = error.message;
-    if (good && !take_room(t, pairs, starts))
+    free(t->label);
+    free(t->worth);
+    free(t->loop);
+    t->label = calloc(pairs * starts, 1);
+    t->worth = calloc(pairs, sizeof *t->worth);
+    t->loop = calloc(pairs, sizeof *t->loop);
+    if (good && !(t->label && t->worth && t->loop))
         good = complain(message, "not enough memory for %zu candidates", candidates);
     if (!parallel_agree(t->parallel, good, message->text, sizeof message->text)) {
         plan_free(&plan);

@@ -93,16 +93,6 @@ static double spread(uint64_t k, int kind, double size)
     return size * (2 * (turns - floor(turns)) - 1);
 }
 
-static bool beyond_stop(const stance_case *c, const stance_scene *scene)
-{
-    double gap[STANCE_MAX_CONTACTS];
-    bool beyond = false;
-    scene->gaps(scene, c->robot, c->position, gap);
-    for (int k = 0; k < scene->contacts; k++)
-        beyond |= scene->grip[k] < 0 && gap[k] < 0;
-    return beyond;
-}
-
 /* Moves and turns a case so that it stands on one support after the other, on all and on none, at
  * rest, disturbed, sliding and landing, with other friction and impacts than its scenario's: an
  * object may be taken by scenarios of other numbers and starts. */
@@ -128,8 +118,10 @@ static void disturb(const stance_scene *scene, uint64_t k, stance_case *c)
             c->position[i] += spread(k, i, 0.3);
         c->velocity[i] = manner == AT_REST ? 0 : spread(k + 7, i, 1);
     }
-    if (beyond_stop(c, scene))
-        memcpy(c->position, before, sizeof before);
+    scene->gaps(scene, c->robot, c->position, gap);
+    for (int g = 0; g < scene->contacts; g++)
+        if (scene->grip[g] < 0 && gap[g] < 0) /* beyond a stop */
+            memcpy(c->position, before, sizeof before);
     if (free && stands)
         scene->stand(scene, c->robot, stands, c->position, c->velocity);
     if (free && manner == SLIDING)

@@ -402,17 +402,6 @@ static bool check_start(const stance_scene *scene, const struct scenario_values 
 
 /* ---- law and time ---------------------------------------------------------------------------- */
 
-static void feed_back(const stance_scene *scene, const struct scenario_values *values,
-                      const struct resolved_design *design, stance_case *out)
-{
-    memcpy(out->near.feedforward, design->torque, sizeof out->near.feedforward);
-    memcpy(out->near.gain, design->gain, sizeof out->near.gain);
-    for (int k = 0; k < scene->postures; k++)
-        out->near.target[k] = design->equilibrium[scene->posture[k]];
-    out->has_target = true;
-    out->supports = scenario_supports(scene, values);
-}
-
 bool resolve_law(const stance_scene *scene, const struct scenario_values *values,
                  const stance_law *law, const double *begin, stance_linear_law *linear,
                  stance_case *out, stance_message *message)
@@ -433,7 +422,12 @@ static bool set_laws(const stance_scene *scene, const struct scenario_values *va
     const stance_law *const law = scenario_law(values), *const far = scenario_far(values);
     if (!law->designed)
         return resolve_law(scene, values, law, out->position, &out->near, out, message);
-    feed_back(scene, values, design, out);
+    memcpy(out->near.feedforward, design->torque, sizeof out->near.feedforward);
+    memcpy(out->near.gain, design->gain, sizeof out->near.gain);
+    for (int k = 0; k < scene->postures; k++)
+        out->near.target[k] = design->equilibrium[scene->posture[k]];
+    out->has_target = true;
+    out->supports = scenario_supports(scene, values);
     if (!resolve_law(scene, values, law, design->equilibrium, &out->near, out, message))
         return false;
     if (!far->set)

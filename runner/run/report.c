@@ -91,16 +91,6 @@ static void factor_text(const struct scenario_axis *axis, const struct scenario_
         words_add(text, size, ", log");
 }
 
-static json_t *factor_json(const struct scenario_axis *axis, const struct scenario_factor *f)
-{
-    json_t *paths = json_array();
-    char text[400];
-    for (int k = 0; k < f->paths; k++)
-        json_array_append_new(paths, json_string(axis->path[f->first + k]));
-    factor_text(axis, f, text, sizeof text);
-    return json_pack("{s:o, s:s}", "paths", paths, "range", text);
-}
-
 static json_t *sample_json(const struct plan *plan)
 {
     const struct scenario *s = plan->scenario;
@@ -108,8 +98,16 @@ static json_t *sample_json(const struct plan *plan)
     if (!s->sample.given || plan->single)
         return json_null();
     json_t *factors = json_array();
-    for (size_t j = 0; j < design->factors; j++)
-        json_array_append_new(factors, factor_json(&s->axis[s->axes - 1], &s->sample.factor[j]));
+    const struct scenario_axis *axis = &s->axis[s->axes - 1];
+    for (size_t j = 0; j < design->factors; j++) {
+        const struct scenario_factor *f = &s->sample.factor[j];
+        json_t *paths = json_array();
+        char text[400];
+        for (int k = 0; k < f->paths; k++)
+            json_array_append_new(paths, json_string(axis->path[f->first + k]));
+        factor_text(axis, f, text, sizeof text);
+        json_array_append_new(factors, json_pack("{s:o, s:s}", "paths", paths, "range", text));
+    }
     return json_pack("{s:s, s:I, s:I, s:I, s:o}", "method", doe_words[design->method], "count",
                      (json_int_t)design->count, "block", (json_int_t)doe_block(design), "points",
                      (json_int_t)doe_points(design), "factors", factors);
@@ -217,13 +215,6 @@ static void report_step(const struct scenario *s)
            interval / pieces, interval, pieces, pieces > 1 ? "s" : "", step);
 }
 
-/* One digit: that is all that is known. */
-static double round_roughly(double x)
-{
-    const double unit = pow(10, floor(log10(x)));
-    return round(x / unit) * unit;
-}
-
 static void report_cost(const struct estimate *e)
 {
     const double all = e->seconds / e->ranks,
@@ -276,7 +267,8 @@ static void report_text(const struct estimate *e)
     text_of_bytes(text, sizeof text, (double)e->size);
     printf("\nfile        %s, about %s\n", e->file, text);
     if (e->compiling > 0) {
-        text_of_seconds(text, sizeof text, round_roughly(e->compiling));
+        const double unit = pow(10, floor(log10(e->compiling))); /* more is not known */
+        text_of_seconds(text, sizeof text, round(e->compiling / unit) * unit);
         printf("compiling   about %s first, once for robots of this structure\n", text);
     }
     report_cost(e);

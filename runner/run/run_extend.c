@@ -32,13 +32,6 @@ bool run_extend_check(struct run *run, const struct scenario *s)
 
 /* ---- the old file --------------------------------------------------------------------------- */
 
-static bool is_same_file(const char *a, const char *b)
-{
-    struct stat first, second;
-    return strcmp(a, b) == 0 || (stat(a, &first) == 0 && stat(b, &second) == 0 &&
-                                 first.st_dev == second.st_dev && first.st_ino == second.st_ino);
-}
-
 /* The scenario of the old file, as it is and with the new count. */
 static bool read_old_scenario(struct run *run)
 {
@@ -50,17 +43,6 @@ static bool read_old_scenario(struct run *run)
         same && larger && (adopt_scenario(&run->old, &run->message) || run_fail_io(run));
     scenario_drop(larger);
     return good;
-}
-
-/* Values of the old file's axes into the new scenario, point by point of the sample. */
-static void take_axes(const struct scenario *from, struct scenario *to)
-{
-    for (int a = 0; a < from->axes; a++) {
-        const struct scenario_axis *const old = &from->axis[a];
-        if (old->value)
-            memcpy(to->axis[a].value, old->value,
-                   old->count * (size_t)old->paths * sizeof *old->value);
-    }
 }
 
 static bool look_into_old(struct run *run)
@@ -93,7 +75,12 @@ static bool look_into_old(struct run *run)
     run_warn_of_revision(run, file, run->old.origin.revision);
     if (!store_same_points(file, &run->old.origin, run->scenario, &run->message))
         return run_fail(run, EXIT_USAGE, "stance run: %s", run->message.text);
-    take_axes(run->old.scenario, run->scenario);
+    for (int a = 0; a < run->scenario->axes; a++) { /* point by point of the sample */
+        const struct scenario_axis *const old = &run->old.scenario->axis[a];
+        if (old->value)
+            memcpy(run->scenario->axis[a].value, old->value,
+                   old->count * (size_t)old->paths * sizeof *old->value);
+    }
     return true;
 }
 
@@ -101,6 +88,7 @@ bool run_extend_open(struct run *run)
 {
     const char *const from = run->options.from;
     const size_t size = sizeof run->old_file;
+    struct stat first, second;
 
     run->old.file = run->old_file;
     if (from)
@@ -109,7 +97,9 @@ bool run_extend_open(struct run *run)
         snprintf(run->old_file, size, "results/%s.h5", run->scenario->name);
     if (from && strlen(from) >= size - 8)
         return run_fail(run, EXIT_IO, "stance run: the name of the results file is too long");
-    if (is_same_file(run->old_file, run->file))
+    if (strcmp(run->old_file, run->file) == 0 ||
+        (stat(run->old_file, &first) == 0 && stat(run->file, &second) == 0 &&
+         first.st_dev == second.st_dev && first.st_ino == second.st_ino))
         return run_fail(run, EXIT_USAGE,
                         "stance run: --extend makes a new file: -o and --from must differ");
     return look_into_old(run);

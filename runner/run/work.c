@@ -126,7 +126,7 @@ static void out_of_memory(struct job *job, const char *what)
 static void block_free(struct block *block)
 {
     if (block) {
-        store_block_free(block->rows);
+        free(block->rows);
         free(block->state);
         free(block->method);
         free(block);
@@ -399,14 +399,6 @@ static bool open_block(struct job *job)
     return true;
 }
 
-/* Whether the stream may draw: not while rows of other methods wait, but for the rest of a chunk as
- * far as memory goes. */
-static bool may_draw(const struct job *job)
-{
-    return job->pending == 0 ||
-           (job->blocks < BLOCKS_OF_METHODS && job->schedule.next < job->schedule.end);
-}
-
 /* The next pending row of the stream's method. */
 static bool find_row(struct job *job, struct block **block, size_t *slot)
 {
@@ -421,7 +413,11 @@ static bool find_row(struct job *job, struct block **block, size_t *slot)
                 }
             }
         }
-        if (!may_draw(job) || attend(job) || !open_block(job) || job->leaving)
+        /* Not while rows of other methods wait, but for the rest of a chunk as far as memory goes.
+         */
+        const bool may_draw = job->pending == 0 || (job->blocks < BLOCKS_OF_METHODS &&
+                                                    job->schedule.next < job->schedule.end);
+        if (!may_draw || attend(job) || !open_block(job) || job->leaving)
             return false;
     }
 }
@@ -610,17 +606,6 @@ static bool find_method(struct job *job)
     return false;
 }
 
-static void run_streams(struct job *job)
-{
-    const stance_feed feed = {job, next_case, case_done, attend};
-    while (find_method(job)) {
-        for (struct block *block = job->oldest; block; block = block->next)
-            block->cursor = 0;
-        job->at = job->oldest;
-        job->kernel[job->method]->stream(&feed); /* the plan saw to it that there is a kernel */
-    }
-}
-
 static void job_free(struct job *job)
 {
     for (struct block *block = job->oldest, *next; block; block = next) {
@@ -659,7 +644,13 @@ bool work_run(struct work *work, const struct rows *only, uint8_t *label, stance
     for (int m = 0; m < MAX_METHODS && stance_methods()[m]; m++)
         job.kernel[m] = instruction_set_kernel(work->plan->scenario->scene, stance_methods()[m]);
     deadline_rescue(write_open, &job);
-    run_streams(&job);
+    const stance_feed feed = {&job, next_case, case_done, attend};
+    while (find_method(&job)) {
+        for (struct block *block = job.oldest; block; block = block->next)
+            block->cursor = 0;
+        job.at = job.oldest;
+        job.kernel[job.method]->stream(&feed); /* the plan saw to it that there is a kernel */
+    }
     deadline_rescue(NULL, NULL);
     write_open(&job);
     if (job.leaving)

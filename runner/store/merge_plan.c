@@ -170,13 +170,6 @@ struct points {
     bool numbers, rising, falling; /* all of them; in every part */
 };
 
-static void free_points(struct points *points)
-{
-    for (size_t i = 0; i < points->count; i++)
-        free(points->point[i].text);
-    free(points->point);
-}
-
 static bool add_point(struct points *points, const char *text, double number, size_t part,
                       size_t place)
 {
@@ -272,11 +265,6 @@ static int by_number_falling(const void *left, const void *right)
     return by_number(right, left);
 }
 
-static bool same_point(const struct points *points, const struct point *a, const struct point *b)
-{
-    return points->numbers ? a->number == b->number : strcmp(a->text, b->text) == 0;
-}
-
 /* Finds the place of every point in the merged axis; only the first of equal ones is kept in the
  * list, which is then the axis. */
 static bool place_points(struct merge *m, struct points *points)
@@ -295,7 +283,8 @@ static bool place_points(struct merge *m, struct points *points)
     for (size_t i = 0; i < points->count; i++) {
         struct point *point = &points->point[i];
         size_t at = sort && kept > 0 ? kept - 1 : 0; /* equal ones are neighbours when sorted */
-        while (at < kept && !same_point(points, point, &points->point[at]))
+        while (at < kept && (points->numbers ? points->point[at].number != point->number
+                                             : strcmp(points->point[at].text, point->text) != 0))
             at++;
         m->part[point->part].position[point->place] = at;
         if (at == kept) {
@@ -493,7 +482,9 @@ static bool make_scenario(struct merge *m, struct tree *trees)
     }
     scenario_drop(first);
     free(problems);
-    free_points(&points);
+    for (size_t i = 0; i < points.count; i++)
+        free(points.point[i].text);
+    free(points.point);
     return good && read_merged(m, &trees[0]);
 }
 

@@ -82,17 +82,6 @@ size_t store_trajectory_width(const stance_scene *scene, int variable)
     return (size_t)over[t->over] * t->parts;
 }
 
-/* Lengths of the dimensions of the cases; returns how many (>= 1). */
-static int case_dimensions(const struct plan *plan, hsize_t lengths[SCENARIO_MAX_AXES])
-{
-    const struct scenario *s = plan->scenario;
-    const int axes = plan->single ? 0 : s->axes;
-    lengths[0] = 1;
-    for (int a = 0; a < axes; a++)
-        lengths[a] = s->axis[a].count;
-    return axes > 0 ? axes : 1;
-}
-
 const struct store_design_column store_design_columns[RESOLVED_PARTS] = {
     {"gain",
      NULL,
@@ -150,25 +139,6 @@ hid_t store_serial_access(void)
 
 /* ---- opening and closing ------------------------------------------------------------------ */
 
-static hid_t open_for_ranks(const char *file, int ranks)
-{
-    hid_t access = store_serial_access();
-    if (access < 0)
-        return -1;
-    hid_t id = -1;
-#if defined(STANCE_MPI) && defined(H5_HAVE_PARALLEL)
-    if (ranks > 1 && H5Pset_fapl_mpio(access, MPI_COMM_WORLD, MPI_INFO_NULL) < 0) {
-        hdf_close(access);
-        return -1;
-    }
-#else
-    (void)ranks;
-#endif
-    id = H5Fopen(file, H5F_ACC_RDWR, access);
-    hdf_close(access);
-    return id;
-}
-
 /* Collective: rank 0 reads where the dataset is and tells the others, lest thousands of ranks read
  * the same few bytes of the file. *there, where not NULL: whether there is one. */
 static hid_t find_dataset(const struct store *store, const char *name, bool *there)
@@ -186,16 +156,14 @@ static hid_t find_dataset(const struct store *store, const char *name, bool *the
     return dataset;
 }
 
-static hid_t open_dataset(const struct store *store, const char *name)
-{
-    return find_dataset(store, name, NULL);
-}
-
 static bool open_columns(struct store *store, stance_message *message)
 {
     const struct scenario *s = store->plan->scenario;
     hsize_t length[SCENARIO_MAX_AXES + 1], found[H5S_MAX_RANK];
-    const int dimensions = case_dimensions(store->plan, length);
+    const int axes = store->plan->single ? 0 : s->axes, dimensions = axes > 0 ? axes : 1;
+    length[0] = 1;
+    for (int a = 0; a < axes; a++)
+        length[a] = s->axis[a].count;
 
     for (int c = 0; c < COLUMNS; c++) {
         const bool history = c == COLUMN_SCENARIO_NUMBER && store->plan->ancestors > 0;
@@ -234,11 +202,11 @@ static bool open_trajectories(struct store *store, stance_message *message)
             continue;
         char name[64];
         snprintf(name, sizeof name, "trajectory/%s", store_trajectories[v].name);
-        store->trajectory[v] = open_dataset(store, name);
+        store->trajectory[v] = find_dataset(store, name, NULL);
         if (store->trajectory[v] < 0)
             return store_failed(message, store->file, "open the trajectories");
     }
-    store->trajectory_checksum = open_dataset(store, "trajectory/checksum");
+    store->trajectory_checksum = find_dataset(store, "trajectory/checksum", NULL);
     return store->trajectory_checksum >= 0 ||
            store_failed(message, store->file, "open the trajectories");
 }
@@ -272,7 +240,14 @@ bool store_open(struct store **result, const char *file, const struct plan *plan
                 stance_message *message)
 {
     /* Collective: before anything that can fail alone. */
-    const hid_t id = open_for_ranks(file, ranks);
+    hid_t access = store_serial_access(), id = -1;
+    bool good = access >= 0;
+#if defined(STANCE_MPI) && defined(H5_HAVE_PARALLEL)
+    good = good && (ranks == 1 || H5Pset_fapl_mpio(access, MPI_COMM_WORLD, MPI_INFO_NULL) >= 0);
+#endif
+    if (good)
+        id = H5Fopen(file, H5F_ACC_RDWR, access);
+    hdf_close(access);
     return open_store(result, id, file, plan, ranks, message);
 }
 
@@ -286,7 +261,7 @@ bool store_open_to_read(struct store **result, const char *file, const struct pl
 void store_abandon(struct store *store)
 {
     if (store) {
-        store_block_free(store->checked);
+        free(store->checked);
         free(store);
     }
 }
@@ -333,28 +308,20 @@ size_t store_row_size(const struct store *store)
 
 struct store_block *store_block_make(const struct store *store, size_t rows)
 {
-    struct store_block *block = calloc(1, sizeof *block);
-    bool good = block != NULL;
-    for (int c = 0; good && c < COLUMNS; c++) {
-        if (store->column[c] >= 0) {
-            block->column[c] = malloc(rows * store->size[c]);
-            good = block->column[c] != NULL;
-        }
+    enum { ALIGNED = 16 };
+    size_t offset[COLUMNS], size = (sizeof(struct store_block) + ALIGNED - 1) / ALIGNED * ALIGNED;
+    for (int c = 0; c < COLUMNS; c++) {
+        offset[c] = size;
+        const size_t bytes = store->column[c] >= 0 ? rows * store->size[c] : 0;
+        size += (bytes + ALIGNED - 1) / ALIGNED * ALIGNED;
     }
-    if (!good) {
-        store_block_free(block);
-        return NULL;
+    struct store_block *const block = malloc(size);
+    if (block) {
+        *block = (struct store_block){.store = store};
+        for (int c = 0; c < COLUMNS; c++)
+            block->column[c] = store->column[c] >= 0 ? (char *)block + offset[c] : NULL;
     }
-    block->store = store;
-    block->rows = rows;
     return block;
-}
-
-void store_block_free(struct store_block *block)
-{
-    for (int c = 0; block && c < COLUMNS; c++)
-        free(block->column[c]);
-    free(block);
 }
 
 uint32_t store_row_checksum(const struct store_block *block, size_t slot)
@@ -450,7 +417,7 @@ bool store_write(struct store *store, struct store_block *block, size_t slot,
                    ? store_move_rows(store, block, slot + at, &part, HDF_WRITE, message)
                    : write_span(store, block, slot + at, &part, between, message);
     }
-    store_block_free(between);
+    free(between);
     return good;
 }
 
@@ -587,7 +554,7 @@ bool store_read_designs(struct store *store, struct plan *plan, stance_message *
         if (store_design_width(plan->scenario->scene, k) == 0)
             continue;
         snprintf(name, sizeof name, "design/%s", store_design_columns[k].name);
-        const hid_t dataset = open_dataset(store, name);
+        const hid_t dataset = find_dataset(store, name, NULL);
         double *const data = design_room(plan, k);
         good = data && hdf_read(dataset, KIND_double, data) && good;
         if (good)
@@ -595,7 +562,7 @@ bool store_read_designs(struct store *store, struct plan *plan, stance_message *
         free(data);
         hdf_close(dataset);
     }
-    const hid_t dataset = open_dataset(store, "design/status");
+    const hid_t dataset = find_dataset(store, "design/status", NULL);
     good = good && hdf_read(dataset, KIND_uint8_t, plan->design_status);
     hdf_close(dataset);
     return good || store_failed(message, store->file, "read the designs");

@@ -129,10 +129,9 @@ void store_abandon(struct store *store);
 
 /* Collective, right after store_open: designs of the file into the plan. */
 bool store_read_designs(struct store *store, struct plan *plan, stance_message *message);
-/* Bytes of a row in a block; a block for `rows` rows, NULL: no memory. */
+/* Bytes of a row in a block; a block for `rows` rows, freed by free(); NULL: no memory. */
 size_t store_row_size(const struct store *store);
 struct store_block *store_block_make(const struct store *store, size_t rows);
-void store_block_free(struct store_block *block);
 /* What is stored of a result, its checksum included, into a slot of the block. */
 void store_put(struct store_block *block, size_t slot, const stance_result *result);
 /* As many slots of the block as there are rows (one at least), from `slot` on, to those rows of the

@@ -34,6 +34,12 @@ struct layout {
     const char *hosts;
 };
 
+static struct dataset dataset(const char *name, enum store_kind kind, const char *unit,
+                              const char *text)
+{
+    return (struct dataset){.name = name, .kind = kind, .unit = unit, .text = text};
+}
+
 /* A dimension whose points are words; none where there are none. */
 static void make_words(struct layout *l, const char *name, const char *const *words, int n,
                        struct dimension *dimension)
@@ -58,14 +64,6 @@ static double axis_value(const void *context, uint64_t i)
     return scenario_axis_value(values->axis, values->single ? values->point : i, values->path);
 }
 
-/* Point of axis a that a case has. */
-static size_t axis_point(const struct scenario *s, int a, uint64_t index)
-{
-    for (int b = s->axes - 1; b > a; b--)
-        index /= s->axis[b].count;
-    return (size_t)(index % s->axis[a].count);
-}
-
 /* The values of one path of an axis, as the axis's own dimension or as a variable `over` one. Of an
  * axis of words the other paths may hold numbers; a sample has words as codes. */
 static void put_path(struct layout *l, const struct axis_values *values,
@@ -74,34 +72,30 @@ static void put_path(struct layout *l, const struct axis_values *values,
     const struct scenario_axis *axis = values->axis;
     const int k = values->path;
     const struct scenario_meaning *meaning = axis->sample ? &axis->meaning[k] : NULL;
-    const char *flags = meaning ? meaning->words : NULL;
     const bool first = k == 0 && !meaning, text = axis->words && axis->enumeration[k];
     const size_t n = over ? over->length : axis->count;
     const char **words = text ? malloc(n * sizeof *words) : NULL;
-    const struct dataset d = {
-        first ? axis->name : axis->path[k],
-        text               ? KIND_text
-        : flags            ? KIND_uint8_t
-        : axis->integer[k] ? KIND_int32_t
-                           : KIND_double,
-        false,
-        meaning          ? meaning->unit
-        : first && !text ? axis->unit
-                         : NULL,
-        meaning ? meaning->text
-        : first ? axis->text
-                : NULL,
-        flags,
-        .values = words,
-        .value = axis_value,
-        .context = values,
-        .length = n,
-        .over = {over},
-    };
+    struct dataset d = dataset(axis->path[k], axis->integer[k] ? KIND_int32_t : KIND_double, NULL,
+                               first ? axis->text : NULL);
+    if (first) {
+        d.name = axis->name;
+        d.unit = text ? NULL : axis->unit;
+    }
+    if (meaning) {
+        d.unit = meaning->unit;
+        d.text = meaning->text;
+        d.flags = meaning->words;
+    }
+    d.kind = text ? KIND_text : d.flags ? KIND_uint8_t : d.kind;
     for (size_t i = 0; words && i < n; i++) {
         const size_t point = values->single ? values->point : i;
         words[i] = axis->word[point * (size_t)axis->paths + (size_t)k];
     }
+    d.values = words;
+    d.value = axis_value;
+    d.context = values;
+    d.length = n;
+    d.over[0] = over;
     l->make.failed = l->make.failed || (text && !words);
     make(&l->make, &d, dimension);
     free(words);
@@ -134,9 +128,9 @@ static void make_sample(struct layout *l, const struct scenario_axis *axis,
     char *paths = sampled_paths(l, ',', ';');
     const int32_t factors = (int32_t)design->factors, block = (int32_t)doe_block(design),
                   levels = design->levels, second_order = design->second_order;
-    const struct dataset d = {axis->name,           KIND_int64_t, false,
-                              axis->unit,           axis->text,   .value = make_place,
-                              .length = axis->count};
+    struct dataset d = dataset(axis->name, KIND_int64_t, axis->unit, axis->text);
+    d.value = make_place;
+    d.length = axis->count;
     const struct attribute attributes[] = {
         {"method", KIND_text, doe_words[design->method]},
         {"generator", KIND_text, generator[0] ? generator : NULL},
@@ -162,14 +156,11 @@ static void make_cases(struct layout *l, uint64_t n,
                        double (*value)(const void *context, uint64_t i),
                        struct dimension *dimension)
 {
-    const struct dataset d = {"case",
-                              KIND_int64_t,
-                              false,
-                              "1",
-                              "flat index of the case, row-major over the axes",
-                              .value = value,
-                              .context = l->plan,
-                              .length = n};
+    struct dataset d =
+        dataset("case", KIND_int64_t, "1", "flat index of the case, row-major over the axes");
+    d.value = value;
+    d.context = l->plan;
+    d.length = n;
     make(&l->make, &d, dimension);
 }
 
@@ -178,18 +169,20 @@ static void put_axes(struct layout *l)
     const struct plan *plan = l->plan;
     const struct scenario *s = plan->scenario;
     const bool one = plan->single || s->axes == 0;
+    uint64_t inner = s->cases; /* cases in one point of an axis */
 
     if (one)
         make_cases(l, 1, case_value, &l->axis[0]);
     for (int a = 0; a < s->axes; a++) {
-        struct axis_values values = {&s->axis[a], 0, plan->single, 0};
+        const struct scenario_axis *const axis = &s->axis[a];
         struct dimension *const own = &l->axis[one ? 0 : a];
-        if (plan->single)
-            values.point = axis_point(s, a, plan->single_case);
-        if (s->axis[a].sample && !one)
-            make_sample(l, &s->axis[a], own);
-        for (; values.path < s->axis[a].paths; values.path++) {
-            const bool first = !one && !s->axis[a].sample && values.path == 0;
+        inner /= axis->count;
+        struct axis_values values = {axis, 0, plan->single,
+                                     (size_t)(plan->single_case / inner % axis->count)};
+        if (axis->sample && !one)
+            make_sample(l, axis, own);
+        for (; values.path < axis->paths; values.path++) {
+            const bool first = !one && !axis->sample && values.path == 0;
             put_path(l, &values, first ? NULL : own, first ? own : NULL);
         }
     }
@@ -287,8 +280,10 @@ static void put_designs(struct layout *l)
         make_state_names(l, "posture_state", true, &inner[DESIGN_POSTURE]);
     for (int k = 0; k < RESOLVED_PARTS; k++) {
         const struct store_design_column *const c = &store_design_columns[k];
+        struct dataset d = dataset(c->name, KIND_double, c->unit, c->text);
         double *const values = store_design_values(plan, k);
-        struct dataset d = {c->name, KIND_double, true, c->unit, c->text, .values = values};
+        d.filled = true;
+        d.values = values;
         if (store_design_width(s->scene, k) > 0) {
             l->make.failed = l->make.failed || !values;
             memcpy(d.over, over, sizeof over);
@@ -299,13 +294,9 @@ static void put_designs(struct layout *l)
         }
         free(values);
     }
-    struct dataset d = {"status",
-                        KIND_uint8_t,
-                        false,
-                        NULL,
-                        "whether the design exists",
-                        flags_of(s->scene, COLUMN_STATUS, flags),
-                        .values = plan->design_status};
+    struct dataset d = dataset("status", KIND_uint8_t, NULL, "whether the design exists");
+    d.flags = flags_of(s->scene, COLUMN_STATUS, flags);
+    d.values = plan->design_status;
     memcpy(d.over, over, sizeof over);
     make(&l->make, &d, NULL);
 }
@@ -328,18 +319,15 @@ static void put_trajectories(struct layout *l)
     const struct plan *plan = l->plan;
     const stance_scene *scene = plan->scenario->scene;
     static const char *const components[] = {"normal", "tangential"};
-    const struct dataset instant = {"time",
-                                    KIND_double,
-                                    false,
-                                    "s",
-                                    "instant; the step that ends nearest to it is stored",
-                                    .value = recorded_time,
-                                    .context = plan,
-                                    .length = (hsize_t)plan->record_rows};
+    struct dataset instant =
+        dataset("time", KIND_double, "s", "instant; the step that ends nearest to it is stored");
     struct dimension number, time, last[3], component;
 
     if (plan->record_rows == 0)
         return;
+    instant.value = recorded_time;
+    instant.context = plan;
+    instant.length = (hsize_t)plan->record_rows;
     make_group(&l->make, "trajectory");
     make_cases(l, plan->record_cases, recorded_case, &number);
     make(&l->make, &instant, &time);
@@ -348,10 +336,12 @@ static void put_trajectories(struct layout *l)
     make_words(l, "component", components, scene->contacts > 0 ? 2 : 0, &component);
     for (int v = 0; v < TRAJECTORIES; v++) {
         const struct store_trajectory *t = &store_trajectories[v];
-        const struct dataset d = {
-            t->name, KIND_double,
-            true,    t->unit,
-            t->text, .over = {&number, &time, &last[t->over], t->parts > 1 ? &component : NULL}};
+        struct dataset d = dataset(t->name, KIND_double, t->unit, t->text);
+        d.filled = true;
+        d.over[0] = &number;
+        d.over[1] = &time;
+        d.over[2] = &last[t->over];
+        d.over[3] = t->parts > 1 ? &component : NULL;
         if (store_trajectory_width(scene, v) > 0)
             make(&l->make, &d, NULL);
     }

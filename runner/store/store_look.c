@@ -258,7 +258,7 @@ bool store_distrust(int64_t file, uint8_t *status, uint64_t cases, struct store_
             }
         }
     }
-    store_block_free(block);
+    free(block);
     hdf_close_all(store.column, COLUMNS);
     return good;
 }

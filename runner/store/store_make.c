@@ -63,14 +63,6 @@ static bool put_flags(hid_t object, const char *words)
            put_attribute(object, "flag_meanings", KIND_text, words);
 }
 
-static bool put_fill(hid_t object, enum store_kind kind)
-{
-    static const int64_t count = STANCE_NO_COUNT;
-    static const double number = NAN;
-    return put_attribute(object, "_FillValue", kind,
-                         kind == KIND_int64_t ? (const void *)&count : &number);
-}
-
 /* ---- files, groups, datasets -------------------------------------------------------------- */
 
 /* What is in it has the order of its making, which is netCDF's, and attributes may be long. No
@@ -143,21 +135,16 @@ static bool write_values(hid_t id, hid_t type, const struct dataset *d, hsize_t 
     return good;
 }
 
-/* Turns a dataset into a dimension; by the label netCDF knows it. */
-static bool make_scale(struct maker *m, hid_t id, const struct dataset *d)
-{
-    const int32_t number = m->dimensions++;
-    return H5DSset_scale(id, d->label ? d->label : d->name) >= 0 &&
-           put_attribute(id, "_Netcdf4Dimid", KIND_int32_t, &number);
-}
-
 static bool describe(hid_t id, const struct dataset *d)
 {
+    static const int64_t no_count = STANCE_NO_COUNT;
+    static const double no_number = NAN;
+    const void *const fill = d->kind == KIND_int64_t ? (const void *)&no_count : &no_number;
     bool good = put_attribute(id, "units", KIND_text, d->flags ? NULL : d->unit) &&
                 put_attribute(id, "long_name", KIND_text, d->text && d->text[0] ? d->text : NULL);
     for (unsigned k = 0; good && d->over[k]; k++)
         good = H5DSattach_scale(id, d->over[k]->id, k) >= 0;
-    return good && (!d->filled || put_fill(id, d->kind)) &&
+    return good && put_attribute(id, "_FillValue", d->kind, d->filled ? fill : NULL) &&
            (!d->flags || put_flags(id, d->flags)) &&
            put_attribute(id, "coordinates", KIND_text, d->coordinates);
 }
@@ -177,8 +164,13 @@ void make(struct maker *m, const struct dataset *d, struct dimension *dimension)
                            ? text_type(H5T_VARIABLE)
                            : H5Tcopy(d->label ? H5T_IEEE_F32BE : hdf_type(d->kind));
     const hid_t id = create(m->group, d->name, type, rank, length);
-    m->failed = !(id >= 0 && write_values(id, type, d, n) && (!dimension || make_scale(m, id, d)) &&
-                  describe(id, d));
+    bool good = id >= 0 && write_values(id, type, d, n);
+    if (good && dimension) { /* by the label netCDF knows it */
+        const int32_t number = m->dimensions++;
+        good = H5DSset_scale(id, d->label ? d->label : d->name) >= 0 &&
+               put_attribute(id, "_Netcdf4Dimid", KIND_int32_t, &number);
+    }
+    m->failed = !good || !describe(id, d);
     hdf_close(type, dimension ? -1 : id);
     if (dimension)
         *dimension = (struct dimension){id, length[0]};

@@ -82,7 +82,6 @@ struct store {
 /* Rows in memory, column after column. */
 struct store_block {
     const struct store *store;
-    size_t rows;
     void *column[COLUMNS]; /* [rows][width]; NULL: not stored */
 };
 
