@@ -8,7 +8,6 @@
 #include "runner/base/units.h"
 #include "runner/plan/allowed.h"
 #include "runner/plan/asked.h"
-#include "runner/plan/search_numbers.h"
 #include "runner/run/run.h"
 
 #include <errno.h>

@@ -96,4 +96,11 @@ bool resolve_law(const stance_scene *scene, const struct scenario_values *values
 bool resolve_selection(const stance_scene *scene, const stance_case *start,
                        stance_message *message);
 
+/* Which of the numbers that a search is asked to vary can differ: of the gains those of the linear
+ * model. Coordinates that follow from the others while the contacts hold (of a flat foot its angle)
+ * have gains of 0, see resolve_free. How many they are; and leaves the others out of
+ * s->search.axis. */
+int search_numbers(const struct scenario *s);
+void search_numbers_keep(struct scenario *s);
+
 #endif

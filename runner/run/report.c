@@ -5,7 +5,6 @@
 #include "runner/base/words.h"
 #include "runner/plan/kernels.h"
 #include "runner/plan/refine.h"
-#include "runner/plan/search_numbers.h"
 #include "runner/store/store.h"
 
 #include <inttypes.h>

@@ -63,14 +63,13 @@ enum state { PENDING, RUNNING, ENDED, STORED };
 struct block {
     struct block *next;
     struct store_block *rows;
-    uint64_t first;  /* place in the schedule */
-    size_t count;    /* rows */
-    size_t open;     /* of these, not ended */
-    size_t cursor;   /* where the stream looks for its next case */
-    double write_at; /* when what has ended is written next */
-    int writes;      /* so far */
-    uint8_t *state;  /* [capacity] */
-    uint8_t *method; /* [capacity] */
+    uint64_t first;          /* place in the schedule */
+    size_t count;            /* rows */
+    size_t open;             /* of these, not ended */
+    size_t cursor;           /* where the stream looks for its next case */
+    double write_at;         /* when what has ended is written next */
+    int writes;              /* so far */
+    uint8_t *state, *method; /* [capacity], behind it */
 };
 
 /* A case in a lane. */
@@ -123,28 +122,27 @@ static void out_of_memory(struct job *job, const char *what)
     break_off(job);
 }
 
-static void block_free(struct block *block)
+static void free_blocks(struct block *list)
 {
-    if (block) {
+    for (struct block *block = list, *next; block; block = next) {
+        next = block->next;
         free(block->rows);
-        free(block->state);
-        free(block->method);
         free(block);
     }
 }
 
 static struct block *block_make(const struct job *job)
 {
-    struct block *block = calloc(1, sizeof *block);
+    const struct store *const store = job->work->store;
+    struct block *block = calloc(1, sizeof *block + 2 * job->capacity);
     if (block) {
-        const struct store *const store = job->work->store;
         block->rows = store ? store_block_make(store, job->capacity) : NULL;
-        block->state = malloc(job->capacity);
-        block->method = malloc(job->capacity);
-        if ((store && !block->rows) || !block->state || !block->method) {
-            block_free(block);
-            return NULL;
-        }
+        block->state = (uint8_t *)(block + 1);
+        block->method = block->state + job->capacity;
+    }
+    if (block && store && !block->rows) {
+        free(block);
+        return NULL;
     }
     return block;
 }
@@ -608,14 +606,8 @@ static bool find_method(struct job *job)
 
 static void job_free(struct job *job)
 {
-    for (struct block *block = job->oldest, *next; block; block = next) {
-        next = block->next;
-        block_free(block);
-    }
-    for (struct block *block = job->idle, *next; block; block = next) {
-        next = block->next;
-        block_free(block);
-    }
+    free_blocks(job->oldest);
+    free_blocks(job->idle);
     for (struct task *task = job->tasks, *next; task; task = next) {
         next = task->next;
         crash_leave(task->hand);
