@@ -363,14 +363,6 @@ static void warn(const struct optimise *o)
                 who, search->scenario->search.grow[0]);
 }
 
-static void print_objective(const struct optimise *o, double value)
-{
-    if (scenario_search_plain(o->run.scenario))
-        printf("%.2f %%", 100 * value);
-    else
-        printf("%.6g", value);
-}
-
 /* Beside the share of the worst circumstance what is allowed in that which allows least. */
 static void print_limit(const struct optimise *o)
 {
@@ -402,9 +394,12 @@ static int conclude(struct run *run)
     printf("%s: %zu candidates in %zu generation%s, %s; %s", o->run.file,
            f->length[SEARCH_CANDIDATE], f->length[SEARCH_GENERATION],
            f->length[SEARCH_GENERATION] == 1 ? "" : "s", f->note, plain ? "" : "objective ");
-    print_objective(o, f->confirmed_objective[f->chosen]);
-    printf(" of %zu fresh starts, the first ", f->length[SEARCH_START]);
-    print_objective(o, f->confirmed_objective[0]);
+    const double chosen = f->confirmed_objective[f->chosen], first = f->confirmed_objective[0];
+    if (plain)
+        printf("%.2f %% of %zu fresh starts, the first %.2f %%", 100 * chosen,
+               f->length[SEARCH_START], 100 * first);
+    else
+        printf("%.6g of %zu fresh starts, the first %.6g", chosen, f->length[SEARCH_START], first);
     if (plain)
         print_limit(o);
     printf("; %.1f s on %d rank%s\n%s: the scenario of the best\n", clock_seconds() - o->run.start,

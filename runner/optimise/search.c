@@ -627,7 +627,7 @@ static enum trials_end try_elsewhere(struct search *search, stance_message *mess
     const size_t n = (size_t)search->space.n;
     const double cases = (double)(COMPARED * elsewhere_starts(search->scenario));
     enum trials_end end = TRIALS_DONE;
-    double value[COMPARED * SCENARIO_MAX_PATHS], share[COMPARED];
+    double value[COMPARED * SCENARIO_MAX_PATHS], share[COMPARED] = {0};
     memcpy(value, f->confirmed_value, n * sizeof *value);
     memcpy(value + n, &f->confirmed_value[(size_t)f->chosen * n], n * sizeof *value);
     for (int e = 0; e < ELSEWHERE_MOST && end == TRIALS_DONE; e++) {
