@@ -276,15 +276,14 @@ bool hdf_move_rows(hid_t dataset, hid_t type, size_t width, const struct rows *r
 {
     hsize_t length[H5S_MAX_RANK], start[H5S_MAX_RANK] = {0};
     const uint64_t first = rows_at(rows, 0), last = rows_at(rows, rows->count - 1);
-    const hsize_t n = rows->count * width;
+    const hsize_t n = rows->count * width, end = (last + 1) * width;
     hid_t space = H5Dget_space(dataset), memory = H5Screate_simple(1, &n, NULL);
     const int rank = H5Sget_simple_extent_dims(space, length, NULL);
-    bool good = memory >= 0 && rank >= 0 &&
-                H5Sget_simple_extent_npoints(space) >= (hssize_t)((last + 1) * width);
+    bool good = memory >= 0 && rank >= 0 && H5Sget_simple_extent_npoints(space) >= (hssize_t)end;
     if (good && rank > 0) {
         good = last - first + 1 == rows->count
-                   ? H5Sselect_none(space) >= 0 && select_range(space, rank, length, 0, start,
-                                                                first * width, (last + 1) * width)
+                   ? H5Sselect_none(space) >= 0 &&
+                         select_range(space, rank, length, 0, start, first * width, end)
                    : select_list(space, rank, length, width, rows);
     }
     good =

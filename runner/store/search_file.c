@@ -18,19 +18,15 @@
 enum { MOST_OVER = 3 };
 
 static const struct entry {
-    const char *name;
-    enum store_kind kind;
-    const char *unit, *text;
+    const char *name, *unit, *text;
     size_t offset; /* of the pointer in struct search_file */
+    enum store_kind kind;
     int over[MOST_OVER];
 } table[] = {
 #define ENTRY(name, type, a, b, c, unit, text)                                                     \
-    {#name,                                                                                        \
-     KIND_##type,                                                                                  \
-     unit,                                                                                         \
-     text,                                                                                         \
-     offsetof(struct search_file, name),                                                           \
-     {SEARCH_##a, SEARCH_##b, SEARCH_##c}},
+    {#name,       unit,                                                                            \
+     text,        offsetof(struct search_file, name),                                              \
+     KIND_##type, {SEARCH_##a, SEARCH_##b, SEARCH_##c}},
     SEARCH_VARIABLES(ENTRY) SEARCH_ADDED(ENTRY)
 #undef ENTRY
 };
