@@ -49,8 +49,8 @@ static void print_version(void)
     stance_message message;
     build_libraries(libraries);
     instruction_set_names(sets);
-    printf("stance %s (revision %s)\n%s\n%s\n%s\n", STANCE_VERSION, build_revision(),
-           build_compiler(), build_flags(), libraries);
+    printf("stance %s (revision %s)\n%s\n%s\n%s\n", STANCE_VERSION, build_revision, build_compiler,
+           build_flags, libraries);
     printf("instruction sets %s; in use: %s\n", sets,
            instruction_set_check(&message) ? instruction_set() : "none");
 }

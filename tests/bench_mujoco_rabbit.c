@@ -75,8 +75,10 @@ static bool take(struct beside *b, const struct regime *regime)
         return false;
     if (!plan_make(&b->plan, &b->scenario, false, 0, false, &error) ||
         !plan_compute_designs(&b->plan, &alone, &error) ||
-        kernels_take(&b->kernels, &b->plan, &(struct kernels_choice){NULL, isa, 0, b->isas}, &alone,
-                     true, &message) != EXIT_DONE) {
+        kernels_take(
+            &b->kernels, &b->plan,
+            &(struct kernels_choice){.isa = isa, .isas = b->isas, .always = true, .quiet = true},
+            &alone, &message) != EXIT_DONE) {
         fprintf(stderr, "bench_mujoco_rabbit: %s%s\n", error.message.text, message.text);
         return false;
     }

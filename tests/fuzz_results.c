@@ -297,8 +297,7 @@ static bool resume(size_t which, stance_message *message)
         free(s);
         return false;
     }
-    for (int a = 0; a < s->axes && fine; a++)
-        fine = store_read_axis(path, &s->axis[a], message);
+    fine = store_read_axes(path, s->axis, s->axes, message);
     fine = fine && store_count(path, &counts, message);
     bool single = strstr(good[which].name, "case") != NULL;
     fine = fine && plan_make(&plan, s, single, only, single, &error);

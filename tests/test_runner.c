@@ -359,7 +359,7 @@ static void store_results(struct store *store, struct rows rows, const stance_re
     for (size_t i = 0; i < rows.count; i++)
         store_put(block, i + 2, &results[i]);
     assert_true(store_write(store, block, 2, &rows, &message));
-    store_block_free(block);
+    free(block);
 }
 
 static void write_rows(struct store *store, uint64_t first, size_t n)
@@ -397,7 +397,7 @@ static void test_rows(void **state)
     for (uint64_t first = 0; first < 60; first++) {
         const size_t n = 1 + (size_t)(first * 37 % (60 - first));
         unlink(f->file);
-        assert_true(store_create(f->file, &plan, 1, "here", &message));
+        assert_true(store_create(f->file, &plan, NULL, 1, "here", &message));
         assert_true(store_open(&store, f->file, &plan, 1, &message));
         assert_whole(store, 0, 60, false);
         write_rows(store, first, n);
@@ -421,7 +421,7 @@ static void test_listed_rows(void **state)
     struct plan plan = f->plan;
     plan.record_rows = 0, plan.record_cases = 0;
     unlink(f->file);
-    assert_true(store_create(f->file, &plan, 1, "here", &message));
+    assert_true(store_create(f->file, &plan, NULL, 1, "here", &message));
     assert_true(store_open(&store, f->file, &plan, 1, &message));
     for (uint64_t third = 0; third < 3; third++) {
         const uint64_t begin = 20 * third, step = 7 - 3 * third;
@@ -451,7 +451,7 @@ static void test_designs_stored(void **state)
     stance_message message;
     struct plan copy = f->plan;
     unlink(f->file);
-    assert_true(store_create(f->file, &f->plan, 1, "here", &message));
+    assert_true(store_create(f->file, &f->plan, NULL, 1, "here", &message));
     copy.design = calloc(4, copy.design_size * sizeof *copy.design);
     copy.design_status = calloc(4, 1);
     assert_true(store_open(&store, f->file, &f->plan, 1, &message));
@@ -490,7 +490,7 @@ static void test_plain_scene(void **state)
     assert_int_equal(plan.designs, 1);
     assert_true(plan_check_cases(&plan, &error));
     unlink(f->file);
-    assert_true(store_create(f->file, &plan, 1, "here", &message));
+    assert_true(store_create(f->file, &plan, NULL, 1, "here", &message));
     assert_true(store_open(&store, f->file, &plan, 1, &message));
     for (int i = 0; i < 42; i++)
         data[i] = nothing;
@@ -527,8 +527,8 @@ static void test_origin(void **state)
     stance_message message;
     FILE *file;
     unlink(f->file);
-    assert_true(store_create(f->file, &f->plan, 3, "here", &message));
-    assert_false(store_create(f->file, &f->plan, 3, "here", &message)); /* ... and stays */
+    assert_true(store_create(f->file, &f->plan, NULL, 3, "here", &message));
+    assert_false(store_create(f->file, &f->plan, NULL, 3, "here", &message)); /* ... and stays */
     assert_true(store_read_origin(f->file, &origin, &message));
     assert_string_equal(origin.scenario, f->scenario.text);
     store_origin_free(&origin);
@@ -552,7 +552,7 @@ static void test_check(void **state)
     static char bytes[1 << 21];
     const double value = 1.8; /* of an axis, and of nothing else */
     unlink(f->file);
-    assert_true(store_create(f->file, &f->plan, 1, "here", &message));
+    assert_true(store_create(f->file, &f->plan, NULL, 1, "here", &message));
     assert_true(store_check(f->file, true, &message));
     FILE *file = fopen(f->file, "r+b");
     assert_non_null(file);

@@ -77,7 +77,7 @@ static int make_fixture(void **state)
     unlink(f->file);
     if (!plan_make(&f->plan, &f->scenario, false, 0, false, &error) ||
         !plan_compute_designs(&f->plan, &f->parallel, &error) ||
-        !store_create(f->file, &f->plan, 1, "here", &message) ||
+        !store_create(f->file, &f->plan, NULL, 1, "here", &message) ||
         !store_open(&f->store, f->file, &f->plan, 1, &message))
         return -1;
     f->work = (struct work){.plan = &f->plan,
@@ -142,15 +142,15 @@ static void test_lists(void **state)
         if (uniform(&random, 0, 1) < 0.2 || i == 100 || i / 8 == 3)
             row[n++] = i, whole[i] = true;
     run_rows(f, &(struct rows){.row = row, .count = n});
-    assert_int_equal(f->work.computed, n);
-    assert_int_equal(f->work.finished, n);
+    assert_int_equal(f->work.sums.computed, n);
+    assert_int_equal(f->work.sums.finished, n);
     assert_whole(f, whole);
     run_rows(f, &(struct rows){.row = row, .count = 0});
-    assert_int_equal(f->work.computed, n);
+    assert_int_equal(f->work.sums.computed, n);
     f->work.resume = true;
     run_rows(f, NULL);
-    assert_int_equal(f->work.computed, 240);
-    assert_int_equal(f->work.finished, 240 + n); /* what was kept counts again */
+    assert_int_equal(f->work.sums.computed, 240);
+    assert_int_equal(f->work.sums.finished, 240 + n); /* what was kept counts again */
     memset(whole, true, sizeof whole);
     assert_whole(f, whole);
 }
@@ -244,7 +244,7 @@ static void test_one_shard(void **state)
     for (uint64_t place = 0; place < share.count; place++)
         whole[shard_row(&shard, place)] = true;
     run_rows(f, &share);
-    assert_int_equal(f->work.computed, share.count);
+    assert_int_equal(f->work.sums.computed, share.count);
     assert_whole(f, whole);
 }
 
@@ -255,7 +255,7 @@ static void test_stopped(void **state)
     bool whole[240] = {false};
     f->work.time_limit = 0;
     run_rows(f, NULL);
-    assert_int_equal(f->work.finished, 0);
+    assert_int_equal(f->work.sums.finished, 0);
     assert_whole(f, whole);
 }
 

@@ -262,15 +262,14 @@ static int prepare(const struct scenario *s, void *request)
     struct kernels kernels;
     struct plan_error error = {0};
     stance_message message = {""};
-    const struct kernels_choice all = {NULL, NULL, 0, 0, false};
+    const struct kernels_choice choice = {.always = s->axes == 0};
     if (!plan_make(&plan, s, false, 0, false, &error))
         return plan_error_print(s, &error);
     plan.patience = PLAN_PATIENCE_DESIGNS;
     int code = EXIT_DONE;
     if (!plan_compute_designs(&plan, &alone, &error))
         code = plan_error_print(s, &error);
-    else if ((code = kernels_take(&kernels, &plan, s->axes > 0 ? NULL : &all, &alone, false,
-                                  &message)) != EXIT_DONE)
+    else if ((code = kernels_take(&kernels, &plan, &choice, &alone, &message)) != EXIT_DONE)
         fprintf(stderr, "stance ranges: %s\n", message.text);
     plan_free(&plan);
     if (code != EXIT_DONE)
@@ -282,7 +281,7 @@ static int prepare(const struct scenario *s, void *request)
 
 static int work(void *request)
 {
-    return asked_work(&command_ranges, request, prepare, request);
+    return asked_work(request, prepare, request);
 }
 
 static int run(int argc, char **argv)

@@ -293,7 +293,7 @@ bool accuracy_make(struct accuracy *a, const struct results *r, double budget,
         return false;
     const bool good = make_rows(a, s, r, message) && read_answers(a, r, message) &&
                       compare(a, r, message) && measure(a, s, r, budget, message);
-    study_scenario_free(s);
+    scenario_drop(s);
     if (good && !a->labels)
         fit_orders(a);
     if (!good)

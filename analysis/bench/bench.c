@@ -171,9 +171,9 @@ void bench_csv_row(FILE *out, const struct bench_row *row)
                                                           number[BENCH_MEDIAN],
                                                           number[BENCH_LOWEST],
                                                           number[BENCH_HIGHEST],
-                                                          build_revision(),
-                                                          build_compiler(),
-                                                          build_flags(),
+                                                          build_revision,
+                                                          build_compiler,
+                                                          build_flags,
                                                           processor,
                                                           machine.nodename,
                                                           date});

@@ -249,7 +249,7 @@ bool failure_make(struct failure *f, const struct results *r, stance_message *me
         return false;
     const bool good = make_rows(f, s, r, message) && failure_theory(&f->line, s, message) &&
                       judge_all(f, s, r, message);
-    study_scenario_free(s);
+    scenario_drop(s);
     if (!good)
         failure_free(f);
     return good;

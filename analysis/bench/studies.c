@@ -28,12 +28,6 @@ struct scenario *study_scenario(const struct results *r, stance_message *message
     return NULL;
 }
 
-void study_scenario_free(struct scenario *s)
-{
-    scenario_free(s);
-    free(s);
-}
-
 bool study_plan(struct plan *plan, const struct scenario *s, stance_message *message)
 {
     const struct parallel alone = parallel_alone();
@@ -117,17 +111,11 @@ struct request {
  * scenario's. Returns an exit code. */
 static int check_study(const struct request *request, const char *scenario, const char *there)
 {
-    struct scenario *s = calloc(1, sizeof *s);
+    struct scenario *s = scenario_new(scenario, NULL, NULL, 0, stderr);
     struct results r;
     stance_message message = {""};
-    if (!s) {
-        fprintf(stderr, "stance %s: not enough memory\n", request->command->name);
-        return EXIT_IO;
-    }
-    if (!scenario_read(s, scenario, NULL, NULL, 0, stderr)) {
-        free(s);
+    if (!s)
         return access(scenario, R_OK) == 0 ? EXIT_USAGE : EXIT_IO;
-    }
     int code = request->kind->fits(s, &message) ? EXIT_DONE : EXIT_USAGE;
     if (code == EXIT_DONE && there && results_open(&r, there, &message)) {
         if (strcmp(r.scenario, s->text) != 0) {
@@ -140,8 +128,7 @@ static int check_study(const struct request *request, const char *scenario, cons
     }
     if (code != EXIT_DONE)
         fprintf(stderr, "stance %s: %.300s: %s\n", request->command->name, scenario, message.text);
-    scenario_free(s);
-    free(s);
+    scenario_drop(s);
     return code;
 }
 

@@ -41,7 +41,6 @@ int studies_run(const struct command *command, const struct study_kind *kind, in
 /* The scenario of a results file, and a plan with its designs; freed by the caller. NULL, false:
  * one line in *message. */
 struct scenario *study_scenario(const struct results *r, stance_message *message);
-void study_scenario_free(struct scenario *s);
 bool study_plan(struct plan *plan, const struct scenario *s, stance_message *message);
 
 /* The tolerance that a method uses; NAN: it does not control its error. */

@@ -4,7 +4,6 @@
 #include "runner/base/message.h"
 #include "runner/base/sandbox.h"
 #include "runner/optimise/best.h"
-#include "runner/optimise/linear_limit.h"
 #include "runner/optimise/search.h"
 #include "runner/plan/allowed.h"
 #include "runner/scenario/schema.h"
@@ -28,25 +27,6 @@ static void clean(struct search_file *f)
     for (size_t k = 0; k < sizeof list / sizeof *list; k++)
         for (size_t i = 0; i < list[k].count; i++)
             results_clean(list[k].word[i]);
-}
-
-/* NULL: this version does not read it. */
-static struct scenario *read_scenario(const char *file, const char *text)
-{
-    struct scenario *s = text ? calloc(1, sizeof *s) : NULL;
-    if (s && !scenario_read(s, file, text, NULL, 0, NULL)) {
-        free(s);
-        s = NULL;
-    }
-    return s;
-}
-
-static void drop_scenario(struct scenario **s)
-{
-    if (*s)
-        scenario_free(*s);
-    free(*s);
-    *s = NULL;
 }
 
 bool search_study_open(struct search_study *study, const char *file, stance_message *message)
@@ -73,10 +53,10 @@ bool search_study_open(struct search_study *study, const char *file, stance_mess
     if (dot && dot != study->name && strcmp(dot, ".h5") == 0)
         *dot = '\0';
     study->done = f->finished && f->chosen >= 0 && f->length[SEARCH_START] > 0;
-    study->first = read_scenario(file, f->first_scenario);
+    study->first = f->first_scenario ? scenario_new(file, f->first_scenario, NULL, 0, NULL) : NULL;
     if (study->first && study->done) {
         char *const text = best_text(f);
-        study->best = read_scenario(file, text);
+        study->best = text ? scenario_new(file, text, NULL, 0, NULL) : NULL;
         free(text);
     }
     study->glued = study->first && allowed_glued_in(study->first);
@@ -87,8 +67,9 @@ bool search_study_open(struct search_study *study, const char *file, stance_mess
 
 void search_study_close(struct search_study *study)
 {
-    drop_scenario(&study->first);
-    drop_scenario(&study->best);
+    scenario_drop(study->first);
+    scenario_drop(study->best);
+    study->first = study->best = NULL;
     search_file_free(&study->f);
 }
 

@@ -357,9 +357,6 @@ void sensitivity_study_free(struct sensitivity_study *study)
     free(study->table);
     free(study->order);
     response_free(&study->response);
-    if (study->scenario) {
-        scenario_free(study->scenario);
-        free(study->scenario);
-    }
+    scenario_drop(study->scenario);
     *study = (struct sensitivity_study){0};
 }

@@ -90,7 +90,7 @@ static bool put_axis_values(struct page *p)
         const size_t count = axis->count * (size_t)axis->paths;
         char name[32];
         double *const value = malloc(count * sizeof *value);
-        good = (value || no_memory(p->message)) && store_read_axis(p->r->file, axis, p->message);
+        good = (value || no_memory(p->message)) && store_read_axes(p->r->file, axis, 1, p->message);
         for (size_t i = 0; good && i < count; i++)
             value[i] =
                 scenario_axis_value(axis, i / (size_t)axis->paths, (int)(i % (size_t)axis->paths));
@@ -314,7 +314,7 @@ static bool put_provenance(struct page *p)
         free(recorded);
     p->head = TABLE_OBJECT(
         {"format", as_whole(1)}, {"program", as_text(STANCE_VERSION)},
-        {"revision", as_text(build_revision())}, {"file_program", as_text(r->version)},
+        {"revision", as_text(build_revision)}, {"file_program", as_text(r->version)},
         {"file_revision", as_text(r->revision)}, {"file", as_text(r->name)},
         {"command_file", as_text(p->request->file)}, {"title", as_text(r->title)},
         {"date", as_text(r->date)}, {"scenario", as_text(r->scenario)},
@@ -356,7 +356,7 @@ bool page_search_write(FILE *out, const char *file, stance_message *message)
         return false;
     json_t *const head =
         TABLE_OBJECT({"format", as_whole(1)}, {"program", as_text(STANCE_VERSION)},
-                     {"revision", as_text(build_revision())}, {"title", as_text(title)},
+                     {"revision", as_text(build_revision)}, {"title", as_text(title)},
                      {"file", as_text(slash ? slash + 1 : file)}, {"cases", as_whole(0)},
                      {"charts", as_tree(charts)});
     page_json(out, "head", head);

@@ -2,14 +2,12 @@
  * search and the scenario of its best candidate, on one rank or many.
  */
 #include "best.h"
-#include "linear_limit.h"
-#include "search_plan.h"
+#include "search.h"
 
 #include "runner/base/message.h"
 #include "runner/base/units.h"
 #include "runner/plan/allowed.h"
 #include "runner/plan/asked.h"
-#include "runner/plan/search_numbers.h"
 #include "runner/run/run.h"
 
 #include <errno.h>
@@ -43,12 +41,6 @@ static struct optimise *of(struct run *run)
     return (struct optimise *)run;
 }
 
-/* With the reason in run.message. */
-static bool fail(struct optimise *o, enum exit_code code)
-{
-    return run_fail(&o->run, code, "stance optimise: %s", o->run.message.text);
-}
-
 /* ---- options -------------------------------------------------------------------------------- */
 
 static void stage_options(struct run *run)
@@ -68,57 +60,36 @@ static bool say_place(struct optimise *o, const char *key, const char *text)
     return false;
 }
 
-/* The first candidate, from a text of our own: places in it are none of the user's. */
-static bool read_first(struct optimise *o, const char *text)
-{
-    char *said = NULL;
-    size_t size = 0, place = strlen(o->run.options.asked.file);
-    FILE *const to = open_memstream(&said, &size);
-    const bool good =
-        to && scenario_read(o->run.scenario, o->run.options.asked.file, text, NULL, 0, to);
-    if (to)
-        fclose(to);
-    if (!good && size > place) {
-        place += strspn(said + place, ":0123456789 ");
-        said[place + strcspn(said + place, "\n")] = '\0';
-        say_place(o, "optimise.vary:", said + place);
-    }
-    free(said);
-    if (!good && o->run.failure.code == EXIT_DONE)
-        fail(o, EXIT_USAGE);
-    return good;
-}
-
-/* Rank 0: the scenario, and of it the first candidate. */
+/* Rank 0: the scenario, and of it the first candidate, from a text of our own: places in it are
+ * none of the user's. */
 static bool read_scenario(struct optimise *o)
 {
-    const struct options *const options = &o->run.options;
-    if (!scenario_read(o->asked, options->asked.file, NULL, options->asked.sets.text,
-                       options->asked.sets.count, stderr)) {
-        o->run.failure.code = access(options->asked.file, R_OK) == 0 ? EXIT_USAGE : EXIT_IO;
-        return false; /* the reader has printed why */
-    }
+    const struct asked *const asked = &o->run.options.asked;
+    const size_t place = strlen(asked->file);
+    o->asked = run_read_scenario(&o->run, asked->sets.count);
+    if (!o->asked)
+        return false;
     if (!o->asked->search.given)
         return say_place(o, "stance:",
                          "no section optimise, which says what to vary (stance describe optimise)");
     char *const text = best_first(o->asked, &o->run.message);
     if (!text)
         return say_place(o, "controller:", o->run.message.text);
-    const bool good = read_first(o, text);
+    o->run.scenario = adopt_text(asked->file, text, &o->run.message);
     free(text);
-    return good;
+    const char *const said = o->run.message.text;
+    if (!o->run.scenario && strlen(said) > place)
+        return say_place(o, "optimise.vary:", said + place + strspn(said + place, ":0123456789 "));
+    return o->run.scenario || run_fail(&o->run, EXIT_USAGE, "stance optimise: %s", said);
 }
 
 static void stage_scenario(struct run *run)
 {
     static const char none[] = "optimise.vary: all of these stay 0 while the contacts hold";
     struct optimise *const o = of(run);
-    o->asked = calloc(1, sizeof *o->asked);
-    run->scenario = calloc(1, sizeof *run->scenario);
-    if (!o->asked || !run->scenario)
-        abort(); /* the others wait in the broadcast: MPI ends the job */
-    const bool read = run->parallel.rank == 0 && read_scenario(o);
-    if (run_share_scenario(run, read)) {
+    if (run->parallel.rank == 0)
+        read_scenario(o);
+    if (run_share_scenario(run)) {
         search_numbers_keep(run->scenario);
         if (run->scenario->search.axis.paths == 0 && run->parallel.rank == 0)
             say_place(o, none, none);
@@ -136,7 +107,7 @@ static bool name_files(struct optimise *o)
                            ? snprintf(run->file, size, "%s", output)
                            : snprintf(run->file, size, "results/%s-search.h5", run->scenario->name);
     if (length < 0 || (size_t)length >= size - 16)
-        return complain(&run->message, "the name of the file is too long") || fail(o, EXIT_IO);
+        return run_fail(run, EXIT_IO, "stance optimise: the name of the file is too long");
     size_t stem = (size_t)length;
     if (stem > 3 && strcmp(run->file + stem - 3, ".h5") == 0)
         stem -= 3;
@@ -163,13 +134,12 @@ static bool look_into_file(struct optimise *o)
     if (run->failure.code != EXIT_DONE)
         return false; /* it has been said why */
     if (!search_file_read(&o->origin, run->file, &run->message))
-        return fail(o, EXIT_IO);
+        return run_fail_io(run);
     if (strcmp(o->origin.scenario, o->asked->text) != 0)
-        return complain(&run->message,
-                        "%.150s is a search of another scenario: --force replaces it, -o names "
-                        "another file",
-                        run->file) ||
-               fail(o, EXIT_USAGE);
+        return run_fail(run, EXIT_USAGE,
+                        "stance optimise: %.150s is a search of another scenario: --force replaces "
+                        "it, -o names another file",
+                        run->file);
     run_warn_of_revision(run, run->file, o->origin.revision);
     o->resumes = true;
     return true;
@@ -187,11 +157,14 @@ static bool spares_files(struct optimise *o)
     for (int i = 0; i < 2; i++)
         if (stat(names[i], &other) == 0 && other.st_dev == scenario.st_dev &&
             other.st_ino == scenario.st_ino)
-            return complain(&o->run.message,
-                            "%.150s is the scenario and would be written over: give another -o",
-                            names[i]);
+            return run_fail(
+                &o->run, EXIT_IO,
+                "stance optimise: %.150s is the scenario and would be written over: give another "
+                "-o",
+                names[i]);
     return options->force || options->resume || access(o->best, F_OK) != 0 ||
-           complain(&o->run.message, "%.150s exists; --force replaces it, -o names other files",
+           run_fail(&o->run, EXIT_IO,
+                    "stance optimise: %.150s exists; --force replaces it, -o names other files",
                     o->best);
 }
 
@@ -201,9 +174,7 @@ static void stage_claim(struct run *run)
     bool exists;
     if (!name_files(o) || run->parallel.rank != 0 || !run_claim_file(run, &exists))
         return;
-    if (!spares_files(o))
-        fail(o, EXIT_IO);
-    else if (exists && run->options.resume)
+    if (spares_files(o) && exists && run->options.resume)
         look_into_file(o);
 }
 
@@ -222,32 +193,27 @@ static void describe_work(struct optimise *o, char *text, size_t size)
                  o->search.generations, f->objective[f->best[g - 1]]);
 }
 
-static void show_progress(struct optimise *o, double now)
-{
-    if (!progress_due(&o->run.progress, now))
-        return;
-    char text[80], time[32], left[64] = "";
-    const double seconds = outlook_left(&o->search.outlook);
-    describe_work(o, text, sizeof text);
-    text_of_seconds(time, sizeof time, seconds);
-    if (seconds >= 0)
-        snprintf(left, sizeof left, "; at most about %s left", time);
-    progress_say(&o->run.progress, "%s%s", text, left);
-}
-
 /* Rank 0, about every millisecond. */
 static bool attend(void *context, double now)
 {
     struct optimise *const o = context;
+    struct heartbeat *const h = &o->run.heartbeat;
     const uint64_t candidates = o->search.record.length[SEARCH_CANDIDATE];
-    if (now >= o->run.heartbeat.due) {
+    const double left = outlook_left(&o->search.outlook);
+    if (now >= h->due) {
         describe_work(o, o->doing, sizeof o->doing);
-        o->run.heartbeat.doing = o->doing;
-        o->run.heartbeat.left = outlook_left(&o->search.outlook);
-        if (!heartbeat_beat(&o->run.heartbeat, now, candidates, candidates, 0, &o->run.message))
-            return !fail(o, EXIT_IO);
+        h->doing = o->doing;
+        h->left = left;
+        if (!heartbeat_beat(h, now, candidates, candidates, 0, &o->run.message))
+            return !run_fail_io(&o->run);
     }
-    show_progress(o, now);
+    if (progress_due(&o->run.progress, now)) {
+        char text[80], time[32];
+        describe_work(o, text, sizeof text);
+        text_of_seconds(time, sizeof time, left);
+        progress_say(&o->run.progress, "%s%s%s%s", text, left >= 0 ? "; at most about " : "",
+                     left >= 0 ? time : "", left >= 0 ? " left" : "");
+    }
     return false;
 }
 
@@ -273,13 +239,12 @@ static void stage_make(struct run *run)
     struct optimise *const o = of(run);
     const char *const text = run->parallel.rank == 0 ? o->asked->text : "";
     if (!parallel_share(&run->parallel)) {
-        no_memory(&run->message);
-        fail(o, EXIT_IO);
+        run_fail(run, EXIT_IO, "stance optimise: not enough memory");
         return;
     }
     if (!search_make(&o->search, run->scenario, text, &run->parallel,
                      o->resumes ? &o->origin : NULL, &run->message)) {
-        fail(o, EXIT_IO);
+        run_fail_io(run);
         return;
     }
     o->made = true;
@@ -291,14 +256,13 @@ static void stage_make(struct run *run)
     o->search.save = save;
     o->search.context = o;
     o->before = o->search.record.seconds;
-    if (run->parallel.rank == 0 &&
-        run->scenario->search.candidates < (uint64_t)search_lambda(&o->search)) {
+    const int lambda = o->search.stage[o->search.stages - 1].lambda;
+    if (run->parallel.rank == 0 && run->scenario->search.candidates < (uint64_t)lambda) {
         char line[120];
         snprintf(line, sizeof line,
                  "optimise.candidates: %" PRIu64 " are less than one generation%s, %d",
                  run->scenario->search.candidates,
-                 run->scenario->search.restarts > 0 ? " after the restarts" : "",
-                 search_lambda(&o->search));
+                 run->scenario->search.restarts > 0 ? " after the restarts" : "", lambda);
         say_place(o, line, line);
     }
 }
@@ -312,7 +276,7 @@ static void stage_search(struct run *run)
         return;
     if (end == TRIALS_BROKEN || (end == TRIALS_DONE && run->parallel.rank == 0 &&
                                  !best_write(&o->search.record, o->best, &run->message))) {
-        fail(o, EXIT_IO);
+        run_fail_io(run);
     } else if (end == TRIALS_STOPPED) {
         char what[80];
         snprintf(what, sizeof what, "stopped after %zu of at most %zu generations",
@@ -399,14 +363,6 @@ static void warn(const struct optimise *o)
                 who, search->scenario->search.grow[0]);
 }
 
-static void print_objective(const struct optimise *o, double value)
-{
-    if (scenario_search_plain(o->run.scenario))
-        printf("%.2f %%", 100 * value);
-    else
-        printf("%.6g", value);
-}
-
 /* Beside the share of the worst circumstance what is allowed in that which allows least. */
 static void print_limit(const struct optimise *o)
 {
@@ -438,9 +394,12 @@ static int conclude(struct run *run)
     printf("%s: %zu candidates in %zu generation%s, %s; %s", o->run.file,
            f->length[SEARCH_CANDIDATE], f->length[SEARCH_GENERATION],
            f->length[SEARCH_GENERATION] == 1 ? "" : "s", f->note, plain ? "" : "objective ");
-    print_objective(o, f->confirmed_objective[f->chosen]);
-    printf(" of %zu fresh starts, the first ", f->length[SEARCH_START]);
-    print_objective(o, f->confirmed_objective[0]);
+    const double chosen = f->confirmed_objective[f->chosen], first = f->confirmed_objective[0];
+    if (plain)
+        printf("%.2f %% of %zu fresh starts, the first %.2f %%", 100 * chosen,
+               f->length[SEARCH_START], 100 * first);
+    else
+        printf("%.6g of %zu fresh starts, the first %.6g", chosen, f->length[SEARCH_START], first);
     if (plain)
         print_limit(o);
     printf("; %.1f s on %d rank%s\n%s: the scenario of the best\n", clock_seconds() - o->run.start,
@@ -463,9 +422,7 @@ static int run_optimise(int argc, char **argv)
         if (o->made)
             search_free(&o->search);
         search_file_free(&o->origin);
-        if (o->asked)
-            scenario_free(o->asked);
-        free(o->asked);
+        scenario_drop(o->asked);
         run_end(&o->run);
     }
     free(o);

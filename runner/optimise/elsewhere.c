@@ -36,73 +36,53 @@ static bool moves(const struct scenario *s, size_t offset, size_t size)
 }
 #define MOVES(s, member) moves(s, offsetof(struct scenario_values, member), sizeof(s)->base.member)
 
-static bool is_mass(const struct scenario *s, int i)
+/* The robot's masses, and the model's where they were the robot's. */
+static bool change_masses(const struct scenario *s, double factor, struct scenario_values *to)
 {
-    return strcmp(s->scene->robot[i].unit, "kg") == 0;
-}
-
-static bool has_masses(const struct scenario *s)
-{
-    bool any = false;
     const stance_carried *const carried = s->scene->mechanism->carried;
-    for (int i = 0; carried && i < carried->parameters; i++)
-        any = any || is_mass(s, i);
+    bool any = false;
+    for (int i = 0; carried && i < carried->parameters; i++) {
+        if (strcmp(s->scene->robot[i].unit, "kg") != 0)
+            continue;
+        any = true;
+        to->model[i] = isnan(to->model[i]) ? to->robot[i] : to->model[i];
+        to->robot[i] *= factor;
+    }
     return any && !MOVES(s, robot) && !MOVES(s, model);
 }
 
-static int every_contact(const struct scenario *s)
+/* The values there; false: the scenario says nothing of it, or is there itself. */
+static bool change(const struct scenario *s, enum elsewhere where, struct scenario_values *to)
 {
-    return (1 << s->scene->contacts) - 1;
+    const struct scenario_values *const base = &s->base;
+    *to = *base;
+    switch (where) {
+    case ELSEWHERE_CONTACTS:
+        to->contacts = (1 << s->scene->contacts) - 1;
+        return base->contacts != to->contacts;
+    case ELSEWHERE_FRICTION:
+        to->friction *= less_friction;
+        return base->friction > 0 && base->contacts && !MOVES(s, friction);
+    case ELSEWHERE_LATER:
+        to->delay++;
+        return base->sample_time > 0 && base->delay < STANCE_MAX_DELAY && !MOVES(s, delay);
+    case ELSEWHERE_SLOWER:
+        to->sample_time *= 2;
+        return base->sample_time > 0 && !MOVES(s, sample_time);
+    default:
+        return change_masses(s, 1 + (where == ELSEWHERE_HEAVIER ? mass_error : -mass_error), to);
+    }
 }
 
 bool elsewhere_exists(const struct scenario *s, enum elsewhere where)
 {
-    const struct scenario_values *const base = &s->base;
-    switch (where) {
-    case ELSEWHERE_CONTACTS:
-        return base->contacts != every_contact(s);
-    case ELSEWHERE_FRICTION:
-        return base->friction > 0 && base->contacts && !MOVES(s, friction);
-    case ELSEWHERE_LATER:
-        return base->sample_time > 0 && base->delay < STANCE_MAX_DELAY && !MOVES(s, delay);
-    case ELSEWHERE_SLOWER:
-        return base->sample_time > 0 && !MOVES(s, sample_time);
-    default:
-        return has_masses(s);
-    }
+    struct scenario_values ignored;
+    return change(s, where, &ignored);
 }
 
 uint64_t elsewhere_starts(const struct scenario *s)
 {
     return s->search.confirm < MOST_STARTS ? s->search.confirm : MOST_STARTS;
-}
-
-static void change(struct scenario *s, enum elsewhere where)
-{
-    struct scenario_values *const base = &s->base;
-    const double factor = where == ELSEWHERE_HEAVIER ? 1 + mass_error : 1 - mass_error;
-    switch (where) {
-    case ELSEWHERE_CONTACTS:
-        base->contacts = every_contact(s);
-        break;
-    case ELSEWHERE_FRICTION:
-        base->friction *= less_friction;
-        break;
-    case ELSEWHERE_LATER:
-        base->delay++;
-        break;
-    case ELSEWHERE_SLOWER:
-        base->sample_time *= 2;
-        break;
-    default:
-        for (int i = 0; i < s->scene->mechanism->carried->parameters; i++) {
-            if (!is_mass(s, i))
-                continue;
-            base->model[i] = isnan(base->model[i]) ? base->robot[i] : base->model[i];
-            base->robot[i] *= factor;
-        }
-        break;
-    }
 }
 
 enum trials_end elsewhere_run(const struct scenario *s, const struct trials *with,
@@ -116,7 +96,7 @@ enum trials_end elsewhere_run(const struct scenario *s, const struct trials *wit
     bool good = there != NULL;
     if (good) {
         *there = *s; /* what it points to stays the scenario's */
-        change(there, where);
+        change(s, where, &there->base);
         there->axis[0] = s->axis[s->axes - 1];
         there->axes = 1;
         there->cases = there->axis[0].count;

@@ -2,8 +2,6 @@
 #include "search.h"
 #include "cma.h"
 #include "elsewhere.h"
-#include "linear_limit.h"
-#include "search_plan.h"
 
 #include "runner/base/message.h"
 #include "runner/base/units.h"
@@ -22,7 +20,12 @@ const char *const search_kinds[TRIAL_LABELS] = {[TRIAL_REFUSED] = "refused",
                                                 STANCE_OUTCOMES(NAME_OF)};
 #undef NAME_OF
 
-enum { MOST_ALLOWED = 16384 }; /* starts that are held against linear theory */
+enum {
+    COMPARED = 2,         /* elsewhere: the first and the chosen one */
+    MOST_ALLOWED = 16384, /* starts that are held against linear theory */
+};
+
+static const double remembered = 0.6; /* of what was known, each time more is */
 
 /* ---- words of the record -------------------------------------------------------------------- */
 
@@ -49,23 +52,80 @@ static char *circumstance_text(const struct scenario *s, size_t c)
     return strdup(text[0] ? text : "as it is");
 }
 
+/* ---- what is planned, and how long that will be --------------------------------------------- */
+
+/* Once all generations are through: the best, to choose and to report. */
+static double cases_at_end(const struct search *search)
+{
+    const struct scenario *const s = search->scenario;
+    double elsewhere = 0;
+    for (int e = 0; e < ELSEWHERE_MOST; e++)
+        elsewhere += elsewhere_exists(s, (enum elsewhere)e) ? 1 : 0;
+    const double confirmed = 1 + 2.0 * s->search.stages * (s->search.restarts + 1);
+    const double starts =
+        (double)trials_count(s, TRIALS_CHOICE) + (double)trials_count(s, TRIALS_FRESH);
+    return confirmed * (double)search->trials.circumstances * starts +
+           elsewhere * COMPARED * (double)elsewhere_starts(s);
+}
+
+static void plan_stages(struct search *search)
+{
+    const struct scenario *const s = search->scenario;
+    double behind = cases_at_end(search);
+    for (int r = 0; r <= s->search.restarts; r++) {
+        const int lambda = cma_default_lambda(search->space.n) << r;
+        const double all = (double)s->search.candidates / lambda;
+        for (int k = 0; k < s->search.stages; k++) {
+            const double before = k > 0 ? round(scenario_search_until(s, k - 1) * all) : 0;
+            const size_t generations =
+                (size_t)fmax(1, round(scenario_search_until(s, k) * all) - before);
+            search->stage[search->stages++] = (struct search_stage){
+                r, k, lambda, generations,
+                .cases = (double)generations * lambda * (double)search->trials.circumstances *
+                         (double)s->search.grow[k]};
+            search->generations += generations;
+            search->candidates += generations * (size_t)lambda;
+        }
+    }
+    for (int k = search->stages; k-- > 0; behind += search->stage[k].cases)
+        search->stage[k].behind = behind;
+}
+
+/* Cases in hand, which were planned. */
+static void outlook_begin(struct outlook *outlook, double cases)
+{
+    outlook->ahead = fmax(0, outlook->ahead - cases);
+    outlook->now = cases;
+    outlook->begun = clock_seconds();
+}
+
+/* They are done: so many were simulated; `apart` s were spent on something else. */
+static void outlook_end(struct outlook *outlook, double simulated, double apart)
+{
+    const double taken = clock_seconds() - outlook->begun - apart;
+    outlook->seconds = remembered * outlook->seconds + taken;
+    outlook->cases = remembered * outlook->cases + simulated;
+    outlook->now = 0;
+}
+
+double outlook_left(const struct outlook *outlook)
+{
+    if (!(outlook->cases > 0))
+        return -1;
+    const double each = outlook->seconds / outlook->cases;
+    const double spent = outlook->now > 0 ? clock_seconds() - outlook->begun : 0;
+    return outlook->ahead * each + fmax(0, outlook->now * each - spent);
+}
+
 /* ---- making --------------------------------------------------------------------------------- */
 
 static bool make_record(struct search *search, const char *text)
 {
     struct search_file *const f = &search->record;
     const struct scenario *const s = search->scenario;
-    const size_t stages = (size_t)s->search.stages, begun = (size_t)s->search.restarts + 1;
     char date[40];
     time_t now = time(NULL);
     struct tm utc;
-    for (int r = 0; r <= s->search.restarts; r++) {
-        for (int stage = 0; stage < s->search.stages; stage++) {
-            const size_t generations = search_plan_generations(search, r, stage);
-            search->generations += generations;
-            search->candidates += generations * (size_t)search_plan_lambda(search, r);
-        }
-    }
     strftime(date, sizeof date, "%Y-%m-%dT%H:%M:%SZ", gmtime_r(&now, &utc));
     *f = (struct search_file){.chosen = -1,
                               .most_generations = (int64_t)search->generations,
@@ -76,14 +136,14 @@ static bool make_record(struct search *search, const char *text)
     f->length[SEARCH_CIRCUMSTANCE] = search->trials.circumstances;
     f->length[SEARCH_KIND] = TRIAL_LABELS;
     f->length[SEARCH_GENERATION] = search->generations;
-    f->length[SEARCH_CONFIRMED] = 1 + 2 * stages * begun;
+    f->length[SEARCH_CONFIRMED] = 1 + 2 * (size_t)search->stages;
     f->length[SEARCH_START] = s->search.confirm;
     f->length[SEARCH_VARIED] = (size_t)s->axis[s->axes - 1].paths;
     f->length[SEARCH_ELSEWHERE] = ELSEWHERE_MOST;
     f->title = strdup(s->title);
     f->scenario = strdup(text);
     f->first_scenario = strdup(s->text);
-    f->revision = strdup(build_revision());
+    f->revision = strdup(build_revision);
     f->date = strdup(date);
     const bool good = search_file_room(f) && f->title && f->scenario && f->first_scenario &&
                       f->revision && f->date;
@@ -148,6 +208,7 @@ bool search_make(struct search *search, const struct scenario *scenario, const c
     else
         good = false;
     space_make(&search->space, scenario);
+    plan_stages(search);
     if (good && parallel->rank == 0)
         good = make_record(search, text);
     if (!good)
@@ -173,22 +234,41 @@ struct order {
     int which;
 };
 
-/* Rank 0: tries value[candidates][paths]. */
+static enum trials_end carry_out(struct search *search, const struct order *order, double *value,
+                                 double *share, stance_message *message)
+{
+    const size_t candidates = (size_t)order->candidates;
+    return order->which < TRIALS_STARTS
+               ? trials_run(&search->trials, candidates, value, (enum trials_starts)order->which,
+                            order->starts, message)
+               : elsewhere_run(search->scenario, &search->trials,
+                               (enum elsewhere)(order->which - TRIALS_STARTS), candidates, value,
+                               share, message);
+}
+
+/* Rank 0: value[candidates][paths] are tried. */
+static enum trials_end try(struct search *search, struct order order, double *value, double *share,
+                           stance_message *message)
+{
+    const size_t size = (size_t)order.candidates * (size_t)search->space.n * sizeof *value;
+    parallel_broadcast(search->parallel, &order, sizeof order);
+    parallel_broadcast(search->parallel, value, size);
+    return carry_out(search, &order, value, share, message);
+}
+
+/* The same of coordinates (NULL: values are known), from starts that are the scenario's. */
 static enum trials_end try_all(struct search *search, size_t candidates, const double *coordinate,
                                double *value, enum trials_starts which, uint64_t starts,
                                stance_message *message)
 {
-    struct order order = {(int64_t)candidates, starts, which};
     const size_t n = (size_t)search->space.n;
-    for (size_t i = 0; coordinate && i < candidates * n; i++)
-        value[i] = space_value(&search->space, (int)(i % n), coordinate[i]);
-    parallel_broadcast(search->parallel, &order, sizeof order);
-    parallel_broadcast(search->parallel, value, candidates * n * sizeof *value);
     const struct trials *const t = &search->trials;
     const double before = (double)t->cases, compiling = t->compiling;
+    for (size_t i = 0; coordinate && i < candidates * n; i++)
+        value[i] = space_value(&search->space, (int)(i % n), coordinate[i]);
     outlook_begin(&search->outlook, (double)candidates * (double)t->circumstances * (double)starts);
     const enum trials_end end =
-        trials_run(&search->trials, candidates, value, which, starts, message);
+        try(search, (struct order){(int64_t)candidates, starts, which}, value, NULL, message);
     outlook_end(&search->outlook, (double)t->cases - before, t->compiling - compiling);
     return end;
 }
@@ -197,7 +277,7 @@ static enum trials_end try_all(struct search *search, size_t candidates, const d
 static enum trials_end follow(struct search *search, stance_message *message)
 {
     enum trials_end end = TRIALS_DONE;
-    double ignored[SEARCH_COMPARED];
+    double ignored[COMPARED];
     struct order order;
     for (;;) {
         parallel_broadcast(search->parallel, &order, sizeof order);
@@ -208,12 +288,7 @@ static enum trials_end follow(struct search *search, stance_message *message)
         if (!value)
             abort(); /* the others wait in the broadcast: MPI ends the job */
         parallel_broadcast(search->parallel, value, size);
-        end = order.which < TRIALS_STARTS
-                  ? trials_run(&search->trials, (size_t)order.candidates, value,
-                               (enum trials_starts)order.which, order.starts, message)
-                  : elsewhere_run(search->scenario, &search->trials,
-                                  (enum elsewhere)(order.which - TRIALS_STARTS),
-                                  (size_t)order.candidates, value, ignored, message);
+        end = carry_out(search, &order, value, ignored, message);
         free(value);
     }
 }
@@ -318,7 +393,7 @@ static void count_labels(const struct search *search, size_t candidate, uint64_t
 /* Where the search is. */
 struct course {
     struct cma *cma;
-    int restart, stage, lambda;
+    const struct search_stage *stage;
     size_t known;      /* generations that the record had */
     size_t generation; /* of all */
     size_t first;      /* candidate of this generation */
@@ -330,8 +405,8 @@ static enum trials_end try_generation(struct search *search, struct course *at,
                                       stance_message *message)
 {
     struct search_file *const f = &search->record;
-    const size_t n = (size_t)search->space.n, lambda = (size_t)at->lambda;
-    const uint64_t starts = search->scenario->search.grow[at->stage];
+    const size_t n = (size_t)search->space.n, lambda = (size_t)at->stage->lambda;
+    const uint64_t starts = search->scenario->search.grow[at->stage->stage];
     const size_t kinds = search->trials.circumstances * TRIAL_LABELS;
     double *const x = &f->coordinate[at->first * n];
     cma_ask(at->cma, x);
@@ -358,18 +433,19 @@ static void note_generation(struct search *search, struct course *at)
 {
     struct search_file *const f = &search->record;
     const size_t n = (size_t)search->space.n, g = at->generation;
+    const int64_t end = (int64_t)at->first + at->stage->lambda;
     bool better = false;
-    for (int64_t c = (int64_t)at->first; c < (int64_t)at->first + at->lambda; c++) {
+    for (int64_t c = (int64_t)at->first; c < end; c++) {
         if (at->best >= 0 && f->score[c] <= f->score[at->best])
             continue;
         at->best = c;
         better = true;
     }
     at->stale = better ? 0 : at->stale + 1;
-    f->stage[g] = at->stage;
-    f->restart[g] = at->restart;
-    f->starts[g] = (int64_t)search->scenario->search.grow[at->stage];
-    f->candidates[g] = (int64_t)at->first + at->lambda;
+    f->stage[g] = at->stage->stage;
+    f->restart[g] = at->stage->restart;
+    f->starts[g] = (int64_t)search->scenario->search.grow[at->stage->stage];
+    f->candidates[g] = end;
     f->best[g] = at->best;
     f->step[g] = cma_step(at->cma);
     memcpy(&f->mean[g * n], cma_mean(at->cma), n * sizeof *f->mean);
@@ -378,8 +454,9 @@ static void note_generation(struct search *search, struct course *at)
 
 static bool is_over(const struct search *search, const struct course *at, const char **why)
 {
-    const bool last = at->stage + 1 == search->scenario->search.stages;
-    const bool stale = last && at->stale >= search_plan_stale(search, at->restart);
+    const bool last = at->stage->stage + 1 == search->scenario->search.stages;
+    /* Without a better candidate for so long there is no use in more. */
+    const bool stale = last && at->stale >= 10 + (size_t)(30 * search->space.n / at->stage->lambda);
     if (cma_stop(at->cma) != CMA_GOES_ON)
         *why = cma_stop_words[cma_stop(at->cma)];
     else if (stale)
@@ -421,15 +498,14 @@ static enum trials_end run_stage(struct search *search, struct course *at, const
 {
     struct search_file *const f = &search->record;
     const size_t n = (size_t)search->space.n;
-    const size_t most = search_plan_generations(search, at->restart, at->stage);
+    const size_t most = at->stage->generations;
     bool over = false;
     at->best = -1;
     at->stale = 0;
     *why = "as many candidates as were asked for";
-    const double of_stage = search_plan_cases_of_stage(search, at->restart, at->stage),
-                 behind = search_plan_cases_behind(search, at->restart, at->stage);
     for (size_t i = 0; i < most && !over; i++) {
-        search->outlook.ahead = behind + of_stage * (double)(most - i) / (double)most;
+        search->outlook.ahead =
+            at->stage->behind + at->stage->cases * (double)(most - i) / (double)most;
         if (at->generation >= at->known) {
             const enum trials_end end = try_generation(search, at, message);
             if (end != TRIALS_DONE)
@@ -440,7 +516,7 @@ static enum trials_end run_stage(struct search *search, struct course *at, const
             return TRIALS_BROKEN;
         }
         note_generation(search, at);
-        at->first += (size_t)at->lambda;
+        at->first += (size_t)at->stage->lambda;
         at->generation++;
         if (at->generation > at->known && !keep(search, false, message))
             return TRIALS_BROKEN;
@@ -452,26 +528,18 @@ static enum trials_end run_stage(struct search *search, struct course *at, const
     return TRIALS_DONE;
 }
 
-static enum trials_end run_beginning(struct search *search, struct course *at, const char **why,
-                                     stance_message *message)
+/* From the best so far, of which there is none at first. */
+static bool begin(const struct search *search, struct course *at, stance_message *message)
 {
-    const struct scenario_search *const s = &search->scenario->search;
     const struct space *const space = &search->space;
     const double *const begin =
         at->best < 0 ? space->first
                      : &search->record.coordinate[(size_t)at->best * (size_t)space->n];
-    enum trials_end end = TRIALS_DONE;
-    at->lambda = search_plan_lambda(search, at->restart);
-    at->cma = cma_make(space->n, at->lambda, begin, s->step, space->low, space->high,
-                       search->scenario->seed, (uint64_t)at->restart);
-    if (!at->cma) {
-        no_memory(message);
-        return TRIALS_BROKEN;
-    }
-    for (at->stage = 0; at->stage < s->stages && end == TRIALS_DONE; at->stage++)
-        end = run_stage(search, at, why, message);
     cma_free(at->cma);
-    return end;
+    at->cma =
+        cma_make(space->n, at->stage->lambda, begin, search->scenario->search.step, space->low,
+                 space->high, search->scenario->seed, (uint64_t)at->stage->restart);
+    return at->cma || no_memory(message);
 }
 
 /* ---- the choice, and fresh starts ------------------------------------------------------------ */
@@ -517,7 +585,7 @@ static enum trials_end confirm(struct search *search, stance_message *message)
     const size_t size = f->length[SEARCH_CONFIRMED] * (size_t)search->space.n * sizeof(double);
     double *const coordinate = malloc(size);
     search->confirming = true;
-    search->outlook.ahead = search_plan_cases_at_end(search);
+    search->outlook.ahead = cases_at_end(search);
     if (!coordinate) {
         no_memory(message);
         return TRIALS_BROKEN;
@@ -544,8 +612,8 @@ static void find_allowed(struct search *search)
     const uint64_t confirm = search->scenario->search.confirm;
     const uint64_t starts = confirm < MOST_ALLOWED ? confirm : MOST_ALLOWED;
     const size_t n = (size_t)search->space.n, circumstances = search->trials.circumstances;
-    const size_t which[SEARCH_COMPARED] = {0, (size_t)f->chosen};
-    for (int i = 0; i < SEARCH_COMPARED; i++)
+    const size_t which[COMPARED] = {0, (size_t)f->chosen};
+    for (int i = 0; i < COMPARED; i++)
         linear_limit_shares(&search->trials, &f->confirmed_value[which[i] * n], starts,
                             &f->confirmed_allowed[which[i] * circumstances]);
     size_t least;
@@ -557,27 +625,23 @@ static enum trials_end try_elsewhere(struct search *search, stance_message *mess
 {
     struct search_file *const f = &search->record;
     const size_t n = (size_t)search->space.n;
+    const double cases = (double)(COMPARED * elsewhere_starts(search->scenario));
     enum trials_end end = TRIALS_DONE;
-    double value[SEARCH_COMPARED * SCENARIO_MAX_PATHS], share[SEARCH_COMPARED];
+    double value[COMPARED * SCENARIO_MAX_PATHS], share[COMPARED] = {0};
     memcpy(value, f->confirmed_value, n * sizeof *value);
     memcpy(value + n, &f->confirmed_value[(size_t)f->chosen * n], n * sizeof *value);
     for (int e = 0; e < ELSEWHERE_MOST && end == TRIALS_DONE; e++) {
-        struct order order = {SEARCH_COMPARED, 0, TRIALS_STARTS + e};
         if (!elsewhere_exists(search->scenario, (enum elsewhere)e))
             continue;
-        parallel_broadcast(search->parallel, &order, sizeof order);
-        parallel_broadcast(search->parallel, value, SEARCH_COMPARED * n * sizeof *value);
-        outlook_begin(&search->outlook,
-                      (double)(SEARCH_COMPARED * elsewhere_starts(search->scenario)));
-        end = elsewhere_run(search->scenario, &search->trials, (enum elsewhere)e, SEARCH_COMPARED,
-                            value, share, message);
+        outlook_begin(&search->outlook, cases);
+        end = try(search, (struct order){COMPARED, 0, TRIALS_STARTS + e}, value, share, message);
         const size_t k = f->length[SEARCH_ELSEWHERE];
         f->elsewhere[k] = end == TRIALS_DONE ? strdup(elsewhere_name((enum elsewhere)e)) : NULL;
-        if (!f->elsewhere[k])
-            continue;
-        f->elsewhere_first[k] = share[0];
-        f->elsewhere_chosen[k] = share[1];
-        f->length[SEARCH_ELSEWHERE]++;
+        if (f->elsewhere[k]) {
+            f->elsewhere_first[k] = share[0];
+            f->elsewhere_chosen[k] = share[1];
+            f->length[SEARCH_ELSEWHERE]++;
+        }
     }
     return end;
 }
@@ -591,8 +655,14 @@ static enum trials_end lead(struct search *search, stance_message *message)
     const char *why = "";
     enum trials_end end = TRIALS_DONE;
     confirm_later(search, 0, -1, search->space.first);
-    for (; at.restart <= search->scenario->search.restarts && end == TRIALS_DONE; at.restart++)
-        end = run_beginning(search, &at, &why, message);
+    for (int k = 0; k < search->stages && end == TRIALS_DONE; k++) {
+        at.stage = &search->stage[k];
+        if (at.stage->stage > 0 || begin(search, &at, message))
+            end = run_stage(search, &at, &why, message);
+        else
+            end = TRIALS_BROKEN;
+    }
+    cma_free(at.cma);
     f->confirmed_training[0] = f->length[SEARCH_CANDIDATE] > 0 ? f->objective[0] : NAN;
     if (end == TRIALS_DONE)
         end = confirm(search, message);

@@ -26,17 +26,27 @@ struct outlook {
     double now, begun;     /* cases in hand, and when they were taken */
     double seconds, cases; /* of late: what so many simulated ones took */
 };
+/* s; negative: not known yet. */
+double outlook_left(const struct outlook *outlook);
+
+/* A stage of a beginning: so many generations of so many candidates at most. */
+struct search_stage {
+    int restart, stage, lambda;
+    size_t generations;
+    double cases, behind; /* that it takes; that are planned behind it, the end included */
+};
 
 struct search {
     const struct scenario *scenario; /* the first candidate, gains written out */
     const struct parallel *parallel;
     struct trials trials;
     struct space space;
+    int stages; /* of all beginnings */
+    struct search_stage stage[(SCENARIO_MAX_RESTARTS + 1) * SCENARIO_MAX_STAGES];
     /* On rank 0: */
     struct search_file record;
-    size_t generations; /* most that there can be */
-    size_t candidates;
-    bool confirming; /* fresh starts are being tried */
+    size_t generations, candidates; /* most that there can be */
+    bool confirming;                /* fresh starts are being tried */
     struct outlook outlook;
     /* After each generation and (`last`) at the end, may be NULL: false, and *message says why. */
     bool (*save)(void *context, bool last, stance_message *message);

@@ -4,6 +4,7 @@
 #include "engine/control/design.h"
 #include "runner/base/message.h"
 #include "runner/base/units.h"
+#include "runner/plan/allowed.h"
 #include "runner/plan/design.h"
 #include "runner/run/work.h"
 
@@ -233,26 +234,14 @@ static bool stop_designs(void *context)
     return parallel_add(t->parallel, COUNTER_STOP, stop) != 0 || stop;
 }
 
-static bool take_room(struct trials *t, size_t pairs, uint64_t starts)
-{
-    free(t->label);
-    free(t->worth);
-    free(t->loop);
-    t->label = calloc(pairs * starts, 1);
-    t->worth = calloc(pairs, sizeof *t->worth);
-    t->loop = calloc(pairs, sizeof *t->loop);
-    return t->label && t->worth && t->loop;
-}
-
 static enum trials_end take_kernels(struct trials *t, const struct plan *plan,
                                     stance_message *message)
 {
     if (t->has_kernels)
         return TRIALS_DONE;
-    const struct kernels_choice all = {NULL, NULL, 0, 0, false};
+    const struct kernels_choice all = {.always = true, .quiet = t->quiet};
     const double begin = clock_seconds();
-    const enum exit_code code =
-        kernels_take(&t->kernels, plan, &all, t->parallel, t->quiet, message);
+    const enum exit_code code = kernels_take(&t->kernels, plan, &all, t->parallel, message);
     t->has_kernels = code == EXIT_DONE;
     t->compiling += clock_seconds() - begin;
     return code == EXIT_DONE          ? TRIALS_DONE
@@ -277,7 +266,13 @@ enum trials_end trials_run(struct trials *t, size_t candidates, double *value,
     bool good = plan_make(&plan, at, false, 0, false, &error);
     if (!good)
         *message = error.message;
-    if (good && !take_room(t, pairs, starts))
+    free(t->label);
+    free(t->worth);
+    free(t->loop);
+    t->label = calloc(pairs * starts, 1);
+    t->worth = calloc(pairs, sizeof *t->worth);
+    t->loop = calloc(pairs, sizeof *t->loop);
+    if (good && !(t->label && t->worth && t->loop))
         good = complain(message, "not enough memory for %zu candidates", candidates);
     if (!parallel_agree(t->parallel, good, message->text, sizeof message->text)) {
         plan_free(&plan);
@@ -303,4 +298,49 @@ enum trials_end trials_run(struct trials *t, size_t candidates, double *value,
     at->axis[0].value = NULL;
     sample->value = NULL;
     return end;
+}
+
+/* ---- the denominator ------------------------------------------------------------------------ */
+
+static double share_in(const struct trials *t, size_t circumstance, uint64_t starts)
+{
+    struct allowed allowed;
+    stance_message ignored;
+    uint64_t inside = 0;
+    if (!allowed_make(&allowed, t->at, circumstance * starts, &ignored))
+        return NAN;
+    for (uint64_t i = 0; allowed.set && i < starts; i++)
+        inside += allowed_case(&allowed, t->at, circumstance * starts + i);
+    const double share = allowed.set ? (double)inside / (double)starts : NAN;
+    allowed_free(&allowed);
+    return share;
+}
+
+double linear_limit_overall(bool worst, size_t circumstances, const double *share, size_t *least)
+{
+    double sum = 0;
+    *least = circumstances;
+    for (size_t c = 0; c < circumstances; c++) {
+        sum += share[c];
+        if (!isnan(share[c]) && (*least == circumstances || share[c] < share[*least]))
+            *least = c;
+    }
+    if (worst && circumstances > 1)
+        return *least < circumstances ? share[*least] : NAN;
+    *least = circumstances;
+    return sum / (double)circumstances;
+}
+
+void linear_limit_shares(struct trials *t, double *value, uint64_t starts, double *share)
+{
+    struct scenario_axis *const candidate = &t->at->axis[0];
+    struct scenario_axis *const sample = &t->at->axis[t->at->axes - 1];
+    candidate->value = value;
+    candidate->count = 1;
+    sample->value = t->start[TRIALS_FRESH];
+    sample->count = starts;
+    for (size_t c = 0; c < t->circumstances; c++)
+        share[c] = scenario_law(&t->scenario->base)->designed ? share_in(t, c, starts) : NAN;
+    candidate->value = NULL;
+    sample->value = NULL;
 }

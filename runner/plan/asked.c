@@ -20,22 +20,15 @@ const char *asked_method(size_t k)
     return stance_methods()[k] ? stance_methods()[k]->name : NULL;
 }
 
-int asked_work(const struct command *command, const struct asked *asked,
-               int (*work)(const struct scenario *s, void *request), void *request)
+int asked_work(const struct asked *asked, int (*work)(const struct scenario *s, void *request),
+               void *request)
 {
-    struct scenario *const s = calloc(1, sizeof *s);
-    int code = EXIT_USAGE;
-    if (!s) {
-        fprintf(stderr, "stance %s: %s\n", command->name, strerror(ENOMEM));
-        return EXIT_IO;
-    }
-    if (scenario_read(s, asked->file, NULL, asked->sets.text, asked->sets.count, stderr)) {
-        code = work(s, request);
-        scenario_free(s);
-    } else if (access(asked->file, R_OK) != 0) {
-        code = EXIT_IO;
-    }
-    free(s);
+    struct scenario *const s =
+        scenario_new(asked->file, NULL, asked->sets.text, asked->sets.count, stderr);
+    if (!s)
+        return access(asked->file, R_OK) == 0 ? EXIT_USAGE : EXIT_IO;
+    const int code = work(s, request);
+    scenario_drop(s);
     return code;
 }
 
@@ -45,8 +38,7 @@ int asked_run(const struct command *command, int argc, char **argv,
     const int code = command_begin(command, argc, argv, request);
     if (code != COMMAND_GOES_ON)
         return code;
-    return instruction_set_usable(command->name) ? asked_work(command, request, work, request)
-                                                 : EXIT_USAGE;
+    return instruction_set_usable(command->name) ? asked_work(request, work, request) : EXIT_USAGE;
 }
 
 int asked_first(const struct command *command, const struct scenario *s,

@@ -14,8 +14,8 @@ extern const struct option asked_options[]; /* SCENARIO, --set */
 const char *asked_method(size_t k);
 
 /* Reads a scenario and works on it; returns an exit code. */
-int asked_work(const struct command *command, const struct asked *asked,
-               int (*work)(const struct scenario *s, void *request), void *request);
+int asked_work(const struct asked *asked, int (*work)(const struct scenario *s, void *request),
+               void *request);
 /* The same from the command line on, of a request that begins with what is asked. */
 int asked_run(const struct command *command, int argc, char **argv,
               int (*work)(const struct scenario *s, void *request), void *request);

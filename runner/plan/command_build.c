@@ -37,7 +37,7 @@ static int take(struct plan *plan, const struct kernels_choice *choice)
     int code = EXIT_USAGE;
     if (!plan_compute_designs(plan, &alone, &error)) {
         fail(error.message.text);
-    } else if ((code = kernels_take(kernels, plan, choice, &alone, false, &message)) != EXIT_DONE) {
+    } else if ((code = kernels_take(kernels, plan, choice, &alone, &message)) != EXIT_DONE) {
         fail(message.text);
     } else {
         static const char *const said[] = {[OBJECT_KEPT] = "in the cache",
@@ -62,8 +62,9 @@ static int take(struct plan *plan, const struct kernels_choice *choice)
 static int build(const struct scenario *s, void *asked)
 {
     const struct request *const request = asked;
-    const struct kernels_choice choice = {request->methods.text, request->isas.text,
-                                          request->methods.count, request->isas.count, true};
+    const struct kernels_choice choice = {request->methods.text,  request->isas.text,
+                                          request->methods.count, request->isas.count,
+                                          .always = true,         .again = true};
     struct plan plan;
     struct plan_error error;
     if (!plan_make(&plan, s, false, 0, false, &error))

@@ -65,24 +65,20 @@ void kernels_instruction_sets(const struct plan *plan, char text[INSTRUCTION_SET
 static size_t list_methods(const struct plan *plan, const struct kernels_choice *choice,
                            struct objects_wanted *wanted)
 {
-    const char *const own = instruction_set(), *const *isa = &own;
-    size_t isas = 1;
-    const struct scenario *s = plan->scenario;
+    const char *const own = instruction_set(), *const *const isa =
+                                                   choice->isas > 0 ? choice->isa : &own;
+    const size_t isas = choice->isas > 0 ? choice->isas : 1;
     size_t count = 0;
     for (int m = 0; stance_methods()[m]; m++) {
-        bool used = uses_method(plan, m);
-        if (choice && choice->methods > 0)
-            used = listed(stance_methods()[m]->name, choice->method, choice->methods);
-        if (choice && choice->isas > 0)
-            isa = choice->isa, isas = choice->isas;
+        const stance_method *const method = stance_methods()[m];
+        const bool used = choice->methods > 0
+                              ? listed(method->name, choice->method, choice->methods)
+                              : uses_method(plan, m);
         for (size_t i = 0; used && i < isas && count < OBJECTS_MOST; i++) {
             wanted[count++] = (struct objects_wanted){
-                .method = stance_methods()[m],
-                .isa = isa[i],
-                .reference = runs_here(isa[i])
-                                 ? stance_kernel_find(s->scene, stance_methods()[m], isa[i])
-                                 : NULL,
-            };
+                method, isa[i],
+                runs_here(isa[i]) ? stance_kernel_find(plan->scenario->scene, method, isa[i])
+                                  : NULL};
         }
     }
     return count;
@@ -95,16 +91,6 @@ static double spread(uint64_t k, int kind, double size)
 {
     const double turns = (double)k * 0.6180339887498949 + kind * 0.7548776662466927;
     return size * (2 * (turns - floor(turns)) - 1);
-}
-
-static bool beyond_stop(const stance_case *c, const stance_scene *scene)
-{
-    double gap[STANCE_MAX_CONTACTS];
-    bool beyond = false;
-    scene->gaps(scene, c->robot, c->position, gap);
-    for (int k = 0; k < scene->contacts; k++)
-        beyond |= scene->grip[k] < 0 && gap[k] < 0;
-    return beyond;
 }
 
 /* Moves and turns a case so that it stands on one support after the other, on all and on none, at
@@ -132,8 +118,10 @@ static void disturb(const stance_scene *scene, uint64_t k, stance_case *c)
             c->position[i] += spread(k, i, 0.3);
         c->velocity[i] = manner == AT_REST ? 0 : spread(k + 7, i, 1);
     }
-    if (beyond_stop(c, scene))
-        memcpy(c->position, before, sizeof before);
+    scene->gaps(scene, c->robot, c->position, gap);
+    for (int g = 0; g < scene->contacts; g++)
+        if (scene->grip[g] < 0 && gap[g] < 0) /* beyond a stop */
+            memcpy(c->position, before, sizeof before);
     if (free && stands)
         scene->stand(scene, c->robot, stands, c->position, c->velocity);
     if (free && manner == SLIDING)
@@ -184,52 +172,6 @@ static size_t list_checks(const struct plan *plan, stance_case *check, double *s
     return count;
 }
 
-static bool all_built_in(const struct objects_wanted *wanted, size_t count)
-{
-    bool all = true;
-    for (size_t k = 0; k < count; k++)
-        all &= wanted[k].reference != NULL;
-    return all;
-}
-
-/* Collective, as kernels_take. *brief: nothing would be compiled, as little is to be computed. */
-static enum exit_code take(struct kernels *kernels, const struct plan *plan,
-                           const struct kernels_choice *choice, const struct parallel *parallel,
-                           struct objects_request request, bool *brief, stance_message *message)
-{
-    const struct scenario_values *const base = &plan->scenario->base;
-    struct objects_wanted wanted[OBJECTS_MOST];
-    char tables[STANCE_TREE_TEXT];
-    stance_case *const check = calloc(CHECKS, sizeof *check);
-    if (!check)
-        abort(); /* the others wait */
-    double steps;
-    request.checks = list_checks(plan, check, &steps);
-    request.check = check;
-    request.wanted = wanted;
-    request.count = list_methods(plan, choice, wanted);
-    *brief = request.brief = !choice && steps <= brief_steps && all_built_in(wanted, request.count);
-    if (request.brief || request.looks) { /* a small part of the work */
-        const double few = fmax(FEW_CHECKS, request.looks ? 0 : steps / (16 * CHECK_STEPS));
-        request.checks = (size_t)fmin((double)request.checks, few);
-    }
-    stance_tree_text(plan->scenario->scene->tree,
-                     scenario_law(base)->servos || scenario_far(base)->servos, tables);
-    request.tables = tables;
-    request.scene = plan->scenario->scene;
-    request.stop = plan->stop;
-    request.context = plan->stop_context;
-    const enum exit_code code = objects_take(parallel, &request, kernels->object, message);
-    free(check);
-    if (code != EXIT_DONE)
-        return code;
-    kernels->count = request.count;
-    for (size_t i = 0; i < kernels->count; i++)
-        kernels->kernel[i] = &kernels->object[i].kernel;
-    instruction_set_prefer(plan->scenario->scene, kernels->kernel, kernels->count);
-    return code;
-}
-
 /* Whether what the plan needs is compiled ahead. */
 static bool all_ahead(const struct plan *plan)
 {
@@ -245,15 +187,51 @@ static bool all_ahead(const struct plan *plan)
 
 enum exit_code kernels_take(struct kernels *kernels, const struct plan *plan,
                             const struct kernels_choice *choice, const struct parallel *parallel,
-                            bool quiet, stance_message *message)
+                            stance_message *message)
 {
-    bool ignored;
+    const struct scenario_values *const base = &plan->scenario->base;
+    struct objects_wanted wanted[OBJECTS_MOST];
+    char tables[STANCE_TREE_TEXT];
+    double steps;
     kernels->count = 0;
-    if (!choice && all_ahead(plan))
+    kernels->brief = true;
+    if (!choice->always && all_ahead(plan))
         return EXIT_DONE;
-    return take(kernels, plan, choice, parallel,
-                (struct objects_request){.quiet = quiet, .again = choice && choice->again},
-                &ignored, message);
+    stance_case *const check = calloc(CHECKS, sizeof *check);
+    if (!check)
+        abort(); /* the others wait */
+    stance_tree_text(plan->scenario->scene->tree,
+                     scenario_law(base)->servos || scenario_far(base)->servos, tables);
+    struct objects_request request = {
+        .tables = tables,
+        .scene = plan->scenario->scene,
+        .wanted = wanted,
+        .count = list_methods(plan, choice, wanted),
+        .check = check,
+        .checks = list_checks(plan, check, &steps),
+        .quiet = choice->quiet,
+        .again = choice->again,
+        .looks = choice->looks,
+        .stop = plan->stop,
+        .context = plan->stop_context,
+    };
+    request.brief = !choice->always && steps <= brief_steps;
+    for (size_t k = 0; k < request.count; k++)
+        request.brief &= wanted[k].reference != NULL;
+    if (request.brief || request.looks) { /* a small part of the work */
+        const double few = fmax(FEW_CHECKS, request.looks ? 0 : steps / (16 * CHECK_STEPS));
+        request.checks = (size_t)fmin((double)request.checks, few);
+    }
+    kernels->brief = request.brief;
+    const enum exit_code code = objects_take(parallel, &request, kernels->object, message);
+    free(check);
+    if (code != EXIT_DONE)
+        return code;
+    kernels->count = request.count;
+    for (size_t i = 0; i < kernels->count; i++)
+        kernels->kernel[i] = &kernels->object[i].kernel;
+    instruction_set_prefer(plan->scenario->scene, kernels->kernel, kernels->count);
+    return code;
 }
 
 /* ---- what run would do ---------------------------------------------------------------------- */
@@ -283,14 +261,12 @@ static double compiled_share(const char *isa)
 struct kernels_outlook kernels_look(struct kernels *kernels, const struct plan *plan)
 {
     const struct parallel alone = parallel_alone();
+    const struct kernels_choice choice = {.quiet = true, .looks = true};
     struct kernels_outlook outlook = {0, 1, true};
     stance_message ignored;
-    kernels->count = 0;
-    if (all_ahead(plan) ||
-        take(kernels, plan, NULL, &alone, (struct objects_request){.quiet = true, .looks = true},
-             &outlook.brief, &ignored) != EXIT_DONE)
-        return outlook;
-    for (size_t i = 0; i < kernels->count; i++)
+    const enum exit_code code = kernels_take(kernels, plan, &choice, &alone, &ignored);
+    outlook.brief = kernels->brief;
+    for (size_t i = 0; code == EXIT_DONE && i < kernels->count; i++)
         if (kernels->object[i].origin == OBJECT_MISSING) {
             outlook.compiling +=
                 compiling_takes(plan->scenario->scene, kernels->object[i].kernel.method);

@@ -12,23 +12,26 @@ struct kernels {
     struct object object[OBJECTS_MOST];
     const stance_kernel *kernel[OBJECTS_MOST];
     size_t count;
+    bool brief; /* so little is to be computed that nothing is compiled for it */
 };
 
-/* What else than the plan's methods for the instruction set in use: names, or 0 of them. */
+/* All 0: the plan's methods for the instruction set in use, compiled where the plan's cases take
+ * longer than that. */
 struct kernels_choice {
-    const char *const *method, *const *isa;
+    const char *const *method, *const *isa; /* others: names, or 0 of them */
     size_t methods, isas;
-    bool again; /* compiles what was refused before */
+    bool always; /* compiles however little there is to compute */
+    bool again;  /* compiles what was refused before */
+    bool quiet;  /* says nothing where all goes well */
+    bool looks;  /* compiles nothing, and leaves the cache as it is */
 };
 
-/* Collective: takes what the plan's methods (choice NULL: without compiling where the plan's cases
- * take less time than that) need; from then on instruction_set_kernel gives them. Built-in scenes
- * need nothing. quiet: says nothing where all goes well. Needs the
- * designs. Exit codes and message as objects_take; *kernels is to be given back where it is
- * EXIT_DONE. */
+/* Collective: takes what is chosen; from then on instruction_set_kernel gives them. Built-in scenes
+ * need nothing. Needs the designs. Exit codes and message as objects_take; *kernels is to be given
+ * back where it is EXIT_DONE. */
 enum exit_code kernels_take(struct kernels *kernels, const struct plan *plan,
                             const struct kernels_choice *choice, const struct parallel *parallel,
-                            bool quiet, stance_message *message);
+                            stance_message *message);
 /* What `run` would have before it computes: `kernels` are those that there are now, from the cache
  * or built in; nothing is compiled, touched or said. Of those that are not there but can be
  * compiled, about how many seconds that takes (0: there are none) and what they take of the time of

@@ -121,7 +121,7 @@ bool plan_make(struct plan *plan, const struct scenario *scenario, bool single,
     }
     if (!plan_trajectories(plan, trace, error))
         return false;
-    plan->design_size = resolve_packed(scenario->scene);
+    plan->design_size = resolve_part(scenario->scene, RESOLVED_PARTS).place;
     plan->design = calloc(plan->designs, plan->design_size * sizeof *plan->design);
     plan->design_status = calloc(plan->designs, sizeof *plan->design_status);
     if (!plan->design || !plan->design_status) {
@@ -169,13 +169,21 @@ void plan_free(struct plan *plan)
 struct resolved_design plan_design_at(const struct plan *plan, size_t d)
 {
     struct resolved_design design;
-    resolve_unpack(plan->scenario->scene, &plan->design[d * plan->design_size], &design);
+    resolve_move(plan->scenario->scene, false, &design, &plan->design[d * plan->design_size]);
     return design;
 }
 
 void plan_design_put(struct plan *plan, size_t d, const struct resolved_design *design)
 {
-    resolve_pack(plan->scenario->scene, design, &plan->design[d * plan->design_size]);
+    struct resolved_design own = *design;
+    resolve_move(plan->scenario->scene, true, &own, &plan->design[d * plan->design_size]);
+}
+
+void plan_take_design(struct plan *plan, size_t place, const struct plan *from, size_t d)
+{
+    memcpy(&plan->design[place * plan->design_size], &from->design[d * from->design_size],
+           plan->design_size * sizeof *plan->design);
+    plan->design_status[place] = from->design_status[d];
 }
 
 /* ---- where things are --------------------------------------------------------------------- */

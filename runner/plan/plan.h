@@ -92,6 +92,8 @@ bool plan_check_cases(const struct plan *plan, struct plan_error *error);
 /* Design d, whatever its status; and into its place. */
 struct resolved_design plan_design_at(const struct plan *plan, size_t d);
 void plan_design_put(struct plan *plan, size_t d, const struct resolved_design *design);
+/* Design d of another plan of the same scene, with its status. */
+void plan_take_design(struct plan *plan, size_t place, const struct plan *from, size_t d);
 
 /* Method of a row, as index into stance_methods(). */
 int plan_method(const struct plan *plan, uint64_t row);

@@ -109,13 +109,6 @@ static void ask_to_stop(void *context)
     plan->stop(plan->stop_context); /* which tells the other ranks */
 }
 
-/* A rank that waits for others goes on asking: the signal may be its own. */
-static void meet(struct plan *plan, const struct parallel *parallel)
-{
-    if (plan->stop)
-        parallel_meet(parallel, ask_to_stop, plan);
-}
-
 bool plan_compute_designs(struct plan *plan, const struct parallel *parallel,
                           struct plan_error *error)
 {
@@ -158,7 +151,8 @@ bool plan_compute_designs(struct plan *plan, const struct parallel *parallel,
         found[0] += plan->design_status[d] == STANCE_DONE;
         found[1] += plan->design_status[d] == STANCE_PENDING;
     }
-    meet(plan, parallel);
+    if (plan->stop) /* a rank that waits for others goes on asking: the signal may be its own */
+        parallel_meet(parallel, ask_to_stop, plan);
     parallel_gather_block(parallel, plan->design, plan->design_size * sizeof *plan->design, first,
                           count);
     parallel_gather_block(parallel, plan->design_status, 1, first, count);

@@ -43,16 +43,16 @@ struct tried {
 
 struct trial {
     struct tried *tried;
-    size_t which[TRIED];   /* those that go on, spread wherever it is cut ... */
-    size_t order[TRIED];   /* ... and in order of running, by method */
-    double seconds, steps; /* of the last round */
-    double until;          /* of clock_seconds() */
+    size_t which[TRIED];        /* those that go on, spread wherever it is cut ... */
+    struct tried *order[TRIED]; /* ... and those that run, of one method */
+    double seconds, steps;      /* of the last round */
+    double until;               /* of clock_seconds() */
 };
 
-/* Cases first ... first + count of order[], and again from the first on until lanes are filled. */
+/* Cases order[count], and again from the first on until lanes are filled. */
 struct lane_feed {
     struct trial *trial;
-    size_t first, count, fed, most;
+    size_t count, fed, most;
 };
 
 static bool feed_next(void *context, const stance_case **c, stance_result **result)
@@ -60,8 +60,7 @@ static bool feed_next(void *context, const stance_case **c, stance_result **resu
     struct lane_feed *const feed = context;
     if (feed->fed == feed->most)
         return false;
-    struct tried *const t =
-        &feed->trial->tried[feed->trial->order[feed->first + feed->fed % feed->count]];
+    struct tried *const t = feed->trial->order[feed->fed % feed->count];
     *c = &t->input;
     *result = feed->fed < feed->count ? &t->result : &t->again;
     feed->fed++;
@@ -79,31 +78,23 @@ static bool feed_leave(void *context)
     return clock_seconds() > feed->trial->until;
 }
 
-/* Cases of one method, order[first ... first + count), up to `cap` steps. Adds to *more what they
- * took beyond what they did before. false: time was up. */
-static bool run_method(const struct plan *plan, struct trial *trial, size_t first, size_t count,
-                       int64_t cap, double *more)
+/* Cases order[count] of a method. Adds to *more what they took beyond what they did before. false:
+ * time was up. */
+static bool run_method(const stance_kernel *kernel, struct trial *trial, size_t count, double *more)
 {
-    const int method = trial->tried[trial->order[first]].method;
-    const stance_kernel *const kernel =
-        instruction_set_kernel(plan->scenario->scene, stance_methods()[method]);
     const size_t lanes = (size_t)(kernel->lanes < WIDEST ? kernel->lanes : WIDEST);
-    struct lane_feed feed = {trial, first, count, 0, (count + lanes - 1) / lanes * lanes};
+    struct lane_feed feed = {trial, count, 0, (count + lanes - 1) / lanes * lanes};
     double steps = 0;
-    for (size_t i = first; i < first + count; i++) {
-        struct tried *const t = &trial->tried[trial->order[i]];
-        t->input.steps = t->asked < cap ? t->asked : cap;
-    }
     const double begin = processor_seconds();
     if (!kernel->stream(&(stance_feed){&feed, feed_next, feed_done, feed_leave}))
         return false;
     const double seconds = processor_seconds() - begin;
     for (size_t k = 0; k < feed.most; k++)
-        steps += (double)trial->tried[trial->order[first + k % count]].result.steps;
+        steps += (double)trial->order[k % count]->result.steps;
     trial->seconds += seconds;
     trial->steps += steps;
-    for (size_t i = first; i < first + count; i++) {
-        struct tried *const t = &trial->tried[trial->order[i]];
+    for (size_t i = 0; i < count; i++) {
+        struct tried *const t = trial->order[i];
         /* One that ends where it begins takes no step, but some time all the same. */
         const double took =
             steps > 0 ? seconds * (double)t->result.steps / steps : seconds / (double)feed.most;
@@ -113,29 +104,25 @@ static bool run_method(const struct plan *plan, struct trial *trial, size_t firs
     return true;
 }
 
-/* The first `count` cases of which[], method by method. */
+/* The first `count` cases of which[], up to `cap` steps, method by method. */
 static bool run_round(const struct plan *plan, struct trial *trial, size_t count, int64_t cap,
                       double *more)
 {
+    bool good = true;
     *more = trial->seconds = trial->steps = 0;
-    memcpy(trial->order, trial->which, count * sizeof *trial->order);
-    for (size_t i = 1; i < count; i++)
-        for (size_t k = i; k > 0 && trial->tried[trial->order[k]].method <
-                                        trial->tried[trial->order[k - 1]].method;
-             k--) {
-            const size_t other = trial->order[k];
-            trial->order[k] = trial->order[k - 1];
-            trial->order[k - 1] = other;
+    for (int m = 0; good && stance_methods()[m]; m++) {
+        size_t n = 0;
+        for (size_t i = 0; i < count; i++) {
+            struct tried *const t = &trial->tried[trial->which[i]];
+            t->input.steps = t->asked < cap ? t->asked : cap;
+            if (t->method == m)
+                trial->order[n++] = t;
         }
-    for (size_t first = 0, n; first < count; first += n) {
-        n = 1;
-        while (first + n < count && trial->tried[trial->order[first + n]].method ==
-                                        trial->tried[trial->order[first]].method)
-            n++;
-        if (!run_method(plan, trial, first, n, cap, more))
-            return false;
+        good =
+            n == 0 || run_method(instruction_set_kernel(plan->scenario->scene, stance_methods()[m]),
+                                 trial, n, more);
     }
-    return true;
+    return good;
 }
 
 /* s, of the last round. */
@@ -144,19 +131,16 @@ static double per_step(const struct trial *trial)
     return trial->steps > 0 ? trial->seconds / trial->steps : 0;
 }
 
-static bool is_over(const struct tried *t)
-{
-    return t->result.status != STANCE_DONE || t->result.steps < t->input.steps ||
-           t->input.steps >= t->asked;
-}
-
 /* Those of the first `count` that go on; the others are dropped. */
 static size_t keep_going(struct trial *trial, size_t count)
 {
     size_t left = 0;
-    for (size_t i = 0; i < count; i++)
-        if (!is_over(&trial->tried[trial->which[i]]))
+    for (size_t i = 0; i < count; i++) {
+        const struct tried *const t = &trial->tried[trial->which[i]];
+        if (t->result.status == STANCE_DONE && t->result.steps >= t->input.steps &&
+            t->input.steps < t->asked)
             trial->which[left++] = trial->which[i];
+    }
     return left;
 }
 

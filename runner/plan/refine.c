@@ -86,15 +86,6 @@ uint64_t refine_coarse(const struct refine_map *map)
     return points;
 }
 
-static bool is_probe(const struct refine_map *map, uint64_t row)
-{
-    const philox4x64_key_t key = {{map->seed, 0x726566696e65}};
-    const uint64_t samples = map->samples ? map->samples : 1;
-    const philox4x64_ctr_t counter = {{row / samples, row % samples, 0, 0}};
-    const philox4x64_ctr_t random = philox4x64(counter, key);
-    return (double)(random.v[0] >> 11) * 0x1p-53 < map->probes;
-}
-
 /* ---- boxes of points ---------------------------------------------------------------------- */
 
 /* Points low, low + step, ... along each axis, and high. */
@@ -202,9 +193,14 @@ struct refine *refine_make(const struct refine_map *map)
         return NULL;
     }
     mark(refine, &whole, WANTED);
-    for (uint64_t row = 0; map->probes > 0 && row < refine->points; row++)
-        if (is_probe(map, row))
+    const philox4x64_key_t key = {{map->seed, 0x726566696e65}};
+    const uint64_t samples = map->samples ? map->samples : 1;
+    for (uint64_t row = 0; map->probes > 0 && row < refine->points; row++) {
+        const philox4x64_ctr_t counter = {{row / samples, row % samples, 0, 0}};
+        const philox4x64_ctr_t random = philox4x64(counter, key);
+        if ((double)(random.v[0] >> 11) * 0x1p-53 < map->probes)
             refine_want(refine, row);
+    }
     return refine;
 }
 

@@ -29,58 +29,36 @@
 
 /* ---- design ---------------------------------------------------------------------------------- */
 
-/* The parts of a design that a scene uses: rows of so many numbers, a row every so many. */
-struct part {
-    size_t offset, rows, length, stride;
-};
-enum { DESIGN_PARTS = 4 };
-
-static void design_parts(const stance_scene *scene, struct part part[DESIGN_PARTS])
+struct resolved_part resolve_part(const stance_scene *scene, enum resolved_parts k)
 {
 #define AT(field) offsetof(struct resolved_design, field) / sizeof(double)
     const size_t n = (size_t)scene->coordinates, m = (size_t)scene->actuators,
                  states = 2 * (size_t)scene->postures, room = 2 * STANCE_MAX_POSTURE;
-    const struct part all[DESIGN_PARTS] = {
-        {AT(start), 1, n, 0},
-        {AT(equilibrium), 1, n, 0},
-        {AT(torque), 1, m, 0},
-        {AT(gain), m, states, room},
+    const struct resolved_part part[] = {
+        [RESOLVED_START] = {AT(start), 0, 1, n, 0},
+        [RESOLVED_EQUILIBRIUM] = {AT(equilibrium), n, 1, n, 0},
+        [RESOLVED_TORQUE] = {AT(torque), 2 * n, 1, m, 0},
+        [RESOLVED_GAIN] = {AT(gain), 2 * n + m, m, states, room},
+        [RESOLVED_PARTS] = {0, 2 * n + m + m * states, 0, 0, 0},
     };
 #undef AT
-    memcpy(part, all, sizeof all);
+    return part[k];
 }
 
-size_t resolve_packed(const stance_scene *scene)
+void resolve_move(const stance_scene *scene, bool pack, struct resolved_design *design,
+                  double *number)
 {
-    struct part part[DESIGN_PARTS];
-    size_t count = 0;
-    design_parts(scene, part);
-    for (int k = 0; k < DESIGN_PARTS; k++)
-        count += part[k].rows * part[k].length;
-    return count;
-}
-
-void resolve_pack(const stance_scene *scene, const struct resolved_design *design, double *number)
-{
-    struct part part[DESIGN_PARTS];
-    const double *const from = (const double *)(const void *)design;
-    design_parts(scene, part);
-    for (int k = 0; k < DESIGN_PARTS; k++)
-        for (size_t row = 0; row < part[k].rows; row++, number += part[k].length)
-            memcpy(number, &from[part[k].offset + row * part[k].stride],
-                   part[k].length * sizeof *number);
-}
-
-void resolve_unpack(const stance_scene *scene, const double *number, struct resolved_design *design)
-{
-    struct part part[DESIGN_PARTS];
-    double *const to = (double *)(void *)design;
-    design_parts(scene, part);
-    memset(design, 0, sizeof *design);
-    for (int k = 0; k < DESIGN_PARTS; k++)
-        for (size_t row = 0; row < part[k].rows; row++, number += part[k].length)
-            memcpy(&to[part[k].offset + row * part[k].stride], number,
-                   part[k].length * sizeof *number);
+    double *const all = (double *)(void *)design;
+    if (!pack)
+        memset(design, 0, sizeof *design);
+    for (enum resolved_parts k = 0; k < RESOLVED_PARTS; k++) {
+        const struct resolved_part p = resolve_part(scene, k);
+        for (size_t row = 0; row < p.rows; row++) {
+            double *const own = &all[p.offset + row * p.stride],
+                          *const packed = &number[p.place + row * p.length];
+            memcpy(pack ? packed : own, pack ? own : packed, p.length * sizeof *own);
+        }
+    }
 }
 
 static bool solve_equilibrium(const stance_scene *scene, const double *robot,
@@ -424,17 +402,6 @@ static bool check_start(const stance_scene *scene, const struct scenario_values 
 
 /* ---- law and time ---------------------------------------------------------------------------- */
 
-static void feed_back(const stance_scene *scene, const struct scenario_values *values,
-                      const struct resolved_design *design, stance_case *out)
-{
-    memcpy(out->near.feedforward, design->torque, sizeof out->near.feedforward);
-    memcpy(out->near.gain, design->gain, sizeof out->near.gain);
-    for (int k = 0; k < scene->postures; k++)
-        out->near.target[k] = design->equilibrium[scene->posture[k]];
-    out->has_target = true;
-    out->supports = scenario_supports(scene, values);
-}
-
 bool resolve_law(const stance_scene *scene, const struct scenario_values *values,
                  const stance_law *law, const double *begin, stance_linear_law *linear,
                  stance_case *out, stance_message *message)
@@ -455,7 +422,12 @@ static bool set_laws(const stance_scene *scene, const struct scenario_values *va
     const stance_law *const law = scenario_law(values), *const far = scenario_far(values);
     if (!law->designed)
         return resolve_law(scene, values, law, out->position, &out->near, out, message);
-    feed_back(scene, values, design, out);
+    memcpy(out->near.feedforward, design->torque, sizeof out->near.feedforward);
+    memcpy(out->near.gain, design->gain, sizeof out->near.gain);
+    for (int k = 0; k < scene->postures; k++)
+        out->near.target[k] = design->equilibrium[scene->posture[k]];
+    out->has_target = true;
+    out->supports = scenario_supports(scene, values);
     if (!resolve_law(scene, values, law, design->equilibrium, &out->near, out, message))
         return false;
     if (!far->set)
@@ -585,4 +557,59 @@ bool resolve_case(const stance_scene *scene, const struct scenario_values *value
     if (!check_start(scene, values, out, message) || !set_laws(scene, values, design, out, message))
         return false;
     return resolve_time(values, out, message) && check_law(scene, values, out, message);
+}
+
+/* ---- what a search varies ------------------------------------------------------------------- */
+
+/* Of the columns of gains those that may be other than 0: all where there is no equilibrium. */
+static int find_free(const struct scenario *s, bool *column)
+{
+    const int columns = 2 * s->scene->postures;
+    double model[STANCE_MAX_ROBOT];
+    stance_equilibrium equilibrium;
+    stance_message ignored;
+    int count = 0;
+    if (resolve_equilibrium(s->scene, &s->base, model, &equilibrium, &ignored))
+        resolve_free(s->scene, &equilibrium, column);
+    else
+        memset(column, true, (size_t)columns * sizeof *column);
+    for (int k = 0; k < columns; k++)
+        count += column[k];
+    return count;
+}
+
+/* Whether number k may differ. */
+static bool is_free(const struct scenario *s, int k, const bool *column)
+{
+    const size_t gains = offsetof(struct scenario_values, gains), at = s->search.axis.offset[k];
+    return at < gains || at >= gains + sizeof s->base.gains ||
+           column[(at - gains) / sizeof(double) % (2 * (size_t)s->scene->postures)];
+}
+
+int search_numbers(const struct scenario *s)
+{
+    bool column[2 * STANCE_MAX_POSTURE];
+    const int columns = find_free(s, column);
+    int count = s->search.designed_gains ? s->scene->actuators * columns : 0;
+    for (int k = 0; k < s->search.axis.paths; k++)
+        count += is_free(s, k, column);
+    return count;
+}
+
+void search_numbers_keep(struct scenario *s)
+{
+    struct scenario_axis *const axis = &s->search.axis;
+    bool column[2 * STANCE_MAX_POSTURE];
+    int kept = 0;
+    find_free(s, column);
+    for (int k = 0; k < axis->paths; k++) {
+        if (!is_free(s, k, column))
+            continue;
+        memmove(axis->path[kept], axis->path[k], sizeof axis->path[k]);
+        axis->offset[kept] = axis->offset[k];
+        axis->integer[kept] = axis->integer[k];
+        axis->enumeration[kept] = axis->enumeration[k];
+        s->search.varied[kept++] = s->search.varied[k];
+    }
+    axis->paths = kept;
 }

@@ -20,12 +20,23 @@ struct resolved_design {
     double gain[STANCE_MAX_ACTUATORS][2 * STANCE_MAX_POSTURE];
 };
 
-/* A design without the room that its scene has no use for: how many numbers it is, and to and from
- * number[that many]. What is left out is 0 when it is back. */
-size_t resolve_packed(const stance_scene *scene);
-void resolve_pack(const stance_scene *scene, const struct resolved_design *design, double *number);
-void resolve_unpack(const stance_scene *scene, const double *number,
-                    struct resolved_design *design);
+/* A design is packed without the room that its scene has no use for: its parts, rows of so many
+ * numbers, a row every `stride` numbers from `offset` on, and from `place` on, without gaps, where
+ * it is packed. RESOLVED_PARTS: what begins there is no part; that many numbers it is. */
+enum resolved_parts {
+    RESOLVED_START,
+    RESOLVED_EQUILIBRIUM,
+    RESOLVED_TORQUE,
+    RESOLVED_GAIN,
+    RESOLVED_PARTS
+};
+struct resolved_part {
+    size_t offset, place, rows, length, stride;
+};
+struct resolved_part resolve_part(const stance_scene *scene, enum resolved_parts k);
+/* To or from number[that many]; what is left out is 0 when it is back. */
+void resolve_move(const stance_scene *scene, bool pack, struct resolved_design *design,
+                  double *number);
 
 /* false: `message` says what is impossible (no such equilibrium, poles not
  * placeable, ...). */
@@ -84,5 +95,12 @@ bool resolve_law(const stance_scene *scene, const struct scenario_values *values
  * case runs all the same, with a damped law. */
 bool resolve_selection(const stance_scene *scene, const stance_case *start,
                        stance_message *message);
+
+/* Which of the numbers that a search is asked to vary can differ: of the gains those of the linear
+ * model. Coordinates that follow from the others while the contacts hold (of a flat foot its angle)
+ * have gains of 0, see resolve_free. How many they are; and leaves the others out of
+ * s->search.axis. */
+int search_numbers(const struct scenario *s);
+void search_numbers_keep(struct scenario *s);
 
 #endif

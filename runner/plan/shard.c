@@ -47,16 +47,13 @@ struct shard shard_of(const struct shard *shard, uint64_t rows)
     };
 }
 
-/* Whose the first stripe of a turn is: multiples of the golden ratio, which spread most evenly. */
-static uint64_t rotation(uint64_t turn, uint64_t count)
-{
-    return (turn * 0x9e3779b97f4a7c15 >> 32) * count >> 32;
-}
-
 /* The first row of the shard's stripe among the `turn`th `count` stripes. */
 static uint64_t first_row(const struct shard *shard, uint64_t turn)
 {
-    const uint64_t member = (rotation(turn, shard->count) + shard->number - 1) % shard->count;
+    /* Whose the first stripe of a turn is: multiples of the golden ratio, which spread most evenly.
+     */
+    const uint64_t begins = (turn * 0x9e3779b97f4a7c15 >> 32) * shard->count >> 32;
+    const uint64_t member = (begins + shard->number - 1) % shard->count;
     return (turn * shard->count + member) * shard->stripe;
 }
 

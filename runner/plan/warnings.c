@@ -9,6 +9,7 @@
 
 #include <inttypes.h>
 #include <math.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -24,41 +25,52 @@ enum trouble { UNSTABLE, WEAK, SLIPPERY, UNSETTLED, NOISY, BURIED, LOSSY, TROUBL
 
 /* Of each trouble: how many cases have it, and of the first one the case and what is wrong. */
 struct troubles {
+    uint64_t index; /* of the case that is looked at */
     size_t count[TROUBLES];
     uint64_t first[TROUBLES];
     char what[TROUBLES][240];
 };
 
-static bool first_of(struct troubles *t, enum trouble trouble, uint64_t index)
+__attribute__((format(printf, 3, 4))) static void note(struct troubles *t, enum trouble trouble,
+                                                       const char *format, ...)
 {
+    va_list list;
     if (t->count[trouble]++ > 0)
-        return false;
-    t->first[trouble] = index;
-    return true;
+        return;
+    t->first[trouble] = t->index;
+    va_start(list, format);
+    vsnprintf(t->what[trouble], sizeof t->what[trouble], format, list);
+    va_end(list);
 }
 
-static void look_at_torques(const struct design_report *r, uint64_t index, struct troubles *t)
+__attribute__((format(printf, 2, 3))) static void warn(const char *who, const char *format, ...)
+{
+    char text[1000]; /* in one piece: a launcher mixes what is written in pieces */
+    va_list list;
+    va_start(list, format);
+    vsnprintf(text, sizeof text, format, list);
+    va_end(list);
+    fprintf(stderr, "%s: warning: %s\n", who, text);
+}
+
+static void look_at_torques(const struct design_report *r, const double *limit, struct troubles *t)
 {
     const stance_scene *const scene = r->scenario->scene;
-    double limit[STANCE_MAX_ACTUATORS];
-    stance_torque_limits(scene, r->scenario->base.robot, r->scenario->base.torque_limit,
-                         r->scenario->base.torque_limits, limit);
     for (int i = 0; i < scene->actuators; i++) {
         const double needed = fabs(r->equilibrium.torque[i]);
-        if (needed > limit[i] && first_of(t, WEAK, index))
-            snprintf(t->what[WEAK], sizeof t->what[WEAK],
-                     "the equilibrium takes %.3g of %.40s, which gives %.3g at most", needed,
-                     scene->actuator_name[i], limit[i]);
-        if (needed > limit[i])
+        if (needed > limit[i]) {
+            note(t, WEAK, "the equilibrium takes %.3g of %.40s, which gives %.3g at most", needed,
+                 scene->actuator_name[i], limit[i]);
             return;
+        }
     }
 }
 
 /* At the equilibrium, where contacts stick. */
-static void look_at_friction(const struct design_report *r, uint64_t index, struct troubles *t)
+static void look_at_friction(const struct design_report *r, struct troubles *t)
 {
-    enum { STATES = 2 * STANCE_MAX_POSTURE };
     const stance_scene *const scene = r->scenario->scene;
+    const double friction = r->scenario->base.friction;
     double force[STANCE_MAX_CONTACTS][2];
     double by_state[STANCE_MAX_CONTACTS * 2 * DESIGN_STATES];
     double by_torque[STANCE_MAX_CONTACTS * 2 * DESIGN_INPUTS];
@@ -68,122 +80,114 @@ static void look_at_friction(const struct design_report *r, uint64_t index, stru
     for (int c = 0, k = 0; c < scene->contacts; c++) {
         if (!(r->equilibrium.supports >> c & 1))
             continue;
-        const double used = fabs(force[k][1]) / force[k][0];
+        const double normal = force[k][0], used = fabs(force[k][1]) / normal;
         k++;
-        if (!(used > r->scenario->base.friction * (1 + 1e-9)) || !(force[k - 1][0] > 0))
-            continue;
-        if (first_of(t, SLIPPERY, index))
-            snprintf(t->what[SLIPPERY], sizeof t->what[SLIPPERY],
-                     "standing on %.40s takes friction %.3g, there is %.3g", scene->contact_name[c],
-                     used, r->scenario->base.friction);
-        return;
+        if (used > friction * (1 + 1e-9) && normal > 0) {
+            note(t, SLIPPERY, "standing on %.40s takes friction %.3g, there is %.3g",
+                 scene->contact_name[c], used, friction);
+            return;
+        }
     }
 }
 
 /* What the linear loop makes of noise, beside the window of settling and the torque limits. */
-static void look_at_noise(const struct design_report *r, uint64_t index, struct troubles *t)
+static void look_at_noise(const struct design_report *r, const double *limit, struct troubles *t)
 {
-    const stance_scene *const scene = r->scenario->scene;
     const struct scenario_values *const values = &r->scenario->base;
-    double limit[STANCE_MAX_ACTUATORS];
-    bool unsettled = false, noisy = false;
-    for (int i = 0; r->noisy && values->settle && i < r->states && !unsettled; i++) {
+    for (int i = 0; values->settle && i < r->states; i++) {
         const bool rate = i >= r->states / 2;
+        const double window = rate ? values->settle_rate : values->settle_angle;
         char name[SCENARIO_NAME];
-        unsettled = r->wander[i] > (rate ? values->settle_rate : values->settle_angle);
-        if (unsettled && first_of(t, UNSETTLED, index))
-            snprintf(t->what[UNSETTLED], sizeof t->what[UNSETTLED],
-                     "noise makes %.40s wander by %.3g rms, more than settle.%s, %.3g",
-                     design_state_name(r, i, name), r->wander[i], rate ? "rate" : "angle",
-                     rate ? values->settle_rate : values->settle_angle);
+        if (r->wander[i] > window) {
+            note(t, UNSETTLED, "noise makes %.40s wander by %.3g rms, more than settle.%s, %.3g",
+                 design_state_name(r, i, name), r->wander[i], rate ? "rate" : "angle", window);
+            break;
+        }
     }
-    stance_torque_limits(scene, values->robot, values->torque_limit, values->torque_limits, limit);
-    for (int k = 0; r->noisy && k < r->inputs && !noisy; k++) {
+    for (int k = 0; k < r->inputs; k++) {
         const double reserve = limit[k] - fabs(r->equilibrium.torque[k]);
-        noisy = reserve > 0 && r->command_noise[k] > reserve;
-        if (noisy && first_of(t, NOISY, index))
-            snprintf(t->what[NOISY], sizeof t->what[NOISY],
-                     "noise on the command of %.40s is %.3g rms, more than the %.3g that its limit "
-                     "leaves beside the equilibrium's",
-                     scene->actuator_name[k], r->command_noise[k], reserve);
+        if (reserve > 0 && r->command_noise[k] > reserve) {
+            note(t, NOISY,
+                 "noise on the command of %.40s is %.3g rms, more than the %.3g that its limit "
+                 "leaves beside the equilibrium's",
+                 r->scenario->scene->actuator_name[k], r->command_noise[k], reserve);
+            return;
+        }
     }
 }
 
-static void look_at(const struct plan *plan, uint64_t index, struct troubles *t)
+static void look_at_loop(const struct design_report *r, struct troubles *t)
 {
-    const struct scenario *const s = plan->scenario;
-    const struct resolved_design design = plan_design_at(plan, plan_design(plan, index));
-    struct scenario *const at = malloc(sizeof *at);
-    struct design_report *const r = malloc(sizeof *r);
-    stance_message message = {""};
+    const struct scenario_values *const values = &r->scenario->base;
+    double limit[STANCE_MAX_ACTUATORS];
     char late[64], radius[32];
-    if (at && r) {
-        *at = *s;
-        scenario_case_values(s, index, &at->base);
-        if (scenario_law(&at->base)->designed && design_loop(r, at, &design, &message)) {
-            if (!r->stable && first_of(t, UNSTABLE, index) && r->sampled > 0)
-                snprintf(t->what[UNSTABLE], sizeof t->what[UNSTABLE],
-                         "the loop is unstable: spectral radius %s at a sample time of %.3g s%s%s",
-                         design_radius(r, 3, radius), at->base.sample_time,
-                         design_late(r->delay, "", late),
-                         r->lag > 0 ? ", with the lag of its actuators" : "");
-            else if (!r->stable && !t->what[UNSTABLE][0])
-                snprintf(t->what[UNSTABLE], sizeof t->what[UNSTABLE],
-                         "the loop is unstable: an eigenvalue is not on the left");
-            look_at_torques(r, index, t);
-            look_at_friction(r, index, t);
-            look_at_noise(r, index, t);
-        }
-    }
-    free(at);
-    free(r);
+    stance_torque_limits(r->scenario->scene, values->robot, values->torque_limit,
+                         values->torque_limits, limit);
+    if (!r->stable && r->sampled > 0)
+        note(t, UNSTABLE, "the loop is unstable: spectral radius %s at a sample time of %.3g s%s%s",
+             design_radius(r, 3, radius), values->sample_time, design_late(r->delay, "", late),
+             r->lag > 0 ? ", with the lag of its actuators" : "");
+    else if (!r->stable)
+        note(t, UNSTABLE, "the loop is unstable: an eigenvalue is not on the left");
+    look_at_torques(r, limit, t);
+    look_at_friction(r, t);
+    if (r->noisy)
+        look_at_noise(r, limit, t);
 }
 
 /* Contacts that the scenario leaves out, and that begin in the ground. */
-static void look_at_ground(const stance_scene *scene, const stance_case *c, uint64_t index,
-                           struct troubles *t)
+static void look_at_ground(const stance_scene *scene, const stance_case *c, struct troubles *t)
 {
     double gap[STANCE_MAX_CONTACTS];
     scene->gaps(scene, c->robot, c->position, gap);
     for (int k = 0; k < scene->contacts; k++) {
         if (c->contacts >> k & 1 || scene->grip[k] < 0 || !(gap[k] < -INSIDE))
             continue;
-        if (first_of(t, BURIED, index))
-            snprintf(t->what[BURIED], sizeof t->what[BURIED],
-                     "%.40s, which ground.contacts leaves out, begins %.3g m below the ground",
-                     scene->contact_name[k], -gap[k]);
+        note(t, BURIED, "%.40s, which ground.contacts leaves out, begins %.3g m below the ground",
+             scene->contact_name[k], -gap[k]);
         return;
     }
 }
 
 /* Impacts that keep the energy, by a method that does not. */
-static void look_at_impacts(const stance_case *c, const stance_method *method, uint64_t index,
-                            struct troubles *t)
+static void look_at_impacts(const stance_case *c, const stance_method *method, struct troubles *t)
 {
     const bool loses =
         strcmp(method->name, "implicit") == 0 || strcmp(method->name, "midpoint") == 0;
-    if (c->restitution >= ELASTIC && loses && first_of(t, LOSSY, index))
-        snprintf(
-            t->what[LOSSY], sizeof t->what[LOSSY],
-            "restitution %.4g with %s: what it changes the energy by, of the step's length, adds "
-            "up where impacts take hardly any (see energy_drift and energy_gain); capturing "
-            "keeps it",
-            c->restitution, method->name);
+    if (c->restitution >= ELASTIC && loses)
+        note(t, LOSSY,
+             "restitution %.4g with %s: what it changes the energy by, of the step's length, adds "
+             "up where impacts take hardly any (see energy_drift and energy_gain); capturing "
+             "keeps it",
+             c->restitution, method->name);
 }
 
-static void look_at_start(const struct plan *plan, uint64_t row, struct troubles *t)
+static void look_at(const struct plan *plan, uint64_t row, struct troubles *t)
 {
+    const stance_scene *const scene = plan->scenario->scene;
+    const struct resolved_design design = plan_design_at(plan, plan_design(plan, t->index));
+    struct scenario *const at = malloc(sizeof *at);
+    struct design_report *const r = malloc(sizeof *r);
     stance_case *const c = malloc(sizeof *c);
+    stance_message ignored;
     int method;
-    if (c && plan_resolve(plan, row, c, &method)) {
-        look_at_ground(plan->scenario->scene, c, plan_case(plan, row), t);
-        look_at_impacts(c, stance_methods()[method], plan_case(plan, row), t);
+    if (at && r) {
+        *at = *plan->scenario;
+        scenario_case_values(plan->scenario, t->index, &at->base);
+        if (scenario_law(&at->base)->designed && design_loop(r, at, &design, &ignored))
+            look_at_loop(r, t);
     }
+    if (c && plan_resolve(plan, row, c, &method)) {
+        look_at_ground(scene, c, t);
+        look_at_impacts(c, stance_methods()[method], t);
+    }
+    free(at);
+    free(r);
     free(c);
 }
 
 /* Initial angles of the first and the last case that are more than a turn. */
-static bool look_at_angles(const struct plan *plan, const char *who, FILE *out)
+static bool look_at_angles(const struct plan *plan, const char *who)
 {
     const stance_scene *const scene = plan->scenario->scene;
     stance_case *const c = malloc(sizeof *c);
@@ -195,10 +199,10 @@ static bool look_at_angles(const struct plan *plan, const char *who, FILE *out)
         for (int i = 0; i < scene->coordinates && !said; i++) {
             said = strcmp(scene->coordinate[i].unit, "rad") == 0 && fabs(c->position[i]) > 2 * M_PI;
             if (said)
-                fprintf(out,
-                        "%s: warning: %s begins at %g rad, more than a turn: is that %g "
-                        "degrees? angles are in radians\n",
-                        who, scene->coordinate[i].name, c->position[i], c->position[i]);
+                warn(who,
+                     "%s begins at %g rad, more than a turn: is that %g degrees? angles are in "
+                     "radians",
+                     scene->coordinate[i].name, c->position[i], c->position[i]);
         }
     }
     free(c);
@@ -223,7 +227,7 @@ static double missed(const struct scenario_axis *axis, size_t count)
 }
 
 /* Axes of offsets from below 0 to above it none of whose points is there. */
-static void look_at_counts(const struct scenario *s, const char *who, FILE *out)
+static void look_at_counts(const struct scenario *s, const char *who)
 {
     for (int a = 0; a < s->axes && is_map(s); a++) {
         const struct scenario_axis *axis = &s->axis[a];
@@ -235,17 +239,16 @@ static void look_at_counts(const struct scenario *s, const char *who, FILE *out)
             continue;
         while (missed(axis, better) > 1e-6 && better < 2 * axis->count)
             better++;
-        fprintf(out, "%s: warning: the %zu points of %s leave out the equilibrium, at 0; write ",
-                who, axis->count, axis->path[0]);
+        char text[80] = "whole multiples of a step as from and to";
         if (better < 2 * axis->count)
-            fprintf(out, "count: %zu\n", better);
-        else
-            fprintf(out, "whole multiples of a step as from and to\n");
+            snprintf(text, sizeof text, "count: %zu", better);
+        warn(who, "the %zu points of %s leave out the equilibrium, at 0; write %s", axis->count,
+             axis->path[0], text);
     }
 }
 
 /* Axes along whose line several paths move, which is beside the equilibrium. */
-static void look_at_lines(const struct scenario *s, const char *who, FILE *out)
+static void look_at_lines(const struct scenario *s, const char *who)
 {
     for (int a = 0; a < s->axes; a++) {
         const struct scenario_axis *axis = &s->axis[a];
@@ -259,10 +262,10 @@ static void look_at_lines(const struct scenario *s, const char *who, FILE *out)
                          at = from - axis->from / (axis->to - axis->from) * (to - from);
             if (!scenario_is_start(axis->path[k]) || fabs(at) <= 1e-6 * fabs(to - from))
                 continue;
-            fprintf(out,
-                    "%s: warning: the line of %s misses the equilibrium: it has %s = %.3g where "
-                    "that is 0, and distances begin there\n",
-                    who, axis->path[0], axis->path[k], at);
+            warn(who,
+                 "the line of %s misses the equilibrium: it has %s = %.3g where that is 0, and "
+                 "distances begin there",
+                 axis->path[0], axis->path[k], at);
             break;
         }
     }
@@ -277,7 +280,7 @@ static bool turns(const stance_mechanism *m, int b)
 }
 
 /* Bodies of a mass whose inertia was not given: that of a point. */
-static void look_at_inertia(const struct scenario *s, const char *who, FILE *out)
+static void look_at_inertia(const struct scenario *s, const char *who)
 {
     const stance_mechanism *const m = s->scene->mechanism;
     const char *point[STANCE_MAX_BODIES];
@@ -293,11 +296,9 @@ static void look_at_inertia(const struct scenario *s, const char *who, FILE *out
             point[count++] = m->body[b].name;
     }
     if (count > 0)
-        fprintf(
-            out,
-            "%s: warning: %s: no inertia is given, which makes %s; if meant so, write inertia: 0\n",
-            who, word_list(list, sizeof list, point, count),
-            count > 1 ? "point masses of them" : "a point mass of it");
+        warn(who, "%s: no inertia is given, which makes %s; if meant so, write inertia: 0",
+             word_list(list, sizeof list, point, count),
+             count > 1 ? "point masses of them" : "a point mass of it");
 }
 
 /* Whether what touches the ground at the start carries the robot there on a slope that is steeper
@@ -321,7 +322,7 @@ static bool carried(const struct plan *plan, const stance_case *c, double more)
 }
 
 /* A first start at rest whose centre of mass is exactly above the edge of what it stands on. */
-static void look_at_edge(const struct plan *plan, const char *who, FILE *out)
+static void look_at_edge(const struct plan *plan, const char *who)
 {
     const stance_scene *const scene = plan->scenario->scene;
     const double trifle = 1e-6; /* rad */
@@ -332,44 +333,41 @@ static void look_at_edge(const struct plan *plan, const char *who, FILE *out)
     for (int i = 0; rests && i < scene->coordinates; i++)
         rests = c->velocity[i] == 0;
     if (rests && carried(plan, c, trifle) != carried(plan, c, -trifle))
-        fprintf(out,
-                "%s: warning: the robot begins with its centre of mass above the very edge of what "
-                "it stands on: what becomes of it is decided by rounding\n",
-                who);
+        warn(who, "the robot begins with its centre of mass above the very edge of what it stands "
+                  "on: what becomes of it is decided by rounding");
     free(c);
 }
 
-bool warnings_print(const struct plan *plan, const char *who, FILE *out)
+bool warnings_print(const struct plan *plan, const char *who)
 {
     const uint64_t tried = plan->rows < TRIED ? plan->rows : TRIED;
-    struct troubles t = {{0}, {0}, {""}};
+    struct troubles t = {.index = 0};
+    bool any = false;
     for (uint64_t k = 0; k < tried; k++) {
         const uint64_t row =
             tried < 2 ? 0 : (uint64_t)((double)(plan->rows - 1) * (double)k / (double)(tried - 1));
-        const uint64_t index = plan_case(plan, row);
-        if (plan->design_status[plan_design(plan, index)] != STANCE_DONE)
-            continue;
-        look_at(plan, index, &t);
-        look_at_start(plan, row, &t);
+        t.index = plan_case(plan, row);
+        if (plan->design_status[plan_design(plan, t.index)] == STANCE_DONE)
+            look_at(plan, row, &t);
     }
-    bool any = false;
     for (int k = 0; k < TROUBLES; k++) {
+        char some[120] = "";
         if (t.count[k] == 0)
             continue;
         any = true;
-        fprintf(out, "%s: warning: %s", who, t.what[k]);
         if (tried > 1 && t.count[k] < tried)
-            fprintf(out, " (case %" PRIu64 "; so it is in %zu of %" PRIu64 " cases%s)", t.first[k],
-                    t.count[k], tried, tried < plan->rows ? ", evenly spread" : "");
-        fputc('\n', out);
+            snprintf(some, sizeof some,
+                     " (case %" PRIu64 "; so it is in %zu of %" PRIu64 " cases%s)", t.first[k],
+                     t.count[k], tried, tried < plan->rows ? ", evenly spread" : "");
+        warn(who, "%s%s", t.what[k], some);
     }
-    look_at_inertia(plan->scenario, who, out);
-    look_at_edge(plan, who, out);
+    look_at_inertia(plan->scenario, who);
+    look_at_edge(plan, who);
     if (!plan->single) {
-        look_at_counts(plan->scenario, who, out);
-        look_at_lines(plan->scenario, who, out);
+        look_at_counts(plan->scenario, who);
+        look_at_lines(plan->scenario, who);
     }
-    return look_at_angles(plan, who, out) || any;
+    return look_at_angles(plan, who) || any;
 }
 
 /* ---- ranges ------------------------------------------------------------------------------- */
@@ -384,7 +382,7 @@ static bool moves_starts(const struct scenario *s)
 }
 
 void warnings_of_ends(const struct scenario *s, const uint64_t *outcome, uint64_t cases, bool tried,
-                      const char *who, FILE *out)
+                      const char *who)
 {
     const bool held = cases > 0 && outcome[STANCE_STABILISED] == cases && moves_starts(s),
                lost = cases > 1 && outcome[STANCE_FELL] == cases && s->base.settle &&
@@ -393,15 +391,14 @@ void warnings_of_ends(const struct scenario *s, const uint64_t *outcome, uint64_
     snprintf(all, sizeof all, tried ? "%" PRIu64 " of %" PRIu64 " cases tried: all" : "all cases",
              cases, s->cases);
     if (held)
-        fprintf(out,
-                "%s: warning: %s are stabilised: the ranges end within the domain; stance ranges "
-                "%.300s finds how far it goes\n",
-                who, all, s->file);
+        warn(who,
+             "%s are stabilised: the ranges end within the domain; stance ranges %.300s finds how "
+             "far it goes",
+             all, s->file);
     else if (lost)
-        fprintf(out,
-                "%s: warning: %s fell: the ranges do not meet a domain; stance ranges %.300s finds "
-                "where one is\n",
-                who, all, s->file);
+        warn(who,
+             "%s fell: the ranges do not meet a domain; stance ranges %.300s finds where one is",
+             all, s->file);
 }
 
 /* The point of an axis nearest to the equilibrium; of others than ranges of offsets the middle. */
@@ -430,7 +427,7 @@ static uint64_t lattice_case(const struct scenario *s, uint64_t k, uint64_t *cas
 }
 
 /* A lone case that is over where it begins: taken one step, not more. */
-static void look_at_beginning(const struct plan *plan, const char *who, FILE *out)
+static void look_at_beginning(const struct plan *plan, const char *who)
 {
     const stance_scene *const scene = plan->scenario->scene;
     const char *word[STANCE_MAX_WORDS];
@@ -445,13 +442,13 @@ static void look_at_beginning(const struct plan *plan, const char *who, FILE *ou
             kernel->run(c, &result, 1);
         if (kernel && result.status == STANCE_DONE && result.outcome == STANCE_FELL &&
             result.steps == 0)
-            fprintf(out, "%s: warning: the robot has fallen where it begins, by its %s\n", who,
-                    result.fall_cause < words ? word[result.fall_cause] : "posture");
+            warn(who, "the robot has fallen where it begins, by its %s",
+                 result.fall_cause < words ? word[result.fall_cause] : "posture");
     }
     free(c);
 }
 
-void warnings_try(const struct plan *plan, const char *who, FILE *out)
+void warnings_try(const struct plan *plan, const char *who)
 {
     const struct scenario *s = plan->scenario;
     const double begin = clock_seconds();
@@ -461,7 +458,7 @@ void warnings_try(const struct plan *plan, const char *who, FILE *out)
     lattice_case(s, 0, &count);
     bool whole = c && s->axes > 0;
     if (s->axes == 0)
-        look_at_beginning(plan, who, out);
+        look_at_beginning(plan, who);
     for (uint64_t k = 0; k < count && whole; k++) {
         int method;
         uint64_t all;
@@ -477,6 +474,6 @@ void warnings_try(const struct plan *plan, const char *who, FILE *out)
             outcome[result.outcome]++;
     }
     if (whole)
-        warnings_of_ends(s, outcome, ended, ended < s->cases, who, out);
+        warnings_of_ends(s, outcome, ended, ended < s->cases, who);
     free(c);
 }

@@ -13,6 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 bool run_fail_io(struct run *run)
 {
@@ -38,32 +39,33 @@ bool run_take_options(struct run *run, const struct command *command)
     return code == COMMAND_GOES_ON;
 }
 
-bool run_share_scenario(struct run *run, bool read)
+struct scenario *run_read_scenario(struct run *run, size_t sets)
+{
+    const struct asked *const asked = &run->options.asked;
+    struct scenario *const s = scenario_new(asked->file, NULL, asked->sets.text, sets, stderr);
+    if (!s) /* the reader has printed why */
+        run->failure.code = access(asked->file, R_OK) == 0 ? EXIT_USAGE : EXIT_IO;
+    return s;
+}
+
+bool run_share_scenario(struct run *run)
 {
     const struct parallel *parallel = &run->parallel;
-    struct scenario *s = run->scenario;
-    uint64_t length = parallel->rank == 0 && read ? strlen(s->text) + 1 : 0;
-
-    run->message.text[0] = '\0';
+    uint64_t length = run->scenario ? strlen(run->scenario->text) + 1 : 0;
     parallel_broadcast(parallel, &length, sizeof length);
-    bool good = length > 0;
-    if (good) {
-        char *const text = parallel->rank == 0 ? s->text : malloc(length);
-        if (!text)
-            abort(); /* the others wait in the broadcast: MPI ends the job */
-        parallel_broadcast(parallel, text, length);
-        if (parallel->rank == 0)
-            return true;
-        good = s && scenario_read(s, run->options.asked.file, text, NULL, 0, NULL);
-        free(text);
-        if (!good)
-            complain(&run->message, "a rank cannot read the scenario that rank 0 reads");
-    }
-    if (!good) {
-        free(run->scenario);
-        run->scenario = NULL;
-    }
-    return good || (run->message.text[0] ? run_fail_io(run) : false);
+    if (length == 0)
+        return false;
+    char *const text = parallel->rank == 0 ? run->scenario->text : malloc(length);
+    if (!text)
+        abort(); /* the others wait in the broadcast: MPI ends the job */
+    parallel_broadcast(parallel, text, length);
+    if (parallel->rank == 0)
+        return true;
+    run->scenario = scenario_new(run->options.asked.file, text, NULL, 0, NULL);
+    free(text);
+    return run->scenario ||
+           run_fail(run, EXIT_IO, "stance %s: a rank cannot read the scenario that rank 0 reads",
+                    run->argv[0]);
 }
 
 struct check {
@@ -98,11 +100,11 @@ bool run_check_results(const char *file, stance_message *message)
 
 void run_warn_of_revision(const struct run *run, const char *file, const char *revision)
 {
-    if (strcmp(revision, build_revision()) != 0) {
+    if (strcmp(revision, build_revision) != 0) {
         fprintf(stderr,
                 "stance %s: warning: %s was begun by revision %s, this is %s: results may "
                 "differ\n",
-                run->argv[0], file, revision, build_revision());
+                run->argv[0], file, revision, build_revision);
     }
 }
 
@@ -221,17 +223,16 @@ int run_through(struct run *run, int argc, char **argv, const struct stage *stag
     run->argc = argc;
     run->argv = argv;
     run->start = clock_seconds();
-    run->lock.descriptor = -1;
+    run->lock.descriptor = run->old_lock.descriptor = -1;
     run->parallel = parallel_alone();
     return take_ranks(run) ? go_through(run, stages, conclude) : EXIT_USAGE;
 }
 
 void run_end(struct run *run)
 {
-    if (run->scenario)
-        scenario_free(run->scenario);
-    free(run->scenario);
+    scenario_drop(run->scenario);
     lock_release(&run->lock);
+    lock_release(&run->old_lock);
     heartbeat_end(&run->heartbeat);
     parallel_finish(&run->parallel);
 }

@@ -34,9 +34,9 @@ static int check(const struct scenario *s, void *request)
     }
     if (good) {
         snprintf(file, sizeof file, "results/%s.h5", s->name);
-        report_plan(&plan, 1, file, json, "stance check", stdout);
-        if (!warnings_print(&plan, "stance check", stderr) && !s->search.given)
-            warnings_try(&plan, "stance check", stderr);
+        report_plan(&plan, 1, file, json, "stance check");
+        if (!warnings_print(&plan, "stance check") && !s->search.given)
+            warnings_try(&plan, "stance check");
     } else {
         code = plan_error_print(s, &error);
     }

@@ -39,20 +39,18 @@ static void read_origin(const char *file, struct state *state)
 {
     struct store_origin origin;
     stance_message ignored;
-    struct scenario *s = calloc(1, sizeof *s);
 
-    if (s && store_read_origin(file, &origin, &ignored)) {
+    if (store_read_origin(file, &origin, &ignored)) {
         if (origin.shard.count > 0 && origin.shard.count <= state->counts.cases) {
             state->shard = shard_of(&origin.shard, state->counts.cases);
             state->counts.cases = shard_rows(&state->shard);
         }
-        if (count_pending(state) > 0 && scenario_read(s, file, origin.scenario, NULL, 0, NULL)) {
-            state->refined = s->refine.given;
-            scenario_free(s);
-        }
+        struct scenario *const s =
+            count_pending(state) > 0 ? scenario_new(file, origin.scenario, NULL, 0, NULL) : NULL;
+        state->refined = s && s->refine.given;
+        scenario_drop(s);
         store_origin_free(&origin);
     }
-    free(s);
 }
 
 static bool read_state(const char *file, struct state *state, stance_message *message)

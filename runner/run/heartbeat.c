@@ -136,24 +136,19 @@ void heartbeat_guard(struct heartbeat *heartbeat, const char *file)
     }
 }
 
-static bool has_file(const struct heartbeat *heartbeat, stance_message *message)
-{
-    struct stat information;
-    if (!heartbeat->file[0] ||
-        (stat(heartbeat->file, &information) == 0 && information.st_dev == heartbeat->device &&
-         information.st_ino == heartbeat->inode))
-        return true;
-    return complain(message, "%.150s: was removed, moved or replaced while it was written",
-                    heartbeat->file);
-}
-
 bool heartbeat_beat(struct heartbeat *heartbeat, double now, uint64_t finished, uint64_t computed,
                     int round, stance_message *message)
 {
     if (now < heartbeat->due)
         return true;
+    struct stat found;
     heartbeat->due = now + HEARTBEAT_INTERVAL;
-    if (!has_file(heartbeat, message) || !lock_keep(heartbeat->lock, message))
+    if (heartbeat->file[0] &&
+        (stat(heartbeat->file, &found) != 0 || found.st_dev != heartbeat->device ||
+         found.st_ino != heartbeat->inode))
+        return complain(message, "%.150s: was removed, moved or replaced while it was written",
+                        heartbeat->file);
+    if (!lock_keep(heartbeat->lock, message))
         return false;
     heartbeat->kept = finished - computed;
     heartbeat->sample[heartbeat->samples++ % HEARTBEAT_SAMPLES] =

@@ -63,16 +63,6 @@ static bool run_round(struct refinement *refinement, bool *complete, bool *stopp
 
 /* ---- what is inferred --------------------------------------------------------------------- */
 
-static void infer(struct store_block *block, size_t slot, int label)
-{
-    stance_result result;
-    stance_result_clear(&result);
-    result.status = STANCE_DONE;
-    result.outcome = label - 1;
-    result.evidence = STANCE_INFERRED;
-    store_put(block, slot, &result);
-}
-
 /* Whether the file holds all of these rows already, as a resumed run may find; what is damaged is
  * counted. */
 static bool are_stored(struct refinement *refinement, const struct rows *list, bool *stored,
@@ -106,7 +96,12 @@ static bool write_inferred(struct refinement *refinement, stance_message *messag
 
     for (uint64_t row = rows / ranks * rank + rows % ranks * rank / ranks; row < end; row++) {
         if (refine_inferred(refinement->refine, row)) {
-            infer(refinement->block, (size_t)list.count, refine_label(refinement->refine, row));
+            stance_result result;
+            stance_result_clear(&result);
+            result.status = STANCE_DONE;
+            result.outcome = refine_label(refinement->refine, row) - 1;
+            result.evidence = STANCE_INFERRED;
+            store_put(refinement->block, (size_t)list.count, &result);
             refinement->row[list.count++] = row;
         }
         if (list.count == 0 || (list.count < INFER_ROWS && row + 1 < end))
@@ -121,7 +116,7 @@ static bool write_inferred(struct refinement *refinement, stance_message *messag
             const int label = refine_label(refinement->refine, list.row[k]);
             work_tally(work, STANCE_DONE, (stance_outcome)(label - 1));
         }
-        work->inferred += list.count;
+        work->sums.inferred += list.count;
         list.count = 0;
     }
     return true;
@@ -146,6 +141,6 @@ bool refinement_run(struct work *work, stance_message *message)
     refine_free(refinement.refine);
     free(refinement.row);
     free(refinement.label);
-    store_block_free(refinement.block);
+    free(refinement.block);
     return good;
 }

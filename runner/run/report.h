@@ -4,11 +4,8 @@
 
 #include "runner/plan/plan.h"
 
-#include <stdio.h>
-
 /* Needs the designs. `file`: where the results would go. What is very much is said on standard
  * error, by `who`. */
-void report_plan(const struct plan *plan, int ranks, const char *file, bool json, const char *who,
-                 FILE *out);
+void report_plan(const struct plan *plan, int ranks, const char *file, bool json, const char *who);
 
 #endif

@@ -33,42 +33,22 @@ static void fail_scenario(struct run *run, const struct plan_error *error)
 
 /* ---- the scenario ------------------------------------------------------------------------- */
 
-/* From the file, with what --set changes; --extend changes the count of a sample that there is. */
-static bool read_scenario(struct run *run)
-{
-    const struct options *o = &run->options;
-    struct scenario *s = run->scenario;
-    const struct option_texts *sets = &o->asked.sets;
-
-    if (o->extend_count > 0) {
-        if (!scenario_read(s, o->asked.file, NULL, sets->text, sets->count - 1, stderr))
-            return false;
-        const bool good = run_extend_check(run);
-        scenario_free(s);
-        if (!good)
-            return false;
-    }
-    return scenario_read(s, o->asked.file, NULL, sets->text, sets->count, stderr);
-}
-
-/* Rank 0 reads the file; the others read the text that it resolved to. */
+/* Rank 0 reads the file; the others read the text that it resolved to. --extend changes the count
+ * of a sample that there is. */
 static void stage_scenario(struct run *run)
 {
-    struct options *o = &run->options;
-    bool read = false;
-
-    run->scenario = calloc(1, sizeof *run->scenario);
-    if (run->parallel.rank == 0 && run->scenario) {
-        read = read_scenario(run);
-        if (!read && run->failure.code == EXIT_DONE) /* the reader has printed why */
-            run->failure.code = access(o->asked.file, R_OK) == 0 ? EXIT_USAGE : EXIT_IO;
+    const struct options *o = &run->options;
+    const size_t sets = o->asked.sets.count;
+    if (run->parallel.rank == 0) {
+        struct scenario *const own = o->extend_count > 0 ? run_read_scenario(run, sets - 1) : NULL;
+        if (o->extend_count == 0 || (own && run_extend_check(run, own)))
+            run->scenario = run_read_scenario(run, sets);
+        scenario_drop(own);
     }
-    run_share_scenario(run, read);
-    if (run->scenario && o->single && o->single_case >= run->scenario->cases) {
+    if (run_share_scenario(run) && o->single && o->single_case >= run->scenario->cases)
         run_fail(run, EXIT_USAGE,
                  "stance run: --only %" PRIu64 ": the scenario's cases are 0 ... %" PRIu64,
                  o->single_case, run->scenario->cases - 1);
-    }
 }
 
 /* ---- the file ----------------------------------------------------------------------------- */
@@ -124,7 +104,7 @@ bool run_same_scenario(struct run *run, const char *file, const char *old)
 /* A file keeps to the shard that it was made for, or to all cases. */
 static bool same_shard(struct run *run)
 {
-    const struct shard *own = &run->origin.shard, *asked = &run->options.shard;
+    const struct shard *own = &run->old.origin.shard, *asked = &run->options.shard;
     char text[SHARD_TEXT];
     if (own->number == asked->number && own->count == asked->count)
         return true;
@@ -140,33 +120,27 @@ static bool same_shard(struct run *run)
 }
 
 /* An existing file that is to be gone on with. */
-static void look_into_file(struct run *run)
+static bool look_into_file(struct run *run)
 {
+    struct scenario *const s = run->scenario;
+    const struct store_origin *const origin = &run->old.origin;
     run->failure.code = run_check_file(run, run_check_results, run->file);
     if (run->failure.code != EXIT_DONE)
-        return; /* it has been said why */
-    if (euidaccess(run->file, W_OK) != 0) {
-        run_fail(run, EXIT_IO, "stance run: %.150s: cannot write there: %s", run->file,
-                 strerror(errno));
-        return;
-    }
-    if (!store_read_origin(run->file, &run->origin, &run->message)) {
-        run_fail_io(run);
-        return;
-    }
-    if (!same_shard(run) || !run_same_scenario(run, run->file, run->origin.scenario))
-        return;
-    if ((run->succeed &&
-         !changed_scenario_check_sweep(run->file, &run->origin, run->scenario, &run->message)) ||
-        !store_same_points(run->file, &run->origin, run->scenario, &run->message)) {
-        run_fail(run, EXIT_USAGE, "stance run: %s", run->message.text);
-        return;
-    }
+        return false; /* it has been said why */
+    if (euidaccess(run->file, W_OK) != 0)
+        return run_fail(run, EXIT_IO, "stance run: %.150s: cannot write there: %s", run->file,
+                        strerror(errno));
+    run->old.file = run->file;
+    if (!store_read_origin(run->file, &run->old.origin, &run->message))
+        return run_fail_io(run);
+    if (!same_shard(run) || !run_same_scenario(run, run->file, origin->scenario))
+        return false;
+    if ((run->succeed && !changed_scenario_check_sweep(&run->old, s, &run->message)) ||
+        !store_same_points(run->file, origin, s, &run->message))
+        return run_fail(run, EXIT_USAGE, "stance run: %s", run->message.text);
     if (!run->succeed)
-        run_warn_of_revision(run, run->file, run->origin.revision);
-    for (int a = 0; a < run->scenario->axes; a++)
-        if (!store_read_axis(run->file, &run->scenario->axis[a], &run->message))
-            run_fail_io(run);
+        run_warn_of_revision(run, run->file, origin->revision);
+    return store_read_axes(run->file, s->axis, s->axes, &run->message) || run_fail_io(run);
 }
 
 /* Rank 0: where the results go, whether they may, and nobody else writes there. */
@@ -238,7 +212,7 @@ static void stage_plan(struct run *run)
     else if (!plan_make(&run->plan, run->scenario, o->single, o->single_case, o->trace, &error) ||
              (o->shard.count > 0 && !plan_cut(&run->plan, &o->shard, &error)))
         fail_scenario(run, &error);
-    run->plan.ancestors = run->origin.ancestors;
+    run->plan.ancestors = run->old.origin.ancestors;
     parallel_broadcast(&run->parallel, &run->plan.ancestors, sizeof run->plan.ancestors);
     run->plan.stop = out_of_time;
     run->plan.stop_context = run;
@@ -261,11 +235,9 @@ static bool take_designs(struct run *run)
 
     if (run->options.extend_count == 0 || run->options.dry_run)
         return true;
-    if (run->extension)
-        good = run_extend_designs(run, &run->message);
+    if (run->parallel.rank == 0)
+        good = run_extend_designs(run);
     parallel_broadcast(&run->parallel, &good, sizeof good);
-    if (!good && run->parallel.rank == 0)
-        run_fail_io(run);
     parallel_broadcast(&run->parallel, plan->design,
                        plan->designs * plan->design_size * sizeof *plan->design);
     parallel_broadcast(&run->parallel, plan->design_status, plan->designs);
@@ -292,9 +264,9 @@ static void stage_designs(struct run *run)
     if (!good)
         fail_scenario(run, &error);
     else if (run->options.dry_run && run->parallel.rank == 0)
-        report_plan(&run->plan, run->parallel.size, run->file, false, "stance run", stdout);
+        report_plan(&run->plan, run->parallel.size, run->file, false, "stance run");
     if (good && run->parallel.rank == 0)
-        run->warned = warnings_print(&run->plan, "stance run", stderr);
+        run->warned = warnings_print(&run->plan, "stance run");
     run->over = run->options.dry_run;
 }
 
@@ -307,8 +279,9 @@ static void stage_kernels(struct run *run)
         return;
     if (run->resume && !run->store) /* later: they are tried on cases, whose designs are there */
         return;
+    const struct kernels_choice choice = {.quiet = run->options.quiet};
     const enum exit_code code =
-        kernels_take(&run->kernels, &run->plan, NULL, &run->parallel, run->options.quiet, &message);
+        kernels_take(&run->kernels, &run->plan, &choice, &run->parallel, &message);
     if (code == EXIT_INTERRUPTED)
         stop_early(run, run->resume ? "stopped while kernels were compiled"
                                     : "stopped while kernels were compiled: nothing is stored");
@@ -344,18 +317,19 @@ static char *collect_hosts(const struct parallel *parallel)
 /* The file goes on with a scenario that is not its own. */
 static void succeed(struct run *run, const char *hosts)
 {
-    struct changed_scenario_counts counts;
-    if (changed_scenario_make(run->file, &run->origin, &run->plan, run->parallel.size, hosts,
-                              &counts, &run->message)) {
+    struct store_copied copied;
+    bool refused;
+    if (changed_scenario_make(&run->old, &run->plan, run->parallel.size, hosts, &copied, &refused,
+                              &run->message)) {
         fprintf(stderr,
                 "stance run: %.200s goes on with another scenario; %" PRIu64 " of its %" PRIu64
                 " cases are done and stay as they are",
-                run->file, counts.kept, run->plan.rows);
-        if (counts.damaged > 0)
-            fprintf(stderr, ", %" PRIu64 " did not verify", counts.damaged);
+                run->file, copied.copied, run->plan.rows);
+        if (copied.damaged > 0)
+            fprintf(stderr, ", %" PRIu64 " did not verify", copied.damaged);
         fputc('\n', stderr);
     } else if (run->message.text[0]) {
-        run_fail(run, counts.refused ? EXIT_USAGE : EXIT_IO, "stance run: %s", run->message.text);
+        run_fail(run, refused ? EXIT_USAGE : EXIT_IO, "stance run: %s", run->message.text);
     } else {
         stop_early(run, "stopped before the file could go on with another scenario");
     }
@@ -372,7 +346,8 @@ static void stage_create(struct run *run)
         if (run->replace && unlink(run->file) != 0) {
             run_fail(run, EXIT_IO, "stance run: cannot replace %.150s: %s", run->file,
                      strerror(errno));
-        } else if (!store_create(run->file, &run->plan, run->parallel.size, hosts, &run->message)) {
+        } else if (!store_create(run->file, &run->plan, NULL, run->parallel.size, hosts,
+                                 &run->message)) {
             run_fail_io(run);
         }
     }
@@ -392,12 +367,13 @@ static void stage_open(struct run *run)
         store_set_spans(run->store, one_host);
 }
 
-/* Rows of the old file. */
+/* Rows of the old file, which is let go. */
 static void stage_extend(struct run *run)
 {
-    if (run->extension && !run_extend_copy(run, &run->message))
-        run_fail_io(run);
-    run_extend_close(run);
+    if (run->old.store && run->options.extend_count > 0)
+        run_extend_copy(run);
+    adopt_close(&run->old);
+    lock_release(&run->old_lock);
 }
 
 static void stage_compute(struct run *run)
@@ -423,7 +399,7 @@ static void stage_compute(struct run *run)
 /* Rank 0 stores how long each rank computed. */
 static void stage_timing(struct run *run)
 {
-    const double computed = (double)run->work.computed;
+    const double computed = (double)run->work.sums.computed;
     double *seconds = parallel_gather(&run->parallel, &run->work.seconds, sizeof *seconds);
     double *cases = parallel_gather(&run->parallel, &computed, sizeof computed);
     if (run->parallel.rank == 0 &&
@@ -475,8 +451,8 @@ int run_run(int argc, char **argv)
         store_abandon(run->store);
         kernels_give_back(&run->kernels);
         plan_free(&run->plan);
-        store_origin_free(&run->origin);
-        run_extend_close(run);
+        adopt_close(&run->old);
+        store_origin_free(&run->old.origin);
         run_end(run);
     }
     free(run);

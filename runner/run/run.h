@@ -11,6 +11,7 @@
 #include "runner/base/units.h"
 #include "runner/plan/asked.h"
 #include "runner/plan/kernels.h"
+#include "runner/store/adopt.h"
 #include "runner/store/lock.h"
 
 struct options {
@@ -40,14 +41,14 @@ struct run {
     struct options options;
     struct scenario *scenario;
     char file[1024];
-    bool over;                  /* all is done: help, --dry-run */
-    bool resume, replace;       /* the file exists and is gone on with, or replaced */
-    bool warned;                /* something was wrong with the designs; on rank 0 */
-    bool succeed;               /* ... gone on with by this scenario, which is not its own */
-    struct store_origin origin; /* of a file that is gone on with; on rank 0 */
-    struct lock lock;
-    struct extension *extension; /* --extend, on rank 0 until its rows have been copied */
-    struct heartbeat heartbeat;  /* on rank 0, once the lock is taken */
+    bool over;            /* all is done: help, --dry-run */
+    bool resume, replace; /* the file exists and is gone on with, or replaced */
+    bool warned;          /* something was wrong with the designs; on rank 0 */
+    bool succeed;         /* ... gone on with by this scenario, which is not its own */
+    struct adopted old;   /* on rank 0: the file that is gone on with, or --extend's */
+    char old_file[1024];  /* ... its name */
+    struct lock lock, old_lock;
+    struct heartbeat heartbeat; /* on rank 0, once the lock is taken */
     struct plan plan;
     struct kernels kernels;
     struct store *store;
@@ -89,22 +90,23 @@ int run_through(struct run *run, int argc, char **argv, const struct stage *stag
 void run_end(struct run *run);
 /* Collective: command_begin(). Whether the command goes on. */
 bool run_take_options(struct run *run, const struct command *command);
-/* Collective: rank 0's scenario, which it has read (`read`), is read from its text by the others.
- * false: it has not, or this rank cannot, and fails; then there is none. */
-bool run_share_scenario(struct run *run, bool read);
+/* The scenario that is asked for, with the first of its --set; NULL: fails. */
+struct scenario *run_read_scenario(struct run *run, size_t sets);
+/* Collective: rank 0's scenario is read from its text by the others. false: it has none, or this
+ * rank cannot, and fails; then there is none. */
+bool run_share_scenario(struct run *run);
 /* Rank 0: the file may be written, --force replaces one that exists, --resume goes on with it, and
  * nobody else writes it: the lock is taken, signs of life are given. Without -o its directory is
  * `results`, which is made. */
 bool run_claim_file(struct run *run, bool *exists);
 
-/* run_extend.c. Whether the scenario can be extended; fails where not. */
-bool run_extend_check(struct run *run);
-/* On rank 0: locks the old file and takes over its axes; fails where that cannot be. */
-void run_extend_open(struct run *run);
-/* Its designs into those of the plan; its rows into the open file. false: *message says why. */
-bool run_extend_designs(struct run *run, stance_message *message);
-bool run_extend_copy(struct run *run, stance_message *message);
-void run_extend_close(struct run *run);
+/* run_extend.c. Whether a scenario can be extended; fails where not. */
+bool run_extend_check(struct run *run, const struct scenario *s);
+/* On rank 0: locks the old file and takes over its axes; then its designs into those of the plan;
+ * its rows into the open file. These fail where that cannot be. */
+bool run_extend_open(struct run *run);
+bool run_extend_designs(struct run *run);
+bool run_extend_copy(struct run *run);
 
 /* On rank 0: that the run stopped, and the command that goes on with it. */
 void run_say_stopped(const struct run *run, const char *what);

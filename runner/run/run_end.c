@@ -13,12 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What came out, over all ranks. */
-struct sums {
-    uint64_t outcome[STANCE_OUTCOME_COUNT], failed, finished, computed, inferred, damaged;
-};
-
-static void print_summary(const struct run *run, const struct sums *sums)
+static void print_summary(const struct run *run, const struct work_sums *sums)
 {
     double wall = clock_seconds() - run->start;
     const char *separator = ": ";
@@ -47,7 +42,7 @@ static void say_damaged(const struct run *run, uint64_t damaged)
     uint64_t mine[WORK_NAMED];
     const size_t ranks = (size_t)run->parallel.size;
     for (uint64_t k = 0; k < WORK_NAMED; k++)
-        mine[k] = k < run->work.damaged ? run->work.damaged_case[k] : UINT64_MAX;
+        mine[k] = ~run->work.damaged_case[k];
     uint64_t *const all = parallel_gather(&run->parallel, mine, sizeof mine);
     if (all) {
         const uint64_t named = damaged < WORK_NAMED ? damaged : WORK_NAMED;
@@ -66,14 +61,8 @@ static void say_damaged(const struct run *run, uint64_t damaged)
 
 int run_conclude(struct run *run)
 {
-    const struct work *work = &run->work;
     char stopped[80];
-    struct sums sums = {.failed = work->failed,
-                        .finished = work->finished,
-                        .computed = work->computed,
-                        .inferred = work->inferred,
-                        .damaged = work->damaged};
-    memcpy(sums.outcome, work->outcome, sizeof sums.outcome);
+    struct work_sums sums = run->work.sums;
     parallel_sum(&run->parallel, (uint64_t *)&sums, sizeof sums / sizeof(uint64_t));
     const uint64_t share = plan_share(&run->plan).count;
     const bool complete = sums.finished == share;
@@ -94,8 +83,7 @@ int run_conclude(struct run *run)
                     sums.failed, sums.failed == 1 ? "" : "s", run->file);
         }
         if (complete && !run->warned && !run->plan.single)
-            warnings_of_ends(run->scenario, sums.outcome, sums.finished, false, "stance run",
-                             stderr);
+            warnings_of_ends(run->scenario, sums.outcome, sums.finished, false, "stance run");
     }
     return !complete ? EXIT_INTERRUPTED : sums.failed > 0 ? EXIT_CASES_FAILED : EXIT_DONE;
 }

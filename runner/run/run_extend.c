@@ -20,17 +20,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-struct extension {
-    char file[1024]; /* the old one */
-    struct lock lock;
-    struct scenario *scenario;
-    struct plan plan;
-    uint64_t old_points, points; /* of the sample */
-};
-
-bool run_extend_check(struct run *run)
+bool run_extend_check(struct run *run, const struct scenario *s)
 {
-    const struct scenario *s = run->scenario;
     if (s->sample.given && s->sample.design.method != DOE_LHS)
         return true;
     return run_fail(run, EXIT_USAGE, "stance run: %.300s: --extend: %s", s->file,
@@ -41,187 +32,122 @@ bool run_extend_check(struct run *run)
 
 /* ---- the old file --------------------------------------------------------------------------- */
 
-static bool is_same_file(const char *a, const char *b)
-{
-    struct stat first, second;
-    return strcmp(a, b) == 0 || (stat(a, &first) == 0 && stat(b, &second) == 0 &&
-                                 first.st_dev == second.st_dev && first.st_ino == second.st_ino);
-}
-
 /* The scenario of the old file, as it is and with the new count. */
-static bool read_old_scenario(struct run *run, struct extension *e, const char *text)
+static bool read_old_scenario(struct run *run)
 {
-    const char *set = run->options.extend_set;
-    struct scenario *larger = calloc(1, sizeof *larger);
-    bool good = false;
-
-    e->scenario = calloc(1, sizeof *e->scenario);
-    if (!larger || !e->scenario) {
-        run_fail(run, EXIT_IO, "stance run: not enough memory");
-    } else if (!scenario_read(larger, run->scenario->file, text, &set, 1, NULL)) {
-        /* Most likely another scenario, or one of another version. */
-        run_same_scenario(run, e->file, text);
-    } else {
-        good = run_same_scenario(run, e->file, larger->text);
-        good = good && scenario_read(e->scenario, run->scenario->file, text, NULL, 0, NULL);
-        scenario_free(larger);
-    }
-    if (!good) {
-        free(e->scenario);
-        e->scenario = NULL;
-    }
-    free(larger);
+    const char *set = run->options.extend_set, *text = run->old.origin.scenario;
+    struct scenario *larger = scenario_new(run->scenario->file, text, &set, 1, NULL);
+    /* None: most likely another scenario, or one of another version. */
+    const bool same = run_same_scenario(run, run->old.file, larger ? larger->text : text);
+    const bool good =
+        same && larger && (adopt_scenario(&run->old, &run->message) || run_fail_io(run));
+    scenario_drop(larger);
     return good;
 }
 
-/* Values of the old file's axes into the new scenario, point by point of the sample. */
-static bool take_axes(struct run *run, struct extension *e, stance_message *message)
+static bool look_into_old(struct run *run)
 {
-    for (int a = 0; a < e->scenario->axes; a++) {
-        struct scenario_axis *old = &e->scenario->axis[a], *new = &run->scenario->axis[a];
-        if (!store_read_axis(e->file, old, message))
-            return false;
+    const char *const file = run->old.file;
+    const uint64_t count = run->options.extend_count;
+    char directory[sizeof run->old_file];
+
+    /* Nobody writes the file meanwhile: by a lock, or because nobody here could. */
+    store_directory(file, directory, sizeof directory);
+    if (access(directory, W_OK) == 0 && !lock_take_through(&run->old_lock, file, &run->message))
+        return run_fail_io(run);
+    run->failure.code = run_check_file(run, run_check_results, file);
+    if (run->failure.code != EXIT_DONE)
+        return false; /* it has been said why */
+    if (!store_read_origin(file, &run->old.origin, &run->message))
+        return run_fail_io(run);
+    if (!read_old_scenario(run))
+        return false;
+    if (run->old.scenario->sample.design.count >= count)
+        return run_fail(run, EXIT_USAGE,
+                        "stance run: --extend %" PRIu64 ": %.300s has sweep.sample.count %" PRIu64
+                        " already",
+                        count, file, run->old.scenario->sample.design.count);
+    if (run->old.origin.ancestors > 0) /* cases of other scenarios are none of the new file's */
+        return run_fail(run, EXIT_USAGE,
+                        "stance run: --extend: %.300s holds cases of several scenarios: begin a "
+                        "new file",
+                        file);
+    run_warn_of_revision(run, file, run->old.origin.revision);
+    if (!store_same_points(file, &run->old.origin, run->scenario, &run->message))
+        return run_fail(run, EXIT_USAGE, "stance run: %s", run->message.text);
+    for (int a = 0; a < run->scenario->axes; a++) { /* point by point of the sample */
+        const struct scenario_axis *const old = &run->old.scenario->axis[a];
         if (old->value)
-            memcpy(new->value, old->value, old->count * (size_t)old->paths * sizeof *old->value);
+            memcpy(run->scenario->axis[a].value, old->value,
+                   old->count * (size_t)old->paths * sizeof *old->value);
     }
     return true;
 }
 
-static bool look_into_old(struct run *run, struct extension *e)
+bool run_extend_open(struct run *run)
 {
-    struct store_origin origin;
-    char directory[sizeof e->file];
+    const char *const from = run->options.from;
+    const size_t size = sizeof run->old_file;
+    struct stat first, second;
 
-    /* Nobody writes the file meanwhile: by a lock, or because nobody here could. */
-    store_directory(e->file, directory, sizeof directory);
-    if (access(directory, W_OK) == 0 && !lock_take_through(&e->lock, e->file, &run->message))
-        return run_fail_io(run);
-    run->failure.code = run_check_file(run, run_check_results, e->file);
-    if (run->failure.code != EXIT_DONE)
-        return false; /* it has been said why */
-    if (!store_read_origin(e->file, &origin, &run->message))
-        return run_fail_io(run);
-    bool good = read_old_scenario(run, e, origin.scenario);
-    if (good && e->scenario->sample.design.count >= run->options.extend_count)
-        good = run_fail(run, EXIT_USAGE,
-                        "stance run: --extend %" PRIu64 ": %.300s has sweep.sample.count %" PRIu64
-                        " already",
-                        run->options.extend_count, e->file, e->scenario->sample.design.count);
-    if (good && origin.ancestors > 0) /* cases of other scenarios are none of the new file's */
-        good = run_fail(run, EXIT_USAGE,
-                        "stance run: --extend: %.300s holds cases of several scenarios: begin a "
-                        "new file",
-                        e->file);
-    if (good)
-        run_warn_of_revision(run, e->file, origin.revision);
-    if (good && !store_same_points(e->file, &origin, run->scenario, &run->message))
-        good = run_fail(run, EXIT_USAGE, "stance run: %s", run->message.text);
-    good = good && (take_axes(run, e, &run->message) || run_fail_io(run));
-    store_origin_free(&origin);
-    return good;
-}
-
-void run_extend_open(struct run *run)
-{
-    const struct options *o = &run->options;
-    struct extension *e = run->extension = calloc(1, sizeof *e);
-
-    if (!e) {
-        run_fail(run, EXIT_IO, "stance run: not enough memory");
-        return;
-    }
-    e->lock.descriptor = -1;
-    if (o->from)
-        snprintf(e->file, sizeof e->file, "%s", o->from);
+    run->old.file = run->old_file;
+    if (from)
+        snprintf(run->old_file, size, "%s", from);
     else
-        snprintf(e->file, sizeof e->file, "results/%s.h5", run->scenario->name);
-    if (o->from && strlen(o->from) >= sizeof e->file - 8) {
-        run_fail(run, EXIT_IO, "stance run: the name of the results file is too long");
-    } else if (is_same_file(e->file, run->file)) {
-        run_fail(run, EXIT_USAGE,
-                 "stance run: --extend makes a new file: -o and --from must differ");
-    } else if (look_into_old(run, e)) {
-        e->old_points = doe_points(&e->scenario->sample.design);
-        e->points = doe_points(&run->scenario->sample.design);
-    }
-}
-
-void run_extend_close(struct run *run)
-{
-    struct extension *e = run->extension;
-    if (e) {
-        plan_free(&e->plan);
-        if (e->scenario)
-            scenario_free(e->scenario);
-        free(e->scenario);
-        lock_release(&e->lock);
-        free(e);
-    }
-    run->extension = NULL;
+        snprintf(run->old_file, size, "results/%s.h5", run->scenario->name);
+    if (from && strlen(from) >= size - 8)
+        return run_fail(run, EXIT_IO, "stance run: the name of the results file is too long");
+    if (strcmp(run->old_file, run->file) == 0 ||
+        (stat(run->old_file, &first) == 0 && stat(run->file, &second) == 0 &&
+         first.st_dev == second.st_dev && first.st_ino == second.st_ino))
+        return run_fail(run, EXIT_USAGE,
+                        "stance run: --extend makes a new file: -o and --from must differ");
+    return look_into_old(run);
 }
 
 /* ---- what it holds --------------------------------------------------------------------------- */
 
 /* Where a case or a design of the old file is in the new one. */
-static uint64_t moved(const struct extension *e, uint64_t place)
+static uint64_t moved(const struct run *run, uint64_t place)
 {
-    return place / e->old_points * e->points + place % e->old_points;
+    const uint64_t old = doe_points(&run->old.scenario->sample.design);
+    return place / old * doe_points(&run->scenario->sample.design) + place % old;
 }
 
-bool run_extend_designs(struct run *run, stance_message *message)
+bool run_extend_designs(struct run *run)
 {
-    struct extension *e = run->extension;
-    struct plan *new = &run->plan;
-    struct plan_error error = {0};
-    struct store *store = NULL;
-    const bool sampled = e->scenario->axis[e->scenario->axes - 1].design;
-
-    if (!plan_make(&e->plan, e->scenario, false, 0, false, &error)) {
-        *message = error.message;
-        return false;
-    }
-    bool good = store_open_to_read(&store, e->file, &e->plan, message) &&
-                store_read_designs(store, &e->plan, message);
-    for (size_t d = 0; good && d < e->plan.designs; d++) {
-        const size_t to = sampled ? (size_t)moved(e, d) : d;
-        const struct resolved_design design = plan_design_at(&e->plan, d);
-        plan_design_put(new, to, &design);
-        new->design_status[to] = e->plan.design_status[d];
-    }
-    stance_message ignored;
-    return store && store_close(store, good ? message : &ignored) && good;
+    const struct scenario *const s = run->old.scenario;
+    const bool sampled = s->axis[s->axes - 1].design;
+    if (!adopt_open(&run->old, &run->message))
+        return run_fail_io(run);
+    for (size_t d = 0; d < run->old.plan.designs; d++)
+        plan_take_design(&run->plan, sampled ? (size_t)moved(run, d) : d, &run->old.plan, d);
+    return true;
 }
 
 /* Where a row goes that can be taken over with all that the new file has of it. */
 static uint64_t target_of(void *context, uint64_t row)
 {
     const struct run *run = context;
-    const struct extension *e = run->extension;
-    const struct plan *new = &run->plan;
+    const struct plan *old = &run->old.plan, *new = &run->plan;
     uint64_t place;
-    const uint64_t to = moved(e, row);
+    const uint64_t to = moved(run, row);
     if (new->stop && row % (1 << 14) == 0)
         (void)new->stop(new->stop_context); /* a sign of life; a stop comes after this */
     return !plan_recorded(new, to, &place) ||
-                   (plan_recorded(&e->plan, row, &place) && e->plan.record_rows == new->record_rows)
+                   (plan_recorded(old, row, &place) && old->record_rows == new->record_rows)
                ? to
                : STORE_NOWHERE;
 }
 
-bool run_extend_copy(struct run *run, stance_message *message)
+bool run_extend_copy(struct run *run)
 {
-    struct extension *e = run->extension;
     struct store_copied copied = {0};
-    struct store *old = NULL;
-
-    bool good = store_open_to_read(&old, e->file, &e->plan, message) &&
-                store_copy(old, run->store, target_of, run, &copied, message);
-    stance_message ignored;
-    good = old && store_close(old, good ? message : &ignored) && good;
-    if (good && copied.damaged > 0) {
+    if (!store_copy(run->old.store, run->store, target_of, run, &copied, &run->message))
+        return run_fail_io(run);
+    if (copied.damaged > 0)
         fprintf(stderr,
                 "stance run: %s: %" PRIu64 " case%s not as the checksum says: computed again\n",
-                e->file, copied.damaged, copied.damaged == 1 ? " is" : "s are");
-    }
-    return good;
+                run->old.file, copied.damaged, copied.damaged == 1 ? " is" : "s are");
+    return true;
 }

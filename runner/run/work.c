@@ -63,14 +63,13 @@ enum state { PENDING, RUNNING, ENDED, STORED };
 struct block {
     struct block *next;
     struct store_block *rows;
-    uint64_t first;  /* place in the schedule */
-    size_t count;    /* rows */
-    size_t open;     /* of these, not ended */
-    size_t cursor;   /* where the stream looks for its next case */
-    double write_at; /* when what has ended is written next */
-    int writes;      /* so far */
-    uint8_t *state;  /* [capacity] */
-    uint8_t *method; /* [capacity] */
+    uint64_t first;          /* place in the schedule */
+    size_t count;            /* rows */
+    size_t open;             /* of these, not ended */
+    size_t cursor;           /* where the stream looks for its next case */
+    double write_at;         /* when what has ended is written next */
+    int writes;              /* so far */
+    uint8_t *state, *method; /* [capacity], behind it */
 };
 
 /* A case in a lane. */
@@ -123,28 +122,27 @@ static void out_of_memory(struct job *job, const char *what)
     break_off(job);
 }
 
-static void block_free(struct block *block)
+static void free_blocks(struct block *list)
 {
-    if (block) {
-        store_block_free(block->rows);
-        free(block->state);
-        free(block->method);
+    for (struct block *block = list, *next; block; block = next) {
+        next = block->next;
+        free(block->rows);
         free(block);
     }
 }
 
 static struct block *block_make(const struct job *job)
 {
-    struct block *block = calloc(1, sizeof *block);
+    const struct store *const store = job->work->store;
+    struct block *block = calloc(1, sizeof *block + 2 * job->capacity);
     if (block) {
-        const struct store *const store = job->work->store;
         block->rows = store ? store_block_make(store, job->capacity) : NULL;
-        block->state = malloc(job->capacity);
-        block->method = malloc(job->capacity);
-        if ((store && !block->rows) || !block->state || !block->method) {
-            block_free(block);
-            return NULL;
-        }
+        block->state = (uint8_t *)(block + 1);
+        block->method = block->state + job->capacity;
+    }
+    if (block && store && !block->rows) {
+        free(block);
+        return NULL;
     }
     return block;
 }
@@ -179,11 +177,11 @@ static void task_leave(struct job *job, struct task *task)
 
 void work_tally(struct work *work, stance_status status, stance_outcome outcome)
 {
-    work->finished++;
+    work->sums.finished++;
     if (status == STANCE_FAILED)
-        work->failed++;
+        work->sums.failed++;
     else if ((int)outcome >= 0 && (int)outcome < STANCE_OUTCOME_COUNT)
-        work->outcome[outcome]++;
+        work->sums.outcome[outcome]++;
 }
 
 /* Counts the row at a place of the schedule. */
@@ -262,7 +260,7 @@ static void end_row(struct job *job, struct block *block, size_t slot, const sta
         job->work->ends(job->work->context, row_at(job, block, slot), result);
     tally(job, block->first + slot, result->status, result->outcome);
     block->state[slot] = ENDED;
-    job->work->computed++;
+    job->work->sums.computed++;
     job->ended++;
     if (--block->open == 0) {
         write_block(job, block, 1);
@@ -297,18 +295,15 @@ static bool attend(void *context);
 /* Counts a row that is marked done but does not verify; the lowest ones are named. */
 static void note_damage(struct work *work, uint64_t row)
 {
-    uint64_t index = plan_case(work->plan, row);
-    const uint64_t named = work->damaged < WORK_NAMED ? work->damaged : WORK_NAMED;
-    work->damaged++;
-    for (uint64_t k = 0; k < named; k++) {
-        if (index < work->damaged_case[k]) {
+    uint64_t key = ~plan_case(work->plan, row);
+    work->sums.damaged++;
+    for (int k = 0; k < WORK_NAMED; k++) {
+        if (key > work->damaged_case[k]) {
             const uint64_t higher = work->damaged_case[k];
-            work->damaged_case[k] = index;
-            index = higher;
+            work->damaged_case[k] = key;
+            key = higher;
         }
     }
-    if (named < WORK_NAMED)
-        work->damaged_case[named] = index;
 }
 
 bool work_verify(struct work *work, const struct rows *rows, stance_result *results, bool *whole,
@@ -402,14 +397,6 @@ static bool open_block(struct job *job)
     return true;
 }
 
-/* Whether the stream may draw: not while rows of other methods wait, but for the rest of a chunk as
- * far as memory goes. */
-static bool may_draw(const struct job *job)
-{
-    return job->pending == 0 ||
-           (job->blocks < BLOCKS_OF_METHODS && job->schedule.next < job->schedule.end);
-}
-
 /* The next pending row of the stream's method. */
 static bool find_row(struct job *job, struct block **block, size_t *slot)
 {
@@ -424,7 +411,11 @@ static bool find_row(struct job *job, struct block **block, size_t *slot)
                 }
             }
         }
-        if (!may_draw(job) || attend(job) || !open_block(job) || job->leaving)
+        /* Not while rows of other methods wait, but for the rest of a chunk as far as memory goes.
+         */
+        const bool may_draw = job->pending == 0 || (job->blocks < BLOCKS_OF_METHODS &&
+                                                    job->schedule.next < job->schedule.end);
+        if (!may_draw || attend(job) || !open_block(job) || job->leaving)
             return false;
     }
 }
@@ -613,27 +604,10 @@ static bool find_method(struct job *job)
     return false;
 }
 
-static void run_streams(struct job *job)
-{
-    const stance_feed feed = {job, next_case, case_done, attend};
-    while (find_method(job)) {
-        for (struct block *block = job->oldest; block; block = block->next)
-            block->cursor = 0;
-        job->at = job->oldest;
-        job->kernel[job->method]->stream(&feed); /* the plan saw to it that there is a kernel */
-    }
-}
-
 static void job_free(struct job *job)
 {
-    for (struct block *block = job->oldest, *next; block; block = next) {
-        next = block->next;
-        block_free(block);
-    }
-    for (struct block *block = job->idle, *next; block; block = next) {
-        next = block->next;
-        block_free(block);
-    }
+    free_blocks(job->oldest);
+    free_blocks(job->idle);
     for (struct task *task = job->tasks, *next; task; task = next) {
         next = task->next;
         crash_leave(task->hand);
@@ -662,7 +636,13 @@ bool work_run(struct work *work, const struct rows *only, uint8_t *label, stance
     for (int m = 0; m < MAX_METHODS && stance_methods()[m]; m++)
         job.kernel[m] = instruction_set_kernel(work->plan->scenario->scene, stance_methods()[m]);
     deadline_rescue(write_open, &job);
-    run_streams(&job);
+    const stance_feed feed = {&job, next_case, case_done, attend};
+    while (find_method(&job)) {
+        for (struct block *block = job.oldest; block; block = block->next)
+            block->cursor = 0;
+        job.at = job.oldest;
+        job.kernel[job.method]->stream(&feed); /* the plan saw to it that there is a kernel */
+    }
     deadline_rescue(NULL, NULL);
     write_open(&job);
     if (job.leaving)

@@ -37,18 +37,18 @@ struct work {
     struct progress progress; /* all 0: not begun */
 
     /* What came out, for this rank's cases. */
-    uint64_t finished; /* cases with an answer in the file, kept ones included */
-    uint64_t computed; /* of these, now */
-    uint64_t inferred; /* of these, now and without simulation */
-    uint64_t outcome[STANCE_OUTCOME_COUNT], failed;
+    struct work_sums {
+        uint64_t outcome[STANCE_OUTCOME_COUNT], failed;
+        uint64_t finished; /* cases with an answer in the file, kept ones included */
+        uint64_t computed; /* of these, now */
+        uint64_t inferred; /* of these, now and without simulation */
+        uint64_t damaged;  /* marked as done, but they do not verify: they are computed again */
+    } sums;
+    uint64_t damaged_case[WORK_NAMED]; /* the lowest of these, each as ~index; 0: none */
     double seconds;
     int64_t beats; /* this rank's sign of life */
     uint64_t before,
         kept_before; /* all ranks' cases of earlier rounds, on rank 0; of these, kept */
-
-    /* Cases that the file marks as done but whose answers do not verify, and the lowest of them:
-     * they are computed again. */
-    uint64_t damaged, damaged_case[WORK_NAMED];
 };
 
 /* From now on SIGINT, SIGTERM and SIGUSR1 ask for a stop: cases in hand are given up, what has

@@ -599,6 +599,25 @@ void scenario_free(struct scenario *s)
     memset(s, 0, sizeof *s);
 }
 
+struct scenario *scenario_new(const char *file, const char *text, const char *const *sets,
+                              size_t set_count, FILE *errors)
+{
+    struct scenario *const s = calloc(1, sizeof *s);
+    if (s && scenario_read(s, file, text, sets, set_count, errors))
+        return s;
+    if (!s && errors)
+        fprintf(errors, "%s: out of memory\n", file);
+    free(s);
+    return NULL;
+}
+
+void scenario_drop(struct scenario *s)
+{
+    if (s)
+        scenario_free(s);
+    free(s);
+}
+
 bool scenario_same_scene(const struct scenario *a, const struct scenario *b)
 {
     return a->scene == b->scene || (a->own_scene && b->own_scene &&

@@ -218,6 +218,10 @@ struct scenario {
 bool scenario_read(struct scenario *s, const char *file, const char *text, const char *const *sets,
                    size_t set_count, FILE *errors);
 void scenario_free(struct scenario *s);
+/* One of its own, released by scenario_drop, which takes NULL, too. NULL: it cannot be read. */
+struct scenario *scenario_new(const char *file, const char *text, const char *const *sets,
+                              size_t set_count, FILE *errors);
+void scenario_drop(struct scenario *s);
 
 /* A scenario's text with `set` (PATH=VALUE) and without the keys `drop`, paths of mappings' keys;
  * what is not there need not be dropped. Freed by the caller. NULL: no memory, or no such path. */

@@ -23,20 +23,8 @@
 /* LAPACK's own version query, a Fortran routine. */
 extern void ilaver_(int *major, int *minor, int *patch);
 
-const char *build_revision(void)
-{
-    return STANCE_REVISION;
-}
-
-const char *build_compiler(void)
-{
-    return STANCE_COMPILER;
-}
-
-const char *build_flags(void)
-{
-    return STANCE_CFLAGS;
-}
+const char build_revision[] = STANCE_REVISION, build_compiler[] = STANCE_COMPILER,
+           build_flags[] = STANCE_CFLAGS;
 
 void build_libraries(char text[BUILD_LIBRARIES_SIZE])
 {

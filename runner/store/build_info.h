@@ -4,9 +4,8 @@
 
 enum { BUILD_LIBRARIES_SIZE = 256 };
 
-const char *build_revision(void); /* of git, with "-dirty" when the tree was changed */
-const char *build_compiler(void);
-const char *build_flags(void);
+extern const char build_revision[], /* of git, with "-dirty" when the tree was changed */
+    build_compiler[], build_flags[];
 
 /* Versions of the libraries in use, as "HDF5 1.10.8, Open MPI 4.1.4, ...". */
 void build_libraries(char text[BUILD_LIBRARIES_SIZE]);

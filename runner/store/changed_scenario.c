@@ -106,24 +106,6 @@ static bool same_axis(const struct scenario_axis *a, const struct scenario_axis 
     return equal;
 }
 
-static bool same_axes(const struct scenario *a, const struct scenario *b)
-{
-    bool equal = scenario_same_scene(a, b) && a->axes == b->axes;
-    for (int k = 0; equal && k < a->axes; k++)
-        equal = same_axis(&a->axis[k], &b->axis[k]);
-    return equal;
-}
-
-/* The seed is among what its points are made from. */
-static bool same_sample(const struct scenario *a, const struct scenario *b)
-{
-    const struct doe *x = &a->sample.design, *y = &b->sample.design;
-    return a->sample.given == b->sample.given &&
-           (!a->sample.given ||
-            (x->method == y->method && x->count == y->count && x->factors == y->factors &&
-             x->levels == y->levels && x->second_order == y->second_order && x->seed == y->seed));
-}
-
 /* Bit for bit, of structs whose memory was zero before they were filled in. */
 static bool same_bits(const void *a, const void *b, size_t size)
 {
@@ -144,152 +126,115 @@ static bool same_designs(const struct scenario *a, const struct scenario *b)
            resolve_keep_design_inputs(b->scene, &y, sampled) && same_bits(&x, &y, sizeof x);
 }
 
-static bool same_cases(const struct scenario *a, const struct scenario *b)
-{
-    return same_bits(&a->base, &b->base, sizeof a->base) && a->seed == b->seed &&
-           a->refine.given == b->refine.given && a->refine.start == b->refine.start &&
-           a->refine.margin == b->refine.margin && a->refine.probes == b->refine.probes;
-}
-
-static bool same_record(const struct plan *a, const struct plan *b)
-{
-    bool equal = a->record_rows == b->record_rows && a->record_interval == b->record_interval &&
-                 a->record_cases == b->record_cases;
-    for (uint64_t k = 0; equal && a->record_rows > 0 && k < a->record_cases; k++)
-        equal = plan_recorded_case(a, k) == plan_recorded_case(b, k);
-    return equal;
-}
-
 static bool may_follow(const char *file, const struct plan *before, const struct plan *after,
                        stance_message *message)
 {
     const struct scenario *a = before->scenario, *b = after->scenario;
-    const bool equal = same_cases(a, b);
+    const struct scenario_refine *x = &a->refine, *y = &b->refine;
+    const bool equal = same_bits(&a->base, &b->base, sizeof a->base) && a->seed == b->seed &&
+                       x->given == y->given && x->start == y->start && x->margin == y->margin &&
+                       x->probes == y->probes;
+    bool recorded = before->record_rows == after->record_rows &&
+                    before->record_interval == after->record_interval &&
+                    before->record_cases == after->record_cases;
+    for (uint64_t k = 0; recorded && after->record_rows > 0 && k < after->record_cases; k++)
+        recorded = plan_recorded_case(before, k) == plan_recorded_case(after, k);
     return (a->answers == b->answers || refuse(message, file, "which answers are stored")) &&
-           (same_record(before, after) ||
-            refuse(message, file, "which trajectories are recorded, and when")) &&
-           (equal || !(a->refine.given || b->refine.given) ||
+           (recorded || refuse(message, file, "which trajectories are recorded, and when")) &&
+           (equal || !(x->given || y->given) ||
             refuse(message, file, "the cases of a refined map, which follow from each other")) &&
            (equal || same_designs(a, b) ||
             refuse(message, file, "what its controller designs depend on"));
 }
 
-bool changed_scenario_check_sweep(const char *file, const struct store_origin *origin,
-                                  const struct scenario *scenario, stance_message *message)
+bool changed_scenario_check_sweep(struct adopted *old, const struct scenario *scenario,
+                                  stance_message *message)
 {
-    struct scenario *old = calloc(1, sizeof *old);
-    bool good = false;
-
-    if (!old) {
-        no_memory(message);
-    } else if (!scenario_read(old, file, origin->scenario, NULL, 0, NULL)) {
-        refuse(message, file, "a scenario that this version cannot read");
-    } else {
-        good = (same_sample(old, scenario) ||
-                refuse(message, file, "sweep.sample or the seed of its points")) &&
-               (same_axes(old, scenario) || refuse(message, file, "the scene or the sweep"));
-        scenario_free(old);
-    }
-    free(old);
-    return good;
+    const char *const file = old->file;
+    if (!adopt_scenario(old, message))
+        return refuse(message, file, "a scenario that this version cannot read");
+    const struct doe *x = &old->scenario->sample.design, *y = &scenario->sample.design;
+    const bool given = scenario->sample.given;
+    /* The seed is among what its points are made from. */
+    if (old->scenario->sample.given != given ||
+        (given &&
+         (x->method != y->method || x->count != y->count || x->factors != y->factors ||
+          x->levels != y->levels || x->second_order != y->second_order || x->seed != y->seed)))
+        return refuse(message, file, "sweep.sample or the seed of its points");
+    bool equal =
+        scenario_same_scene(old->scenario, scenario) && old->scenario->axes == scenario->axes;
+    for (int k = 0; equal && k < scenario->axes; k++)
+        equal = same_axis(&old->scenario->axis[k], &scenario->axis[k]);
+    return equal || refuse(message, file, "the scene or the sweep");
 }
 
 /* ---- the successor -------------------------------------------------------------------------- */
 
-struct making {
-    const char *file;
-    char real[PATH_MAX], made[PATH_MAX + 8]; /* without symbolic links; the successor until then */
-    const struct store_origin *origin;
-    struct plan *plan;
-    struct changed_scenario_counts *counts;
-    stance_message *message;
-    bool stopped;
+/* Names without symbolic links: the file, and its successor until that takes the name. */
+struct names {
+    char real[PATH_MAX], made[PATH_MAX + 8];
 };
 
-static bool system_failed(const struct making *making, const char *what)
+static bool find_names(struct names *names, const char *file)
 {
-    return complain(making->message, "%.150s: cannot %s: %s", making->file, what, strerror(errno));
+    if (!realpath(file, names->real))
+        return false;
+    snprintf(names->made, sizeof names->made, "%s.next", names->real);
+    return true;
 }
+
+static bool system_failed(stance_message *message, const char *file, const char *what)
+{
+    return complain(message, "%.150s: cannot %s: %s", file, what, strerror(errno));
+}
+
+struct copying {
+    const struct plan *plan;
+    bool stopped;
+};
 
 /* A row keeps its place; once told to stop none is copied. */
 static uint64_t same_row(void *context, uint64_t row)
 {
-    struct making *making = context;
-    const struct plan *plan = making->plan;
+    struct copying *copying = context;
+    const struct plan *plan = copying->plan;
     if (row % STORE_ROWS == 0 && plan->stop && plan->stop(plan->stop_context))
-        making->stopped = true;
-    return making->stopped ? STORE_NOWHERE : row;
+        copying->stopped = true;
+    return copying->stopped ? STORE_NOWHERE : row;
 }
 
 /* Copies the rows that verify. */
-static bool copy_rows(struct making *making, struct store *from, struct store *to)
+static bool copy_rows(struct store *from, struct store *to, const struct plan *plan,
+                      struct store_copied *copied, stance_message *message)
 {
-    struct store_copied copied = {0};
-    const bool good = store_copy(from, to, same_row, making, &copied, making->message);
-    *making->counts = (struct changed_scenario_counts){copied.copied, copied.damaged, false};
-    if (making->stopped)
-        making->message->text[0] = '\0';
-    return good && !making->stopped;
+    struct copying copying = {plan, false};
+    const bool good = store_copy(from, to, same_row, &copying, copied, message);
+    if (copying.stopped)
+        message->text[0] = '\0';
+    return good && !copying.stopped;
 }
 
 /* To the disk, then under the old one's name. */
-static bool take_place(const struct making *making)
+static bool take_place(const struct names *names, const char *file, stance_message *message)
 {
     char directory[PATH_MAX];
     struct stat before;
-    int descriptor = open(making->made, O_RDWR | O_CLOEXEC);
+    int descriptor = open(names->made, O_RDWR | O_CLOEXEC);
     /* Whoever may write the old file may write this one, as far as the system lets us see to it. */
-    if (descriptor >= 0 && stat(making->real, &before) == 0 &&
+    if (descriptor >= 0 && stat(names->real, &before) == 0 &&
         fchown(descriptor, before.st_uid, before.st_gid) == 0)
         (void)fchmod(descriptor, before.st_mode & 0777);
     if (descriptor < 0 || fsync(descriptor) != 0 || close(descriptor) != 0)
-        return system_failed(making, "bring its successor to the disk");
-    if (rename(making->made, making->real) != 0)
-        return system_failed(making, "replace it by its successor");
-    snprintf(directory, sizeof directory, "%s", making->real);
+        return system_failed(message, file, "bring its successor to the disk");
+    if (rename(names->made, names->real) != 0)
+        return system_failed(message, file, "replace it by its successor");
+    snprintf(directory, sizeof directory, "%s", names->real);
     descriptor = open(dirname(directory), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (descriptor >= 0) {
         (void)fsync(descriptor); /* some file systems cannot; then the rename takes its time */
         close(descriptor);
     }
     return true;
-}
-
-static bool make(struct making *making, struct plan *before, int ranks, const char *hosts)
-{
-    struct plan *plan = making->plan;
-    struct store *from = NULL, *to = NULL;
-    struct plan_error error = {0};
-    stance_message *message = making->message;
-
-    bool good = store_open(&from, making->real, before, 1, message) &&
-                store_read_designs(from, plan, message);
-    if (good && !plan_check_cases(plan, &error)) {
-        *message = error.message;
-        good = false;
-    }
-    unlink(making->made); /* of an attempt that was killed */
-    good = good && store_create(making->made, plan, ranks, hosts, message) &&
-           store_add_history(making->made, plan, making->origin, message);
-    plan->ancestors = before->ancestors + 1;
-    good = good && store_open(&to, making->made, plan, 1, message) && copy_rows(making, from, to);
-    if (good) {
-        good = store_close(to, message);
-        to = NULL;
-    }
-    store_abandon(to);
-    stance_message ignored;
-    if (from && !store_close(from, &ignored))
-        good = good && system_failed(making, "close it");
-    good = good && take_place(making);
-    if (!good)
-        unlink(making->made);
-    return good;
-}
-
-static void name_made(struct making *making)
-{
-    snprintf(making->made, sizeof making->made, "%s.next", making->real);
 }
 
 /* What a successor begins with, or nothing yet: whatever else has its name is somebody's own. */
@@ -311,46 +256,46 @@ static bool is_ours(const char *file)
 
 void changed_scenario_clear(const char *file)
 {
-    struct making making = {.file = file};
-    if (!realpath(file, making.real))
-        return;
-    name_made(&making);
-    if (is_ours(making.made))
-        unlink(making.made);
+    struct names names;
+    if (find_names(&names, file) && is_ours(names.made))
+        unlink(names.made);
 }
 
-bool changed_scenario_make(const char *file, const struct store_origin *origin, struct plan *plan,
-                           int ranks, const char *hosts, struct changed_scenario_counts *counts,
-                           stance_message *message)
+bool changed_scenario_make(struct adopted *old, struct plan *plan, int ranks, const char *hosts,
+                           struct store_copied *copied, bool *refused, stance_message *message)
 {
-    struct making making = {
-        .file = file, .origin = origin, .plan = plan, .counts = counts, .message = message};
-    struct scenario *old = calloc(1, sizeof *old);
-    struct plan before = {0};
+    struct names names;
+    struct store *to = NULL;
     struct plan_error error = {0};
-    bool good = false;
 
-    *counts = (struct changed_scenario_counts){0};
-    if (!old || !realpath(file, making.real)) {
-        system_failed(&making, "prepare its successor");
-    } else if (origin->ancestors >= STORE_MOST_ANCESTORS) {
-        refuse(message, file, "a file of so many scenarios");
-    } else if (!scenario_read(old, file, origin->scenario, NULL, 0, NULL)) {
-        refuse(message, file, "a scenario that this version cannot read");
-    } else {
-        name_made(&making);
-        if (!plan_make(&before, old, plan->single, plan->single_case, plan->record_rows > 0,
-                       &error)) {
-            *message = error.message;
-        } else if (!may_follow(file, &before, plan, message)) {
-            counts->refused = true;
-        } else {
-            before.ancestors = origin->ancestors;
-            good = make(&making, &before, ranks, hosts);
-        }
-        plan_free(&before);
-        scenario_free(old);
+    *copied = (struct store_copied){0};
+    *refused = false;
+    if (!find_names(&names, old->file))
+        return system_failed(message, old->file, "prepare its successor");
+    if (old->origin.ancestors >= STORE_MOST_ANCESTORS)
+        return refuse(message, old->file, "a file of so many scenarios");
+    if (!adopt_open(old, message))
+        return false;
+    if (!may_follow(old->file, &old->plan, plan, message)) {
+        *refused = true;
+        return false;
     }
-    free(old);
+    for (size_t d = 0; d < plan->designs; d++)
+        plan_take_design(plan, d, &old->plan, d);
+    bool good = plan_check_cases(plan, &error);
+    if (!good)
+        *message = error.message;
+    unlink(names.made); /* of an attempt that was killed */
+    good = good && store_create(names.made, plan, &old->origin, ranks, hosts, message);
+    plan->ancestors = old->origin.ancestors + 1;
+    good = good && store_open(&to, names.made, plan, 1, message) &&
+           copy_rows(old->store, to, plan, copied, message);
+    if (good)
+        good = store_close(to, message);
+    else
+        store_abandon(to);
+    good = good && take_place(&names, old->file, message);
+    if (!good)
+        unlink(names.made);
     return good;
 }

@@ -11,30 +11,22 @@
 #ifndef STANCE_STORE_CHANGED_SCENARIO_H
 #define STANCE_STORE_CHANGED_SCENARIO_H
 
-#include "store.h"
-
-#include "runner/plan/plan.h"
+#include "adopt.h"
 
 /* Prints the lines that are in one of two texts only, the first ones of many, as "  - old" and
  * "  + new" (`to` NULL: nothing), and returns how many there are. */
 size_t changed_scenario_differences(FILE *to, const char *before, const char *after);
 
 /* Whether a scenario, whose axes are still its own and not the file's, has the axes and the sample
- * of a file's: false with the reason in *message. */
-bool changed_scenario_check_sweep(const char *file, const struct store_origin *origin,
-                                  const struct scenario *scenario, stance_message *message);
-/* On rank 0, with the lock, after that: puts the successor in the place of `file`, whose origin is
- * given; the scenario is the plan's. Reads the plan's designs from the file, and sets
- * plan->ancestors. False with the reason in *message, which is empty where `plan->stop` said to
- * stop; then the file is as it was. */
-struct changed_scenario_counts { /* rows that were copied; that did not verify and are pending again
-                                  */
-    uint64_t kept, damaged;
-    bool refused; /* this scenario cannot follow that one */
-};
-bool changed_scenario_make(const char *file, const struct store_origin *origin, struct plan *plan,
-                           int ranks, const char *hosts, struct changed_scenario_counts *counts,
-                           stance_message *message);
+ * of the file's, which is read: false with the reason in *message. */
+bool changed_scenario_check_sweep(struct adopted *old, const struct scenario *scenario,
+                                  stance_message *message);
+/* On rank 0, with the lock, after that: puts the successor in the place of the old file; the
+ * scenario is the plan's. Takes the plan's designs from the file, and sets plan->ancestors. False
+ * with the reason in *message, which is empty where `plan->stop` said to stop; then the file is as
+ * it was. *refused: this scenario cannot follow that one. */
+bool changed_scenario_make(struct adopted *old, struct plan *plan, int ranks, const char *hosts,
+                           struct store_copied *copied, bool *refused, stance_message *message);
 /* On rank 0, with the lock: removes a successor that an attempt which was killed has left. */
 void changed_scenario_clear(const char *file);
 

@@ -25,12 +25,12 @@ struct request {
 static void name_missing_shards(const struct merge *m)
 {
     enum { NAMED = 8 };
-    const uint64_t count = m->kind == MERGE_EQUAL ? m->part[0].origin.shard.count : 0;
+    const uint64_t count = m->kind == MERGE_EQUAL ? m->part[0].of.origin.shard.count : 0;
     bool *const there = count > 0 ? calloc(count + 1, 1) : NULL;
     uint64_t missing = count;
 
     for (size_t p = 0; there && p < m->parts; p++) {
-        const struct shard *const shard = &m->part[p].origin.shard;
+        const struct shard *const shard = &m->part[p].of.origin.shard;
         if (shard->count != count) {
             missing = 0;
             break;
@@ -56,14 +56,14 @@ static void print_result(const struct request *request, const struct merge *m)
 {
     const struct store_copied *copied = &m->copied;
     const uint64_t done = copied->copied;
-    printf("%s: %llu cases from %zu files", request->output, (unsigned long long)m->scenario.cases,
+    printf("%s: %llu cases from %zu files", request->output, (unsigned long long)m->scenario->cases,
            m->parts);
     if (m->kind != MERGE_EQUAL)
         printf(" along %s, %zu values", m->path, m->points);
     if (copied->same > 0)
         printf("; %llu were in several files, and equal", (unsigned long long)copied->same);
-    if (done < m->scenario.cases)
-        printf("; %llu are not computed yet", (unsigned long long)(m->scenario.cases - done));
+    if (done < m->scenario->cases)
+        printf("; %llu are not computed yet", (unsigned long long)(m->scenario->cases - done));
     putchar('\n');
     name_missing_shards(m);
     if (copied->damaged > 0) {
@@ -78,12 +78,12 @@ static void print_result(const struct request *request, const struct merge *m)
                 "run of the whole has other ones (attribute merge_note)\n");
     }
     for (size_t p = 1; p < m->parts; p++) {
-        if (strcmp(m->part[p].origin.revision, m->part[0].origin.revision) != 0) {
+        if (strcmp(m->part[p].of.origin.revision, m->part[0].of.origin.revision) != 0) {
             fprintf(stderr,
                     "stance merge: warning: %s was begun by revision %s, %s by %s: results "
                     "may differ\n",
-                    m->part[p].file, m->part[p].origin.revision, m->part[0].file,
-                    m->part[0].origin.revision);
+                    m->part[p].of.file, m->part[p].of.origin.revision, m->part[0].of.file,
+                    m->part[0].of.origin.revision);
             break;
         }
     }
@@ -112,60 +112,40 @@ static bool at_rest(const struct request *request)
 }
 
 /* The file is made under another name and takes its own when it is whole. */
-static int write_file(const struct request *request, struct merge *m)
+static bool write_file(const struct request *request, struct merge *m)
 {
     char made[1100];
-    stance_message message = {""};
-    struct lock lock = {.descriptor = -1};
-    bool usage = false;
-
+    struct lock lock;
     snprintf(made, sizeof made, "%s.merging", request->output);
-    if (!lock_take(&lock, request->output, &message)) {
-        fprintf(stderr, "stance merge: %s\n", message.text);
-        return EXIT_IO;
-    }
+    m->usage = false;
+    if (!lock_take(&lock, request->output, &m->message))
+        return false;
     unlink(made);
-    bool good = merge_write(m, made, &usage, &message);
+    bool good = merge_write(m, made);
     if (good && m->copied.copied == 0) {
-        usage = true;
-        unlink(made);
-        good = complain(&message, "none of the %zu files has a case that is computed", m->parts);
+        m->usage = true;
+        good = complain(&m->message, "none of the %zu files has a case that is computed", m->parts);
     }
-    if (good && rename(made, request->output) != 0) {
-        complain(&message, "%.150s: %s", request->output, strerror(errno));
+    if (good && rename(made, request->output) != 0)
+        good = complain(&m->message, "%.150s: %s", request->output, strerror(errno));
+    if (!good)
         unlink(made);
-        good = false;
-    }
     lock_release(&lock);
-    if (!good) {
-        fprintf(stderr, "stance merge: %s\n", message.text);
-        return usage ? EXIT_USAGE : EXIT_IO;
-    }
-    print_result(request, m);
-    return EXIT_DONE;
+    return good;
 }
 
 static int work(void *context)
 {
     const struct request *request = context;
-    stance_message message = {""};
-    bool usage = false;
-    struct merge *m = calloc(1, sizeof *m);
-    int code = EXIT_IO;
-
+    struct merge m;
     store_prepare();
-    if (!m) {
-        fputs("stance merge: not enough memory\n", stderr);
-        return EXIT_IO;
-    }
-    if (merge_plan(m, request->files, request->count, &usage, &message)) {
-        code = write_file(request, m);
-    } else {
-        fprintf(stderr, "stance merge: %s\n", message.text);
-        code = usage ? EXIT_USAGE : EXIT_IO;
-    }
-    merge_free(m);
-    free(m);
+    const bool good = merge_plan(&m, request->files, request->count) && write_file(request, &m);
+    if (good)
+        print_result(request, &m);
+    else
+        fprintf(stderr, "stance merge: %s\n", m.message.text);
+    const int code = good ? EXIT_DONE : m.usage ? EXIT_USAGE : EXIT_IO;
+    merge_free(&m);
     return code;
 }
 

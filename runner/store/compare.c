@@ -14,102 +14,41 @@
 
 enum { BLOCK = 1 << 18 }; /* elements read at a time */
 
-/* ---- lists of names ----------------------------------------------------------------------- */
-
-struct names {
-    char **name;
-    size_t count;
-    bool failed;
+/* What is compared with what, and where differences go. */
+struct comparing {
+    struct comparison *out;
+    const struct results *r[2];
+    stance_message *message;
+    uint64_t *list; /* cases of trajectories */
+    size_t list_count;
 };
-
-static void names_add(struct names *names, const char *name)
-{
-    char **larger = realloc(names->name, (names->count + 1) * sizeof *larger);
-    if (larger)
-        names->name = larger;
-    char *own = larger ? strdup(name) : NULL;
-    names->failed = names->failed || !own;
-    if (own)
-        names->name[names->count++] = own;
-}
-
-static int by_name(const void *a, const void *b)
-{
-    return strcmp(*(char *const *)a, *(char *const *)b);
-}
-
-/* Sorts, and drops what is there twice. */
-static void names_unite(struct names *names)
-{
-    size_t kept = 0;
-    if (names->count > 0)
-        qsort(names->name, names->count, sizeof *names->name, by_name);
-    for (size_t i = 0; i < names->count; i++)
-        if (kept > 0 && strcmp(names->name[i], names->name[kept - 1]) == 0)
-            free(names->name[i]);
-        else
-            names->name[kept++] = names->name[i];
-    names->count = kept;
-}
-
-static void names_free(struct names *names)
-{
-    for (size_t i = 0; i < names->count; i++)
-        free(names->name[i]);
-    free(names->name);
-}
-
-static herr_t add_link(hid_t group, const char *name, const H5L_info_t *info, void *names)
-{
-    (void)group, (void)info;
-    if (strcmp(name, "timing") != 0 && strncmp(name, "timing/", 7) != 0)
-        names_add(names, name);
-    return 0;
-}
-
-static bool is_listed(const char *name, const char *const *list)
-{
-    for (; *list; list++)
-        if (strcmp(name, *list) == 0)
-            return true;
-    return false;
-}
-
-static herr_t add_attribute(hid_t object, const char *name, const H5A_info_t *info, void *names)
-{
-    /* What ties dimensions together holds addresses within the file; checksums say what the values
-     * say. */
-    static const char *const structure[] = {"DIMENSION_LIST", "REFERENCE_LIST", CHECKSUM_ATTRIBUTE,
-                                            NULL};
-    (void)object, (void)info;
-    if (!is_listed(name, structure))
-        names_add(names, name);
-    return 0;
-}
 
 /* ---- differences -------------------------------------------------------------------------- */
 
 /* A new entry, or NULL without memory; valid until the next. */
-static struct compare_difference *add_difference(struct comparison *comparison, const char *name,
+static struct compare_difference *add_difference(const struct comparing *c, const char *name,
                                                  const char *reason)
 {
+    struct comparison *const out = c->out;
     struct compare_difference *difference =
-        realloc(comparison->difference, (comparison->count + 1) * sizeof *difference);
-    if (!difference)
+        realloc(out->difference, (out->count + 1) * sizeof *difference);
+    if (!difference) {
+        no_memory(c->message);
         return NULL;
-    comparison->difference = difference;
-    difference += comparison->count++;
+    }
+    out->difference = difference;
+    difference += out->count++;
     *difference = (struct compare_difference){.differing = 0};
     snprintf(difference->name, sizeof difference->name, "%s", name);
     results_clean(difference->name);
     snprintf(difference->reason, sizeof difference->reason, "%s", reason);
-    comparison->beyond += strcmp(reason, "values") != 0;
+    out->beyond += strcmp(reason, "values") != 0;
     return difference;
 }
 
-static bool unreadable(const struct results *r, const char *name, stance_message *message)
+static bool unreadable(const struct comparing *c, int file, const char *name)
 {
-    return complain(message, "%.100s: damaged: cannot read %.80s", r->file, name);
+    return complain(c->message, "%.100s: damaged: cannot read %.80s", c->r[file]->file, name);
 }
 
 void compare_free(struct comparison *comparison)
@@ -137,11 +76,12 @@ struct values {
 
 static enum value_kind value_kind_of(hid_t type)
 {
+    const size_t size = H5Tget_size(type);
     switch (H5Tget_class(type)) {
     case H5T_FLOAT:
-        return H5Tget_size(type) <= sizeof(double) ? VALUE_REAL : VALUE_OTHER;
+        return size <= sizeof(double) ? VALUE_REAL : VALUE_OTHER;
     case H5T_INTEGER:
-        return H5Tget_size(type) > sizeof(int64_t) ? VALUE_OTHER
+        return size > sizeof(int64_t)              ? VALUE_OTHER
                : H5Tget_sign(type) == H5T_SGN_NONE ? VALUE_NATURAL
                                                    : VALUE_INTEGER;
     case H5T_STRING:
@@ -149,13 +89,6 @@ static enum value_kind value_kind_of(hid_t type)
     default:
         return VALUE_OTHER;
     }
-}
-
-static uint64_t bits_of(double number)
-{
-    uint64_t bits;
-    memcpy(&bits, &number, sizeof bits);
-    return bits;
 }
 
 static void values_free(struct values *values)
@@ -189,21 +122,24 @@ static bool values_read(hid_t object, hsize_t at, hid_t type, size_t count, stru
     return good;
 }
 
-/* To the bit, but for NANs. Both are of the same kind. */
+/* NAN: it is none that has a distance from others. */
+static double number_of(const struct values *values, size_t i)
+{
+    return values->kind == VALUE_REAL      ? values->data.real[i]
+           : values->kind == VALUE_INTEGER ? (double)values->data.integer[i]
+                                           : NAN;
+}
+
+/* To the bit, so that 0 and -0 differ; of NANs alone the bits do not matter. Both are of the same
+ * kind. */
 static bool values_same(const struct values *a, const struct values *b, size_t i)
 {
-    switch (a->kind) {
-    case VALUE_REAL: /* of NANs alone the bits do not matter; 0 and -0 differ */
-        return bits_of(a->data.real[i]) == bits_of(b->data.real[i]) ||
-               (isnan(a->data.real[i]) && isnan(b->data.real[i]));
-    case VALUE_TEXT:
-        return strcmp(a->data.text[i], b->data.text[i]) == 0;
-    case VALUE_INTEGER:
-    case VALUE_NATURAL:
-        return a->data.natural[i] == b->data.natural[i];
-    default:
+    if (a->kind == VALUE_OTHER)
         return true;
-    }
+    if (a->kind == VALUE_TEXT)
+        return strcmp(a->data.text[i], b->data.text[i]) == 0;
+    return memcmp(&a->data.natural[i], &b->data.natural[i], sizeof(uint64_t)) == 0 ||
+           (a->kind == VALUE_REAL && isnan(a->data.real[i]) && isnan(b->data.real[i]));
 }
 
 /* The beginning of a text in quotation marks, in whole letters; damaged bytes are no letters. */
@@ -222,21 +158,28 @@ static void values_quote(const char *before, const char *letters, char text[COMP
     results_clean(text);
 }
 
-/* An element for people. */
-static void values_text(const struct values *values, size_t i, char text[COMPARE_TEXT])
+/* Two elements for people; of texts from a little before the first letter that differs. */
+static void show_values(const struct values values[2], size_t i, struct compare_place *place)
 {
-    switch (values->kind) {
-    case VALUE_REAL:
-        snprintf(text, COMPARE_TEXT, "%.17g", values->data.real[i]);
-        break;
-    case VALUE_INTEGER:
-        snprintf(text, COMPARE_TEXT, "%lld", (long long)values->data.integer[i]);
-        break;
-    case VALUE_NATURAL:
-        snprintf(text, COMPARE_TEXT, "%llu", (unsigned long long)values->data.natural[i]);
-        break;
-    default:
-        values_quote("", values->data.text[i], text);
+    size_t from = 0;
+    if (values[0].kind == VALUE_TEXT) {
+        const char *const a = values[0].data.text[i], *const b = values[1].data.text[i];
+        while (a[from] && a[from] == b[from])
+            from++;
+        from = from > 20 ? from - 20 : 0;
+        while (from > 0 && ((unsigned char)a[from] & 0xc0) == 0x80) /* within a letter */
+            from--;
+    }
+    for (int f = 0; f < 2; f++) {
+        char *const text = place->value[f];
+        if (values[f].kind == VALUE_REAL)
+            snprintf(text, COMPARE_TEXT, "%.17g", values[f].data.real[i]);
+        else if (values[f].kind == VALUE_INTEGER)
+            snprintf(text, COMPARE_TEXT, "%lld", (long long)values[f].data.integer[i]);
+        else if (values[f].kind == VALUE_NATURAL)
+            snprintf(text, COMPARE_TEXT, "%llu", (unsigned long long)values[f].data.natural[i]);
+        else
+            values_quote(from ? "..." : "", values[f].data.text[i] + from, text);
     }
 }
 
@@ -244,15 +187,16 @@ static void values_text(const struct values *values, size_t i, char text[COMPARE
 
 /* A variable, or an attribute, that both files have. */
 struct compared {
+    const struct comparing *in;
     const char *name;
-    const struct results *const *r; /* [2] */
-    hid_t object[2], type[2];
-    int rank;
-    hsize_t length[H5S_MAX_RANK];
+    const hid_t *object; /* [2] */
+    hid_t type[2];
     size_t elements;
     size_t width;                              /* elements per case; 0: it is not over the cases */
     const struct compare_tolerance *tolerance; /* NULL: bit for bit */
     const uint64_t *list;                      /* cases of a trajectory; NULL: rows are the cases */
+    struct compare_difference *difference;     /* NULL: none yet */
+    size_t last;                               /* the row noted last */
 };
 
 static bool is_pending(const struct results *r, uint64_t index)
@@ -267,137 +211,75 @@ static bool counts(const struct compared *v, size_t i)
     if (v->width == 0 || strcmp(v->name, "status") == 0)
         return true;
     uint64_t index = v->list ? v->list[i / v->width] : i / v->width;
-    return !is_pending(v->r[0], index) && !is_pending(v->r[1], index);
-}
-
-/* Two texts: shows them from a little before the first letter that differs. */
-static void show_texts(struct compare_place *place, const char *a, const char *b)
-{
-    size_t same = 0;
-    while (a[same] && a[same] == b[same])
-        same++;
-    size_t from = same > 20 ? same - 20 : 0;
-    while (from > 0 && ((unsigned char)a[from] & 0xc0) == 0x80) /* within a letter */
-        from--;
-    values_quote(from ? "..." : "", a + from, place->value[0]);
-    values_quote(from ? "..." : "", b + from, place->value[1]);
+    return !is_pending(v->in->r[0], index) && !is_pending(v->in->r[1], index);
 }
 
 static struct compare_place place_of(const struct compared *v, size_t i, size_t within,
                                      const struct values values[2])
 {
+    const struct results *const first = v->in->r[0];
     struct compare_place place = {.component = v->width ? i % v->width : 0};
     const uint64_t row = v->width ? i / v->width : i;
-    place.index = v->list ? v->list[row] : v->width && v->r[0]->single ? v->r[0]->index : row;
-    if (values[0].kind == VALUE_TEXT) {
-        show_texts(&place, values[0].data.text[within], values[1].data.text[within]);
-    } else {
-        values_text(&values[0], within, place.value[0]);
-        values_text(&values[1], within, place.value[1]);
-    }
+    place.index = v->list ? v->list[row] : v->width && first->single ? first->index : row;
+    show_values(values, within, &place);
     return place;
 }
 
-/* |a - b|; INFINITY where one of them is no number. */
-static double distance_of(const struct values values[2], size_t k)
-{
-    double number[2];
-    for (int f = 0; f < 2; f++) {
-        number[f] = values[f].kind == VALUE_REAL      ? values[f].data.real[k]
-                    : values[f].kind == VALUE_INTEGER ? (double)values[f].data.integer[k]
-                                                      : NAN;
-    }
-    const double distance = fabs(number[0] - number[1]);
-    return isnan(distance) ? INFINITY : distance;
-}
-
-static bool is_close(const struct compare_tolerance *tolerance, const struct values values[2],
-                     size_t k, double distance)
-{
-    if (!isfinite(distance))
-        return false;
-    const double size = values[0].kind == VALUE_REAL
-                            ? fmax(fabs(values[0].data.real[k]), fabs(values[1].data.real[k]))
-                            : fmax(fabs((double)values[0].data.integer[k]),
-                                   fabs((double)values[1].data.integer[k]));
-    return distance <= tolerance->absolute + tolerance->relative * size;
-}
-
-/* Compares elements [first, first + n) that have been read. *last is the row noted last. */
-static bool compare_block(struct comparison *comparison, const struct compared *v, size_t first,
-                          const struct values values[2], struct compare_difference **difference,
-                          size_t *last)
+/* Compares elements [first, first + n) that have been read. */
+static bool compare_block(struct compared *v, size_t first, const struct values values[2])
 {
     for (size_t k = 0; k < values[0].count; k++) {
         const size_t i = first + k, row = v->width ? i / v->width : i;
-        const bool noted = *difference && (*difference)->differing > 0 && *last == row;
+        const bool noted = v->difference && v->difference->differing > 0 && v->last == row;
         if (values_same(&values[0], &values[1], k) || !counts(v, i) || (noted && !v->tolerance))
             continue;
-        if (!*difference) { /* the first difference */
-            if (!(*difference = add_difference(comparison, v->name, "values")))
+        if (!v->difference) { /* the first difference */
+            if (!(v->difference = add_difference(v->in, v->name, "values")))
                 return false;
-            (*difference)->cases = v->width > 0;
-            (*difference)->several = v->width > 1;
-            (*difference)->of = v->width ? v->elements / v->width : v->elements;
+            v->difference->cases = v->width > 0;
+            v->difference->several = v->width > 1;
+            v->difference->of = v->width ? v->elements / v->width : v->elements;
         }
         if (v->tolerance) {
-            const double distance = distance_of(values, k);
-            if (distance > (*difference)->largest) {
-                (*difference)->largest = distance;
-                (*difference)->largest_place = place_of(v, i, k, values);
+            const double a = number_of(&values[0], k), b = number_of(&values[1], k);
+            const double distance = isnan(a - b) ? INFINITY : fabs(a - b);
+            if (distance > v->difference->largest) {
+                v->difference->largest = distance;
+                v->difference->largest_place = place_of(v, i, k, values);
             }
-            if (noted || is_close(v->tolerance, values, k, distance))
+            if (noted || (isfinite(distance) &&
+                          distance <= v->tolerance->absolute +
+                                          v->tolerance->relative * fmax(fabs(a), fabs(b))))
                 continue;
         }
-        *last = row;
-        comparison->beyond += (*difference)->differing++ == 0;
-        if ((*difference)->shown < COMPARE_SHOWN)
-            (*difference)->place[(*difference)->shown++] = place_of(v, i, k, values);
+        v->last = row;
+        v->in->out->beyond += v->difference->differing++ == 0;
+        if (v->difference->shown < COMPARE_SHOWN)
+            v->difference->place[v->difference->shown++] = place_of(v, i, k, values);
     }
     return true;
 }
 
-static bool compare_values(struct comparison *comparison, const struct compared *v,
-                           stance_message *message)
+static bool compare_values(struct compared *v)
 {
-    size_t last = 0;
-    struct compare_difference *difference = NULL;
     bool good = true;
-
     for (size_t at = 0; at < v->elements && good; at += BLOCK) {
         const size_t n = v->elements - at < BLOCK ? v->elements - at : BLOCK;
         struct values values[2] = {{.kind = VALUE_OTHER}, {.kind = VALUE_OTHER}};
-        for (int f = 0; f < 2 && good; f++) {
+        for (int f = 0; f < 2 && good; f++)
             good = values_read(v->object[f], at, v->type[f], n, &values[f]) ||
-                   unreadable(v->r[f], v->name, message);
-        }
-        good = good &&
-               (compare_block(comparison, v, at, values, &difference, &last) || no_memory(message));
+                   unreadable(v->in, f, v->name);
+        good = good && compare_block(v, at, values);
         values_free(&values[0]);
         values_free(&values[1]);
     }
     return good;
 }
 
-/* How the elements belong to cases. `list` is what trajectories are over. */
-static void find_rows(struct compared *v, const uint64_t *list, size_t list_count)
-{
-    uint64_t rows = 0;
-    if (store_is_column(v->name)) {
-        rows = v->r[0]->cases;
-    } else if (store_is_track(v->name) && v->rank > 0 && v->length[0] == list_count) {
-        rows = list_count;
-        v->list = list;
-    }
-    v->width = rows && v->elements % rows == 0 ? (size_t)(v->elements / rows) : 0;
-    v->list = v->width ? v->list : NULL;
-}
-
 /* What holds for a variable: its own tolerance, or that of all; NULL: none. */
-static const struct compare_tolerance *tolerance_of(const struct comparison *comparison,
-                                                    const struct compared *v)
+static const struct compare_tolerance *tolerance_of(const struct compared *v)
 {
-    const struct compare_tolerances *all = comparison->tolerances;
+    const struct compare_tolerances *all = v->in->out->tolerances;
     const enum value_kind kind = value_kind_of(v->type[0]);
     const struct compare_tolerance *found = NULL;
     if (!all || !(kind == VALUE_REAL || (kind == VALUE_INTEGER && store_is_column(v->name))))
@@ -411,24 +293,24 @@ static const struct compare_tolerance *tolerance_of(const struct comparison *com
     return found;
 }
 
-static bool open_variable(struct compared *v, const hid_t object[2], const char **differs)
+/* How it is, and how its elements belong to cases; *differs: how the two are that cannot be
+ * compared. */
+static bool open_variable(struct compared *v, const char **differs)
 {
+    const struct comparing *const c = v->in;
     hsize_t length[2][H5S_MAX_RANK];
     int rank[2];
     for (int f = 0; f < 2; f++) {
-        v->object[f] = object[f];
-        v->type[f] = hdf_type_of(object[f]);
-        rank[f] = hdf_shape(object[f], length[f]);
+        v->type[f] = hdf_type_of(v->object[f]);
+        rank[f] = hdf_shape(v->object[f], length[f]);
         if (v->type[f] < 0 || rank[f] < 0)
             return false;
     }
-    v->rank = rank[0];
-    memcpy(v->length, length[0], sizeof v->length);
-    v->elements = results_elements(v->r[0], rank[0], length[0]);
-    const bool attribute = H5Iget_type(object[0]) == H5I_ATTR;
+    v->elements = results_elements(c->r[0], rank[0], length[0]);
+    const bool attribute = H5Iget_type(v->object[0]) == H5I_ATTR;
     const enum value_kind kind = value_kind_of(v->type[0]), other = value_kind_of(v->type[1]);
     const bool texts = kind == VALUE_TEXT && other == VALUE_TEXT;
-    if (attribute && kind == other && v->elements == results_elements(v->r[1], rank[1], length[1]))
+    if (attribute && kind == other && v->elements == results_elements(c->r[1], rank[1], length[1]))
         return v->elements < BLOCK; /* they are read at once */
     if (!attribute && (rank[0] != rank[1] ||
                        memcmp(length[0], length[1], (size_t)rank[0] * sizeof length[0][0]) != 0))
@@ -437,122 +319,164 @@ static bool open_variable(struct compared *v, const hid_t object[2], const char 
         *differs = "types that stance does not write";
     else if (attribute || (!texts && H5Tequal(v->type[0], v->type[1]) <= 0))
         *differs = "types";
+    const bool track = store_is_track(v->name) && rank[0] > 0 && length[0][0] == c->list_count;
+    const uint64_t rows = store_is_column(v->name) ? c->r[0]->cases : track ? c->list_count : 0;
+    v->width = rows && v->elements % rows == 0 ? (size_t)(v->elements / rows) : 0;
+    v->list = v->width && track ? c->list : NULL;
     return true;
 }
 
-static bool compare_variable(struct comparison *comparison, const struct results *const r[2],
-                             const hid_t object[2], const char *name, const uint64_t *list,
-                             size_t list_count, stance_message *message)
+static bool compare_variable(const struct comparing *c, const hid_t object[2], const char *name)
 {
-    struct compared v = {.name = name, .r = r, .type = {-1, -1}};
+    struct compared v = {.in = c, .name = name, .object = object, .type = {-1, -1}};
     const char *differs = NULL;
-    bool good = open_variable(&v, object, &differs) || unreadable(r[0], name, message);
+    bool good = open_variable(&v, &differs) || unreadable(c, 0, name);
     if (good && differs) {
-        good = add_difference(comparison, name, differs) || no_memory(message);
+        good = add_difference(c, name, differs) != NULL;
     } else if (good) {
-        good = v.elements > 0 || unreadable(r[0], name, message);
-        if (good) {
-            find_rows(&v, list, list_count);
-            v.tolerance = tolerance_of(comparison, &v);
-            good = compare_values(comparison, &v, message);
-        }
+        v.tolerance = tolerance_of(&v);
+        good = v.elements > 0 ? compare_values(&v) : unreadable(c, 0, name);
     }
     hdf_close(v.type[0], v.type[1]);
     return good;
 }
 
-/* ---- attributes --------------------------------------------------------------------------- */
+/* ---- walking through both files ----------------------------------------------------------- */
 
-static bool compare_attribute(struct comparison *comparison, const struct results *const r[2],
-                              const hid_t object[2], const char *owner, const char *attribute_name,
-                              stance_message *message)
+struct names {
+    char **name;
+    size_t count;
+    bool failed;
+};
+
+static herr_t add_name(struct names *names, const char *name)
 {
-    const hid_t attribute[2] = {H5Aopen(object[0], attribute_name, H5P_DEFAULT),
-                                H5Aopen(object[1], attribute_name, H5P_DEFAULT)};
-    char name[192];
-    snprintf(name, sizeof name, "attribute %.80s%s%.80s", owner, owner[0] ? ":" : "",
-             attribute_name);
-    const bool good = compare_variable(comparison, r, attribute, name, NULL, 0, message);
-    hdf_close(attribute[0], attribute[1]);
+    char **larger = realloc(names->name, (names->count + 1) * sizeof *larger);
+    names->name = larger ? larger : names->name;
+    char *own = larger ? strdup(name) : NULL;
+    if (own)
+        names->name[names->count++] = own;
+    names->failed = names->failed || !own;
+    return 0;
+}
+
+static herr_t add_link(hid_t group, const char *name, const H5L_info_t *info, void *names)
+{
+    (void)group, (void)info;
+    return strcmp(name, "timing") != 0 && strncmp(name, "timing/", 7) != 0 ? add_name(names, name)
+                                                                           : 0;
+}
+
+static herr_t add_attribute(hid_t object, const char *name, const H5A_info_t *info, void *names)
+{
+    (void)object, (void)info;
+    return add_name(names, name);
+}
+
+static int by_name(const void *a, const void *b)
+{
+    return strcmp(*(char *const *)a, *(char *const *)b);
+}
+
+static bool is_listed(const char *name, const char *const *list)
+{
+    for (; *list; list++)
+        if (strcmp(name, *list) == 0)
+            return true;
+    return false;
+}
+
+/* Each link below two groups (`owner` NULL), or each attribute of two objects, that either has. */
+static bool for_each(const struct comparing *c, const hid_t object[2], const char *owner,
+                     bool (*look)(const struct comparing *c, const hid_t object[2],
+                                  const char *owner, const char *name))
+{
+    struct names names = {0};
+    bool good = true;
+    for (int f = 0; f < 2 && good; f++)
+        good =
+            (owner ? H5Aiterate2(object[f], H5_INDEX_NAME, H5_ITER_INC, NULL, add_attribute, &names)
+                   : H5Lvisit(object[f], H5_INDEX_NAME, H5_ITER_INC, add_link, &names)) >= 0 ||
+            unreadable(c, f, owner ? "attributes" : "its variables");
+    good = good && (!names.failed || no_memory(c->message));
+    if (names.count > 0)
+        qsort(names.name, names.count, sizeof *names.name, by_name);
+    for (size_t i = 0; good && i < names.count; i++)
+        if (i == 0 || strcmp(names.name[i], names.name[i - 1]) != 0)
+            good = look(c, object, owner, names.name[i]);
+    hdf_free_words(names.name, names.count);
     return good;
 }
 
-/* All attributes of an object that both files have; `owner` "" is the file itself. */
-static bool compare_attributes(struct comparison *comparison, const struct results *const r[2],
-                               const hid_t object[2], const char *owner, stance_message *message)
+/* What both have of that name; *both: they do, and it is to be compared. */
+static bool in_both(const struct comparing *c, const char *name, bool first, bool second,
+                    bool *both)
 {
+    *both = first && second;
+    return *both ||
+           add_difference(c, name, first ? "only in the first file" : "only in the second file");
+}
+
+/* `owner` "" is the file itself. */
+static bool compare_attribute(const struct comparing *c, const hid_t object[2], const char *owner,
+                              const char *name)
+{
+    /* What ties dimensions together holds addresses within the file; checksums say what the values
+     * say. */
+    static const char *const structure[] = {"DIMENSION_LIST", "REFERENCE_LIST", CHECKSUM_ATTRIBUTE,
+                                            NULL};
     static const char *const provenance[] = {
         "program_version", "git_revision", "compiler", "library_versions",
         "instruction_set", "ranks",        "hosts",    "date",
         "merged_from",     "merge_note",   "shard",    NULL};
-    struct names names = {0};
-    bool good = true;
-    char name[192];
-
-    for (int f = 0; f < 2 && good; f++) {
-        good =
-            H5Aiterate2(object[f], H5_INDEX_NAME, H5_ITER_INC, NULL, add_attribute, &names) >= 0 ||
-            unreadable(r[f], "attributes", message);
-    }
-    good = good && (!names.failed || no_memory(message));
-    names_unite(&names);
-    for (size_t i = 0; good && i < names.count; i++) {
-        if (!owner[0] && is_listed(names.name[i], provenance))
-            continue;
-        bool has[2] = {H5Aexists(object[0], names.name[i]) > 0,
-                       H5Aexists(object[1], names.name[i]) > 0};
-        if (has[0] && has[1]) {
-            good = compare_attribute(comparison, r, object, owner, names.name[i], message);
-        } else {
-            snprintf(name, sizeof name, "attribute %.80s%s%.80s", owner, owner[0] ? ":" : "",
-                     names.name[i]);
-            good = add_difference(comparison, name,
-                                  has[0] ? "only in the first file" : "only in the second file") ||
-                   no_memory(message);
-        }
-    }
-    names_free(&names);
-    return good;
-}
-
-/* ---- all of it ---------------------------------------------------------------------------- */
-
-static bool compare_object(struct comparison *comparison, const struct results *const r[2],
-                           const char *name, const uint64_t *list, size_t list_count,
-                           stance_message *message)
-{
-    bool has[2] = {H5Lexists((hid_t)r[0]->id, name, H5P_DEFAULT) > 0,
-                   H5Lexists((hid_t)r[1]->id, name, H5P_DEFAULT) > 0};
-    hid_t object[2] = {-1, -1};
-    if (!has[0] || !has[1]) {
-        return add_difference(comparison, name,
-                              has[0] ? "only in the first file" : "only in the second file") ||
-               no_memory(message);
-    }
-    bool good = true;
-    for (int f = 0; f < 2 && good; f++) {
-        object[f] = H5Oopen((hid_t)r[f]->id, name, H5P_DEFAULT);
-        good = object[f] >= 0 || unreadable(r[f], name, message);
-    }
-    if (good && H5Iget_type(object[0]) != H5Iget_type(object[1])) {
-        good = add_difference(comparison, name, "types") || no_memory(message);
-    } else if (good) {
-        good =
-            (comparison->tolerances || compare_attributes(comparison, r, object, name, message)) &&
-            (H5Iget_type(object[0]) != H5I_DATASET ||
-             compare_variable(comparison, r, object, name, list, list_count, message));
-    }
-    hdf_close(object[0], object[1]);
+    char title[192];
+    bool both;
+    if (is_listed(name, structure) || (!owner[0] && is_listed(name, provenance)))
+        return true;
+    snprintf(title, sizeof title, "attribute %.80s%s%.80s", owner, owner[0] ? ":" : "", name);
+    if (!in_both(c, title, H5Aexists(object[0], name) > 0, H5Aexists(object[1], name) > 0, &both))
+        return false;
+    const hid_t attribute[2] = {both ? H5Aopen(object[0], name, H5P_DEFAULT) : -1,
+                                both ? H5Aopen(object[1], name, H5P_DEFAULT) : -1};
+    const bool good = !both || compare_variable(c, attribute, title);
+    hdf_close(attribute[0], attribute[1]);
     return good;
 }
 
 /* The group that an object is in is missing in one of the files, which is said once. */
-static bool lacks_group(const struct results *const r[2], const char *name)
+static bool lacks_group(const hid_t file[2], const char *name)
 {
     const char *slash = strrchr(name, '/');
     char group[192];
     snprintf(group, sizeof group, "%.*s", slash ? (int)(slash - name) : 0, name);
-    return slash && !(hdf_exists((hid_t)r[0]->id, group) && hdf_exists((hid_t)r[1]->id, group));
+    return slash && !(hdf_exists(file[0], group) && hdf_exists(file[1], group));
+}
+
+static bool compare_link(const struct comparing *c, const hid_t file[2], const char *unused,
+                         const char *name)
+{
+    static const char *const checksums[] = {"checksum", "trajectory/checksum", NULL};
+    hid_t object[2] = {-1, -1};
+    bool both, good = true;
+    (void)unused;
+    if (lacks_group(file, name) || (c->out->tolerances && is_listed(name, checksums)))
+        return true;
+    if (!in_both(c, name, H5Lexists(file[0], name, H5P_DEFAULT) > 0,
+                 H5Lexists(file[1], name, H5P_DEFAULT) > 0, &both))
+        return false;
+    for (int f = 0; f < 2 && good && both; f++) {
+        object[f] = H5Oopen(file[f], name, H5P_DEFAULT);
+        good = object[f] >= 0 || unreadable(c, f, name);
+    }
+    if (good && both) {
+        const H5I_type_t type = H5Iget_type(object[0]);
+        good = type != H5Iget_type(object[1])
+                   ? add_difference(c, name, "types") != NULL
+                   : (c->out->tolerances || for_each(c, object, name, compare_attribute)) &&
+                         (type != H5I_DATASET || compare_variable(c, object, name));
+    }
+    hdf_close(object[0], object[1]);
+    return good;
 }
 
 bool compare_has(const struct results *r, const char *name)
@@ -564,28 +488,14 @@ bool compare_results(struct comparison *comparison, const struct results *first,
                      const struct results *second, const struct compare_tolerances *tolerances,
                      stance_message *message)
 {
-    static const char *const checksums[] = {"checksum", "trajectory/checksum", NULL};
-    const struct results *const r[] = {first, second};
-    const hid_t roots[] = {(hid_t)first->id, (hid_t)second->id};
-    struct names names = {0};
-    uint64_t *list = NULL;
-    size_t list_count = 0;
+    struct comparing c = {.out = comparison, .r = {first, second}, .message = message};
+    const hid_t file[] = {(hid_t)first->id, (hid_t)second->id};
 
     *comparison = (struct comparison){.tolerances = tolerances};
-    bool good = results_recorded(first, &list, &list_count, message);
-    for (int f = 0; f < 2 && good; f++)
-        good = H5Lvisit(roots[f], H5_INDEX_NAME, H5_ITER_INC, add_link, &names) >= 0 ||
-               unreadable(r[f], "its variables", message);
-    good = good && (!names.failed || no_memory(message));
-    names_unite(&names);
-    good = good && (tolerances || compare_attributes(comparison, r, roots, "", message));
-    for (size_t i = 0; good && i < names.count; i++) {
-        good = lacks_group(r, names.name[i]) ||
-               (tolerances && is_listed(names.name[i], checksums)) ||
-               compare_object(comparison, r, names.name[i], list, list_count, message);
-    }
-    names_free(&names);
-    free(list);
+    const bool good = results_recorded(first, &c.list, &c.list_count, message) &&
+                      (tolerances || for_each(&c, file, "", compare_attribute)) &&
+                      for_each(&c, file, NULL, compare_link);
+    free(c.list);
     if (!good)
         compare_free(comparison);
     return good;

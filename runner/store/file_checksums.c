@@ -4,7 +4,7 @@
  * neither an answer nor a trajectory nor a time has a checksum.
  */
 #include "file_checksums.h"
-#include "store_make.h"
+#include "store_private.h"
 
 #include "runner/base/checksum.h"
 #include "runner/base/problem.h"
@@ -16,51 +16,31 @@
 /* ---- the checksum of a variable ----------------------------------------------------------- */
 
 /* A long variable is read in pieces. */
-static bool add_numbers(hid_t dataset, enum store_kind kind, size_t n, uint32_t *crc)
+static bool checksum_of(hid_t dataset, const char *path, uint32_t *crc)
 {
     enum { PIECE = 1 << 16 };
-    void *values = malloc((n < PIECE ? n : PIECE) * sizeof(double));
-    bool good = values != NULL;
-    for (size_t at = 0; good && at < n; at += PIECE) {
-        const size_t count = n - at < PIECE ? n - at : PIECE;
-        good = hdf_move(dataset, hdf_type(kind), at, count, HDF_READ, values);
-        if (good)
-            *crc = checksum_crc32c(*crc, values, count * sizeof(double));
-    }
-    free(values);
-    return good;
-}
-
-static bool add_words(hid_t dataset, size_t n, uint32_t *crc)
-{
-    char **words = hdf_words(dataset, 0, n);
+    const char *const slash = strrchr(path, '/'), *const name = slash ? slash + 1 : path;
+    const size_t n = hdf_elements(dataset);
+    hid_t type = H5Dget_type(dataset);
+    const H5T_class_t class = type < 0 ? H5T_NO_CLASS : H5Tget_class(type);
+    hdf_close(type);
+    bool good = n > 0 && (class == H5T_FLOAT || class == H5T_INTEGER || class == H5T_STRING);
+    double *const values =
+        good && class != H5T_STRING ? malloc((n < PIECE ? n : PIECE) * sizeof *values) : NULL;
+    char **const words = good && class == H5T_STRING ? hdf_words(dataset, 0, n) : NULL;
+    good = values || words;
+    *crc = checksum_crc32c(0, name, strlen(name) + 1);
     for (size_t i = 0; words && i < n; i++)
         *crc = checksum_crc32c(*crc, words[i], strlen(words[i]) + 1);
-    hdf_free_words(words, n);
-    return words != NULL;
-}
-
-static bool checksum_of(hid_t dataset, const char *name, uint32_t *crc)
-{
-    hid_t type = H5Dget_type(dataset);
-    size_t n = hdf_elements(dataset);
-    bool good = false;
-
-    *crc = checksum_crc32c(0, name, strlen(name) + 1);
-    switch (n > 0 && type >= 0 ? H5Tget_class(type) : H5T_NO_CLASS) {
-    case H5T_FLOAT:
-        good = add_numbers(dataset, KIND_double, n, crc);
-        break;
-    case H5T_INTEGER:
-        good = add_numbers(dataset, KIND_int64_t, n, crc);
-        break;
-    case H5T_STRING:
-        good = add_words(dataset, n, crc);
-        break;
-    default:
-        break;
+    for (size_t at = 0, count; good && values && at < n; at += count) {
+        count = n - at < PIECE ? n - at : PIECE;
+        good = hdf_move(dataset, hdf_type(class == H5T_FLOAT ? KIND_double : KIND_int64_t), at,
+                        count, HDF_READ, values);
+        if (good)
+            *crc = checksum_crc32c(*crc, values, count * sizeof *values);
     }
-    hdf_close(type);
+    hdf_free_words(words, n);
+    free(values);
     return good;
 }
 
@@ -68,51 +48,46 @@ static bool checksum_of(hid_t dataset, const char *name, uint32_t *crc)
 
 struct walk {
     bool put, strict;
-    const char *group; /* "", "design", "trajectory", "history" */
-    const char *name;  /* of the file */
+    const char *name; /* of the file */
     stance_message *message;
 };
 
-static bool put_checksum(hid_t dataset, const char *name)
+static bool say_damaged(const struct walk *walk, const char *path, const char *what)
 {
-    uint32_t crc = 0;
-    return checksum_of(dataset, name, &crc) &&
-           put_number(dataset, CHECKSUM_ATTRIBUTE, KIND_uint32_t, &crc);
-}
-
-static bool say_damaged(const struct walk *walk, const char *variable, const char *what)
-{
+    const char *const slash = strrchr(path, '/');
     char word[SHOWN_SIZE]; /* a damaged name may hold anything */
-    return complain(walk->message, "%.100s: damaged: %s%s%s %s", walk->name, walk->group,
-                    walk->group[0] ? "/" : "", shown(word, variable), what);
+    return complain(walk->message, "%.100s: damaged: %.*s%s %s", walk->name,
+                    slash ? (int)(slash + 1 - path) : 0, path,
+                    shown(word, slash ? slash + 1 : path), what);
 }
 
-static bool verify_checksum(const struct walk *walk, hid_t dataset, const char *variable)
+static bool verify_checksum(const struct walk *walk, hid_t dataset, const char *path)
 {
     uint32_t crc = 0, expected = 0;
     if (H5Aexists(dataset, CHECKSUM_ATTRIBUTE) <= 0)
-        return !walk->strict || say_damaged(walk, variable, "has no checksum");
+        return !walk->strict || say_damaged(walk, path, "has no checksum");
     if (!hdf_number(dataset, CHECKSUM_ATTRIBUTE, hdf_type(KIND_uint32_t), &expected) ||
-        !checksum_of(dataset, variable, &crc))
-        return say_damaged(walk, variable, "cannot be read");
-    return crc == expected || say_damaged(walk, variable, "is not as its checksum says");
+        !checksum_of(dataset, path, &crc))
+        return say_damaged(walk, path, "cannot be read");
+    return crc == expected || say_damaged(walk, path, "is not as its checksum says");
 }
 
-/* Looks at one link of a group; a negative value ends the walk. */
-static herr_t visit(hid_t group, const char *name, const H5L_info_t *info, void *context)
+/* Looks at one link; a negative value ends the walk. */
+static herr_t visit(hid_t file, const char *path, const H5L_info_t *info, void *context)
 {
     const struct walk *walk = context;
+    uint32_t crc;
     (void)info;
-    char path[128];
-    snprintf(path, sizeof path, "%s%s%s", walk->group, walk->group[0] ? "/" : "", name);
-    if (store_is_column(path) || store_is_track(path))
+    if (store_is_column(path) || store_is_track(path) || strncmp(path, "timing/", 7) == 0)
         return 0;
-    hid_t object = H5Oopen(group, name, H5P_DEFAULT);
+    hid_t object = H5Oopen(file, path, H5P_DEFAULT);
     bool good = object >= 0;
     if (!good && !walk->put)
-        say_damaged(walk, name, "cannot be opened");
+        say_damaged(walk, path, "cannot be opened");
     if (good && H5Iget_type(object) == H5I_DATASET)
-        good = walk->put ? put_checksum(object, name) : verify_checksum(walk, object, name);
+        good = walk->put ? checksum_of(object, path, &crc) &&
+                               put_attribute(object, CHECKSUM_ATTRIBUTE, KIND_uint32_t, &crc)
+                         : verify_checksum(walk, object, path);
     hdf_close(object);
     return good ? 0 : -1;
 }
@@ -126,60 +101,30 @@ static herr_t touch_attribute(hid_t object, const char *name, const H5A_info_t *
     return attribute < 0 ? -1 : H5Aclose(attribute);
 }
 
+static bool touch_attributes(hid_t object, H5_index_t order)
+{
+    return H5Aiterate2(object, order, H5_ITER_INC, NULL, touch_attribute, NULL) >= 0;
+}
+
 /* Opens one link and its attributes; HDF5 verifies the checksums of what it touches. */
-static herr_t touch(hid_t group, const char *name, const H5L_info_t *info, void *context)
+static herr_t touch(hid_t file, const char *path, const H5L_info_t *info, void *context)
 {
+    H5O_info_t all;
     (void)info;
-    H5O_info_t all;
-    hid_t object = H5Oopen(group, name, H5P_DEFAULT);
+    hid_t object = H5Oopen(file, path, H5P_DEFAULT);
     bool good = object >= 0 && H5Oget_info2(object, &all, H5O_INFO_ALL) >= 0 &&
-                (H5Iget_type(object) != H5I_DATASET || hdf_elements(object) > 0) &&
-                H5Aiterate2(object, H5_INDEX_NAME, H5_ITER_INC, NULL, touch_attribute, NULL) >= 0;
-    if (good && H5Iget_type(object) == H5I_DATASET) { /* netCDF's order */
-        good =
-            H5Aiterate2(object, H5_INDEX_CRT_ORDER, H5_ITER_INC, NULL, touch_attribute, NULL) >= 0;
-    }
+                touch_attributes(object, H5_INDEX_NAME);
+    if (good && H5Iget_type(object) == H5I_DATASET) /* netCDF's order */
+        good = hdf_elements(object) > 0 && touch_attributes(object, H5_INDEX_CRT_ORDER);
     hdf_close(object);
-    return good || say_damaged(context, name, "cannot be opened") ? 0 : -1;
+    return good || say_damaged(context, path, "cannot be opened") ? 0 : -1;
 }
 
-/* Everything in a group can be opened, in the order of its making, too: what other readers go by.
- */
-static bool touch_group(hid_t id, struct walk *walk)
+static bool walk_through(hid_t file, struct walk *walk, H5_index_t order, H5L_iterate_t look)
 {
-    H5O_info_t all;
-    return H5Oget_info2(id, &all, H5O_INFO_ALL) >= 0 &&
-           H5Literate(id, H5_INDEX_NAME, H5_ITER_INC, NULL, touch, walk) >= 0 &&
-           (walk->group[0] ||
-            H5Aiterate2(id, H5_INDEX_CRT_ORDER, H5_ITER_INC, NULL, touch_attribute, NULL) >= 0) &&
-           H5Literate(id, H5_INDEX_CRT_ORDER, H5_ITER_INC, NULL, touch, walk) >= 0;
-}
-
-static bool visit_group(hid_t id, struct walk *walk)
-{
-    return H5Literate(id, H5_INDEX_NAME, H5_ITER_INC, NULL, visit, walk) >= 0;
-}
-
-/* ---- the groups --------------------------------------------------------------------------- */
-
-static bool walk_group(hid_t file, struct walk *walk, const char *group,
-                       bool (*look)(hid_t id, struct walk *walk))
-{
-    walk->group = group;
-    if (group[0] && H5Lexists(file, group, H5P_DEFAULT) <= 0)
+    if (H5Lvisit(file, order, H5_ITER_INC, look, walk) >= 0)
         return true;
-    hid_t id = H5Gopen2(file, group[0] ? group : "/", H5P_DEFAULT);
-    bool good = id >= 0 && look(id, walk);
-    if (!good && !walk->put && walk->message->text[0] == '\0')
-        say_damaged(walk, group[0] ? "*" : "its variables", "cannot be listed");
-    hdf_close(id);
-    return good;
-}
-
-static bool walk_file(hid_t file, struct walk *walk, bool (*look)(hid_t id, struct walk *walk))
-{
-    return walk_group(file, walk, "", look) && walk_group(file, walk, "design", look) &&
-           walk_group(file, walk, "trajectory", look) && walk_group(file, walk, "history", look);
+    return walk->message->text[0] ? false : say_damaged(walk, "its variables", "cannot be listed");
 }
 
 /* ---- both uses ---------------------------------------------------------------------------- */
@@ -187,30 +132,32 @@ static bool walk_file(hid_t file, struct walk *walk, bool (*look)(hid_t id, stru
 bool file_checksums_put(int64_t file)
 {
     struct walk walk = {.put = true};
-    return walk_file((hid_t)file, &walk, visit_group);
-}
-
-bool file_checksums_put_group(int64_t file, const char *group)
-{
-    struct walk walk = {.put = true};
-    return walk_group((hid_t)file, &walk, group, visit_group);
+    return H5Lvisit((hid_t)file, H5_INDEX_NAME, H5_ITER_INC, visit, &walk) >= 0;
 }
 
 bool file_checksums_verify(int64_t file, const char *name, const char *scenario, const char *hash,
                            bool strict, stance_message *message)
 {
-    struct walk walk = {.strict = strict, .group = "", .name = name, .message = message};
+    struct walk walk = {.strict = strict, .name = name, .message = message};
+    const hid_t id = (hid_t)file;
     char found[CHECKSUM_SHA256_TEXT];
+    H5O_info_t all;
 
     message->text[0] = '\0';
-    if (H5Aiterate2((hid_t)file, H5_INDEX_NAME, H5_ITER_INC, NULL, touch_attribute, NULL) < 0)
+    if (!touch_attributes(id, H5_INDEX_NAME))
         return say_damaged(&walk, "its attributes", "cannot be read");
     if (hash && hash[0]) {
         checksum_sha256(scenario, strlen(scenario), found);
         if (strcmp(found, hash) != 0)
             return say_damaged(&walk, "the scenario's text", "is not as its checksum says");
     }
-    return walk_file((hid_t)file, &walk, visit_group) &&
-           (!strict || (walk_file((hid_t)file, &walk, touch_group) &&
-                        walk_group((hid_t)file, &walk, "timing", touch_group)));
+    if (!walk_through(id, &walk, H5_INDEX_NAME, visit))
+        return false;
+    if (!strict)
+        return true;
+    /* Everything can be opened, in the order of its making, too: what other readers go by. */
+    if (H5Oget_info2(id, &all, H5O_INFO_ALL) < 0 || !touch_attributes(id, H5_INDEX_CRT_ORDER))
+        return say_damaged(&walk, "its variables", "cannot be listed");
+    return walk_through(id, &walk, H5_INDEX_NAME, touch) &&
+           walk_through(id, &walk, H5_INDEX_CRT_ORDER, touch);
 }

@@ -18,8 +18,6 @@
 /* Gives every such variable its attribute. `file`: HDF5 identifier of a file open for writing, all
  * of whose variables exist. */
 bool file_checksums_put(int64_t file);
-/* The same for the variables of one group. */
-bool file_checksums_put_group(int64_t file, const char *group);
 
 /* Verifies them, and that `scenario` (the file's attribute of that name) has the SHA-256 `hash`
  * (`scenario_sha256`; NULL or "": there is none). False, with the one-line reason in *message,

@@ -21,6 +21,11 @@ hid_t hdf_type(enum store_kind kind)
     return types[kind];
 }
 
+size_t hdf_size(enum store_kind kind)
+{
+    return kind == KIND_uint8_t ? 1 : kind == KIND_uint32_t || kind == KIND_int32_t ? 4 : 8;
+}
+
 void hdf_close_all(const hid_t *id, size_t count)
 {
     for (size_t i = 0; i < count; i++)
@@ -248,22 +253,51 @@ static bool select_range(hid_t space, int rank, const hsize_t *length, int level
     return true;
 }
 
-bool hdf_move(hid_t object, hid_t type, hsize_t at, hsize_t n, enum hdf_direction way, void *data)
+/* Selects `width` elements of each row of a list, one by one. */
+static bool select_list(hid_t space, int rank, const hsize_t *length, size_t width,
+                        const struct rows *rows)
+{
+    const size_t elements = (size_t)rows->count * width;
+    hsize_t *place = malloc(elements * (size_t)rank * sizeof *place), *at = place;
+    for (size_t i = 0; place && i < elements; i++, at += rank) {
+        uint64_t rest = rows_at(rows, i / width) * width + i % width;
+        for (int d = rank - 1; d >= 0; d--) {
+            at[d] = rest % length[d];
+            rest /= length[d];
+        }
+    }
+    bool good = place && H5Sselect_elements(space, H5S_SELECT_SET, elements, place) >= 0;
+    free(place);
+    return good;
+}
+
+bool hdf_move_rows(hid_t dataset, hid_t type, size_t width, const struct rows *rows,
+                   enum hdf_direction way, void *data)
 {
     hsize_t length[H5S_MAX_RANK], start[H5S_MAX_RANK] = {0};
-    if (H5Iget_type(object) == H5I_ATTR)
-        return H5Aread(object, type, data) >= 0;
-    hid_t space = H5Dget_space(object), memory = H5Screate_simple(1, &n, NULL);
+    const uint64_t first = rows_at(rows, 0), last = rows_at(rows, rows->count - 1);
+    const hsize_t n = rows->count * width, end = (last + 1) * width;
+    hid_t space = H5Dget_space(dataset), memory = H5Screate_simple(1, &n, NULL);
     const int rank = H5Sget_simple_extent_dims(space, length, NULL);
-    bool good =
-        memory >= 0 && rank >= 0 && H5Sget_simple_extent_npoints(space) >= (hssize_t)(at + n) &&
-        (rank == 0 ||
-         (H5Sselect_none(space) >= 0 && select_range(space, rank, length, 0, start, at, at + n)));
+    bool good = memory >= 0 && rank >= 0 && H5Sget_simple_extent_npoints(space) >= (hssize_t)end;
+    if (good && rank > 0) {
+        good = last - first + 1 == rows->count
+                   ? H5Sselect_none(space) >= 0 &&
+                         select_range(space, rank, length, 0, start, first * width, end)
+                   : select_list(space, rank, length, width, rows);
+    }
     good =
-        good && (way == HDF_WRITE ? H5Dwrite(object, type, memory, space, H5P_DEFAULT, data)
-                                  : H5Dread(object, type, memory, space, H5P_DEFAULT, data)) >= 0;
+        good && (way == HDF_WRITE ? H5Dwrite(dataset, type, memory, space, H5P_DEFAULT, data)
+                                  : H5Dread(dataset, type, memory, space, H5P_DEFAULT, data)) >= 0;
     hdf_close(space, memory);
     return good;
+}
+
+bool hdf_move(hid_t object, hid_t type, hsize_t at, hsize_t n, enum hdf_direction way, void *data)
+{
+    return H5Iget_type(object) == H5I_ATTR
+               ? H5Aread(object, type, data) >= 0
+               : hdf_move_rows(object, type, 1, &(struct rows){.first = at, .count = n}, way, data);
 }
 
 char **hdf_words(hid_t object, hsize_t at, size_t n)
@@ -300,44 +334,4 @@ void hdf_free_words(char **words, size_t n)
     for (size_t i = 0; words && i < n; i++)
         free(words[i]);
     free(words);
-}
-
-/* Selects `width` elements of each row of a list, one by one. */
-static bool select_list(hid_t space, int rank, const hsize_t *length, size_t width,
-                        const struct rows *rows)
-{
-    const size_t elements = (size_t)rows->count * width;
-    hsize_t *place = malloc(elements * (size_t)rank * sizeof *place), *at = place;
-    for (size_t i = 0; place && i < elements; i++, at += rank) {
-        uint64_t rest = rows_at(rows, i / width) * width + i % width;
-        for (int d = rank - 1; d >= 0; d--) {
-            at[d] = rest % length[d];
-            rest /= length[d];
-        }
-    }
-    bool good = place && H5Sselect_elements(space, H5S_SELECT_SET, elements, place) >= 0;
-    free(place);
-    return good;
-}
-
-hid_t hdf_select_rows(int dimensions, const hsize_t *lengths, size_t width, const struct rows *rows)
-{
-    hsize_t length[H5S_MAX_RANK], start[H5S_MAX_RANK] = {0};
-    const int rank = dimensions + (width > 1);
-    const uint64_t first = rows_at(rows, 0), last = rows_at(rows, rows->count - 1);
-    memcpy(length, lengths, (size_t)dimensions * sizeof *length);
-    length[dimensions] = width;
-    hid_t space = H5Screate_simple(rank, length, NULL);
-    bool good = space >= 0;
-    if (good && last - first + 1 == rows->count) {
-        good = H5Sselect_none(space) >= 0 &&
-               select_range(space, rank, length, 0, start, first * width, (last + 1) * width);
-    } else if (good) {
-        good = select_list(space, rank, length, width, rows);
-    }
-    if (!good) {
-        hdf_close(space);
-        return -1;
-    }
-    return space;
 }

@@ -19,10 +19,12 @@ enum store_kind {
     KIND_int32_t,
     KIND_int64_t,
     KIND_uint64_t,
-    KIND_double
+    KIND_double,
+    KIND_text /* which has no type of its own */
 };
-/* The type of a kind, in the file and in memory. */
+/* The type of a kind, in the file and in memory, and its bytes. */
 hid_t hdf_type(enum store_kind kind);
+size_t hdf_size(enum store_kind kind);
 
 /* Closes whatever is open of these spaces, types, attributes, datasets, groups, property lists. */
 #define hdf_close(...)                                                                             \
@@ -68,9 +70,8 @@ bool hdf_move(hid_t object, hid_t type, hsize_t at, hsize_t n, enum hdf_directio
 char **hdf_words(hid_t object, hsize_t at, size_t n);
 void hdf_free_words(char **words, size_t n);
 
-/* File space of a variable over the cases, of `width` elements each, with some rows selected (one
- * at least); or -1. */
-hid_t hdf_select_rows(int dimensions, const hsize_t *lengths, size_t width,
-                      const struct rows *rows);
+/* The same of `width` elements in each of some rows, one at least, of a dataset. */
+bool hdf_move_rows(hid_t dataset, hid_t type, size_t width, const struct rows *rows,
+                   enum hdf_direction way, void *data);
 
 #endif

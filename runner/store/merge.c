@@ -12,54 +12,16 @@
 
 static const double last_bits = 1e-9; /* relative difference of designs that are the same */
 
-/* ---- a part, opened ----------------------------------------------------------------------- */
-
-struct opened {
-    struct scenario scenario;
-    struct plan plan;
-    struct store *store;
-    bool planned;
-};
-
-static void close_part(struct opened *part)
+static bool open_part(struct merge *m, struct adopted *part)
 {
-    stance_message ignored;
-    if (part->store)
-        store_close(part->store, &ignored);
-    if (part->planned)
-        plan_free(&part->plan);
-    scenario_free(&part->scenario);
-    free(part);
-}
-
-/* NULL: one line in *message. */
-static struct opened *open_part(const struct merge_part *part, stance_message *message)
-{
-    struct opened *opened = calloc(1, sizeof *opened);
-    struct plan_error error;
     struct store_counts counts;
-    if (!opened) {
-        no_memory(message);
-        return NULL;
-    }
-    bool good = merge_read_part(part, &opened->scenario, message) &&
-                store_count(part->file, &counts, message);
-    if (good && counts.cases != opened->scenario.cases) {
-        good = complain(message, "%.100s: holds one case of a sweep (run --only), not the sweep",
-                        part->file);
-    }
-    if (good && !plan_make(&opened->plan, &opened->scenario, false, 0, false, &error)) {
-        good = complain(message, "%.60s: %.160s", part->file, error.message.text);
-    } else if (good) {
-        opened->planned = true;
-        good = store_open_to_read(&opened->store, part->file, &opened->plan, message) &&
-               store_read_designs(opened->store, &opened->plan, message);
-    }
-    if (!good) {
-        close_part(opened);
-        return NULL;
-    }
-    return opened;
+    if (!adopt_scenario(part, &m->message) || !store_count(part->file, &counts, &m->message))
+        return false;
+    return counts.cases == part->scenario->cases
+               ? adopt_open(part, &m->message)
+               : complain(&m->message,
+                          "%.100s: holds one case of a sweep (run --only), not the sweep",
+                          part->file);
 }
 
 /* ---- axes --------------------------------------------------------------------------------- */
@@ -82,18 +44,17 @@ static double axis_distance(const struct scenario_axis *a, const struct scenario
 
 /* The points of a sample or of a logarithmic axis are what the program that made the part computed:
  * equal scenarios of two versions need not have equal ones. */
-static bool check_axes(struct merge *m, const struct merge_part *part,
-                       const struct scenario *scenario, stance_message *message)
+static bool check_axes(struct merge *m, const struct adopted *part)
 {
     const int shift = m->kind == MERGE_VALUE; /* the new axis is the first one */
-    for (int a = 0; a < scenario->axes; a++) {
-        const struct scenario_axis *axis = &scenario->axis[a];
+    for (int a = 0; a < part->scenario->axes; a++) {
+        const struct scenario_axis *axis = &part->scenario->axis[a];
         if ((!axis->log && !axis->sample) || (m->kind == MERGE_AXIS && a == m->axis))
             continue;
-        const double distance = axis_distance(axis, &m->scenario.axis[a + shift]);
+        const double distance = axis_distance(axis, &m->scenario->axis[a + shift]);
         if (distance > last_bits) {
-            return complain(message, "%.70s: its points along %.50s are not those of %.70s",
-                            part->file, axis->name, m->part[0].file);
+            return complain(&m->message, "%.70s: its points along %.50s are not those of %.70s",
+                            part->file, axis->name, m->part[0].of.file);
         }
         m->designs_differ = m->designs_differ || distance > 0;
     }
@@ -104,11 +65,10 @@ static bool check_axes(struct merge *m, const struct merge_part *part,
 
 /* How far two designs are apart, relative to their largest number. Designs made on different
  * processors differ in last bits. */
-static double distance_between(const struct resolved_design *a, const struct resolved_design *b)
+static double distance_between(const double *x, const double *y, size_t count)
 {
-    const double *x = (const double *)(const void *)a, *y = (const double *)(const void *)b;
     double scale = 0, distance = 0;
-    for (size_t i = 0; i < sizeof *a / sizeof *x; i++) {
+    for (size_t i = 0; i < count; i++) {
         if (isfinite(x[i]) && isfinite(y[i])) {
             scale = fmax(scale, fabs(x[i]));
             distance = fmax(distance, fabs(x[i] - y[i]));
@@ -120,53 +80,46 @@ static double distance_between(const struct resolved_design *a, const struct res
 }
 
 /* Takes the designs that a part has into the merged plan, where they are not yet. */
-static bool take_designs(struct merge *m, const struct merge_part *part,
-                         const struct opened *opened, struct plan *plan, bool *taken,
-                         stance_message *message)
+static bool take_designs(struct merge *m, const struct merge_part *part, struct plan *plan,
+                         bool *taken)
 {
-    for (size_t d = 0; d < opened->plan.designs; d++) {
-        const struct resolved_design design = plan_design_at(&opened->plan, d);
-        const size_t at = plan_design(plan, merge_row(m, part, plan_design_case(&opened->plan, d)));
+    const struct plan *const own = &part->of.plan;
+    for (size_t d = 0; d < own->designs; d++) {
+        const size_t at = plan_design(plan, merge_row(m, part, plan_design_case(own, d)));
         if (!taken[at]) {
             taken[at] = true;
-            plan_design_put(plan, at, &design);
-            plan->design_status[at] = opened->plan.design_status[d];
+            plan_take_design(plan, at, own, d);
             continue;
         }
-        const struct resolved_design other = plan_design_at(plan, at);
-        const double distance = distance_between(&other, &design);
-        if (plan->design_status[at] != opened->plan.design_status[d] || distance > last_bits) {
-            return complain(message,
+        const double distance =
+            distance_between(&plan->design[at * plan->design_size],
+                             &own->design[d * plan->design_size], plan->design_size);
+        if (plan->design_status[at] != own->design_status[d] || distance > last_bits) {
+            return complain(&m->message,
                             "%.100s: its controller design differs from that of another part",
-                            part->file);
+                            part->of.file);
         }
         m->designs_differ = m->designs_differ || distance > 0;
     }
     return true;
 }
 
-static bool collect_designs(struct merge *m, struct plan *plan, bool *usage,
-                            stance_message *message)
+static bool collect_designs(struct merge *m, struct plan *plan)
 {
     bool *taken = calloc(plan->designs, sizeof *taken);
-    bool good = taken || no_memory(message);
+    bool good = taken || no_memory(&m->message);
     for (size_t p = 0; good && p < m->parts; p++) {
-        struct opened *opened = open_part(&m->part[p], message);
-        good = opened != NULL;
-        if (opened && opened->plan.record_rows != plan->record_rows) {
-            complain(message,
-                     "%.100s: its trajectories have another length than those of the whole",
-                     m->part[p].file);
-            *usage = true;
-            good = false;
-        }
+        struct adopted *const part = &m->part[p].of;
+        good = open_part(m, part);
         if (good) {
-            good = check_axes(m, &m->part[p], &opened->scenario, message) &&
-                   take_designs(m, &m->part[p], opened, plan, taken, message);
-            *usage = !good;
+            good = (part->plan.record_rows == plan->record_rows ||
+                    complain(&m->message,
+                             "%.100s: its trajectories have another length than those of the whole",
+                             part->file)) &&
+                   check_axes(m, part) && take_designs(m, &m->part[p], plan, taken);
+            m->usage = !good;
         }
-        if (opened)
-            close_part(opened);
+        adopt_close(part);
     }
     free(taken);
     return good;
@@ -175,7 +128,7 @@ static bool collect_designs(struct merge *m, struct plan *plan, bool *usage,
 /* ---- rows --------------------------------------------------------------------------------- */
 
 struct moving {
-    const struct merge *merge;
+    struct merge *merge;
     const struct merge_part *part;
 };
 
@@ -185,39 +138,30 @@ static uint64_t target_of(void *context, uint64_t row)
     return merge_row(moving->merge, moving->part, row);
 }
 
-static bool copy_rows(struct merge *m, struct merge_part *part, const struct opened *opened,
-                      struct store *store, stance_message *message)
-{
-    const uint64_t before = m->copied.copied + m->copied.same;
-    struct moving moving = {m, part};
-    const bool good = store_copy(opened->store, store, target_of, &moving, &m->copied, message);
-    part->taken = m->copied.copied + m->copied.same - before;
-    return good;
-}
-
-static bool copy_parts(struct merge *m, struct store *store, bool *usage, stance_message *message)
+static bool copy_parts(struct merge *m, struct store *store)
 {
     int rank = 0;
-    for (size_t p = 0; p < m->parts; p++) {
-        struct opened *opened = open_part(&m->part[p], message);
-        bool good = opened && copy_rows(m, &m->part[p], opened, store, message) &&
-                    store_copy_timing(opened->store, store, &rank, message);
-        if (opened)
-            close_part(opened);
+    bool good = true;
+    for (size_t p = 0; good && p < m->parts; p++) {
+        struct merge_part *const part = &m->part[p];
+        const uint64_t before = m->copied.copied + m->copied.same;
+        good = open_part(m, &part->of) &&
+               store_copy(part->of.store, store, target_of, &(struct moving){m, part}, &m->copied,
+                          &m->message) &&
+               store_copy_timing(part->of.store, store, &rank, &m->message);
+        part->taken = m->copied.copied + m->copied.same - before;
+        adopt_close(&part->of);
         if (good && m->copied.conflicting > 0) {
-            complain(message,
-                     "%.80s: %llu case%s from what another part has, the first is case %llu "
-                     "of the whole",
-                     m->part[p].file, (unsigned long long)m->copied.conflicting,
-                     m->copied.conflicting == 1 ? " differs" : "s differ",
-                     (unsigned long long)m->copied.conflict);
-            *usage = true;
-            good = false;
+            m->usage = true;
+            good = complain(&m->message,
+                            "%.80s: %llu case%s from what another part has, the first is case %llu "
+                            "of the whole",
+                            part->of.file, (unsigned long long)m->copied.conflicting,
+                            m->copied.conflicting == 1 ? " differs" : "s differ",
+                            (unsigned long long)m->copied.conflict);
         }
-        if (!good)
-            return false;
     }
-    return true;
+    return good;
 }
 
 /* ---- where it comes from ------------------------------------------------------------------ */
@@ -232,7 +176,7 @@ static const char designs_note[] =
     "that has them are in this file.";
 
 /* One line for each part; freed by the caller. */
-static char *history(const struct merge *m)
+static char *history(struct merge *m)
 {
     char *text = NULL;
     size_t size = 0;
@@ -240,16 +184,15 @@ static char *history(const struct merge *m)
     if (!out)
         return NULL;
     for (size_t p = 0; p < m->parts; p++) {
-        const struct merge_part *part = &m->part[p];
+        const struct store_origin *o = &m->part[p].of.origin;
         fprintf(out, "%s%s: %llu cases, %s, revision %s, %d rank%s on %s", p ? "\n" : "",
-                part->file, (unsigned long long)part->taken, part->origin.date,
-                part->origin.revision, part->origin.ranks, part->origin.ranks == 1 ? "" : "s",
-                part->origin.hosts ? part->origin.hosts : "unknown");
+                m->part[p].of.file, (unsigned long long)m->part[p].taken, o->date, o->revision,
+                o->ranks, o->ranks == 1 ? "" : "s", o->hosts ? o->hosts : "unknown");
     }
     return fclose(out) == 0 ? text : (free(text), NULL);
 }
 
-static bool annotate(const struct merge *m, struct store *store, stance_message *message)
+static bool annotate(struct merge *m, struct store *store)
 {
     const char *const notes[] = {m->keyed ? keys_note : "", m->refined ? refined_note : "",
                                  m->designs_differ ? designs_note : ""};
@@ -257,37 +200,37 @@ static bool annotate(const struct merge *m, struct store *store, stance_message 
     char *text = history(m);
     for (size_t i = 0; i < sizeof notes / sizeof notes[0]; i++)
         words_add(note, sizeof note, "%s%s", note[0] && notes[i][0] ? " " : "", notes[i]);
-    bool good = (text || no_memory(message)) &&
-                store_annotate(store, "merged_from", text, message) &&
-                (!note[0] || store_annotate(store, "merge_note", note, message));
+    bool good = (text || no_memory(&m->message)) &&
+                store_annotate(store, "merged_from", text, &m->message) &&
+                (!note[0] || store_annotate(store, "merge_note", note, &m->message));
     free(text);
     return good;
 }
 
 /* ---- all of it ---------------------------------------------------------------------------- */
 
-bool merge_write(struct merge *m, const char *file, bool *usage, stance_message *message)
+bool merge_write(struct merge *m, const char *file)
 {
     struct plan plan;
     struct plan_error error;
     int ranks = 0;
 
-    *usage = false;
+    m->usage = false;
     for (size_t p = 0; p < m->parts; p++)
-        ranks += m->part[p].origin.ranks > 0 ? m->part[p].origin.ranks : 1;
-    if (!plan_make(&plan, &m->scenario, false, 0, false, &error)) {
-        *message = error.message;
+        ranks += m->part[p].of.origin.ranks > 0 ? m->part[p].of.origin.ranks : 1;
+    if (!plan_make(&plan, m->scenario, false, 0, false, &error)) {
+        m->message = error.message;
         return false;
     }
-    const char *hosts = m->part[0].origin.hosts ? m->part[0].origin.hosts : "";
-    bool good = collect_designs(m, &plan, usage, message) &&
-                store_create(file, &plan, ranks, hosts, message);
+    const char *hosts = m->part[0].of.origin.hosts ? m->part[0].of.origin.hosts : "";
+    bool good =
+        collect_designs(m, &plan) && store_create(file, &plan, NULL, ranks, hosts, &m->message);
     if (good) {
         struct store *store = NULL;
-        good = store_open(&store, file, &plan, 1, message) &&
-               copy_parts(m, store, usage, message) && annotate(m, store, message);
+        good = store_open(&store, file, &plan, 1, &m->message) && copy_parts(m, store) &&
+               annotate(m, store);
         if (good)
-            good = store_close(store, message);
+            good = store_close(store, &m->message);
         else
             store_abandon(store);
         if (!good)

@@ -11,15 +11,12 @@
 #ifndef STANCE_STORE_MERGE_H
 #define STANCE_STORE_MERGE_H
 
-#include "store.h"
-
-#include "runner/plan/plan.h"
+#include "adopt.h"
 
 enum merge_kind { MERGE_EQUAL, MERGE_AXIS, MERGE_VALUE };
 
 struct merge_part {
-    const char *file;
-    struct store_origin origin;
+    struct adopted of;
     size_t points;    /* along the axis; 1 where it has none */
     size_t *position; /* [points] in the merged axis; NULL: the only one */
     uint64_t taken;   /* rows */
@@ -29,24 +26,23 @@ struct merge {
     size_t parts;
     struct merge_part *part; /* [parts] */
     enum merge_kind kind;
-    int axis;                 /* of the merged scenario; 0 when equal */
-    char path[128];           /* of the axis or the value, "" when equal */
-    size_t points;            /* of the merged axis; 1 when equal */
-    uint64_t inner;           /* cases in one point of it, of those axes that come after it */
-    struct scenario scenario; /* merged */
-    bool keyed;               /* has random numbers that are not those of one run */
-    bool refined;             /* along the merged axis, each part for itself */
-    bool designs_differ;      /* or computed axes, in last bits: the first part's are in the file */
+    int axis;                  /* of the merged scenario; 0 when equal */
+    char path[128];            /* of the axis or the value, "" when equal */
+    size_t points;             /* of the merged axis; 1 when equal */
+    struct scenario *scenario; /* merged */
+    uint64_t inner;            /* cases in one point of it, of those axes that come after it */
+    bool keyed;                /* has random numbers that are not those of one run */
+    bool refined;              /* along the merged axis, each part for itself */
+    bool designs_differ; /* or computed axes, in last bits: the first part's are in the file */
+    bool usage; /* of what failed: what the parts are is at fault, not reading or writing */
+    stance_message message; /* why it failed */
     struct store_copied copied;
 };
 
-/* Reads what the parts are and finds how they fit. False: one line in *message; `*usage`: it is
- * what the parts are that is at fault, not the reading. Release in any case. */
-bool merge_plan(struct merge *merge, const char *const *files, size_t count, bool *usage,
-                stance_message *message);
-/* Writes the merged file, which must not exist. False: nothing is left of it. A conflict, rows that
- * are done in two parts but differ, is `*usage`. */
-bool merge_write(struct merge *merge, const char *file, bool *usage, stance_message *message);
+/* Reads what the parts are and finds how they fit. Release in any case. */
+bool merge_plan(struct merge *merge, const char *const *files, size_t count);
+/* Writes the merged file, which must not exist. False: nothing is left of it. */
+bool merge_write(struct merge *merge, const char *file);
 void merge_free(struct merge *merge);
 
 /* The row of the merged file in which a row of a part stands. */
@@ -58,9 +54,5 @@ static inline uint64_t merge_row(const struct merge *merge, const struct merge_p
     const size_t place = part->position ? part->position[point] : 0;
     return (outer * merge->points + place) * merge->inner + row % merge->inner;
 }
-
-/* The scenario of a part, its axes as its file has them; released by scenario_free. */
-bool merge_read_part(const struct merge_part *part, struct scenario *scenario,
-                     stance_message *message);
 
 #endif

@@ -14,16 +14,16 @@
 
 /* ---- scenarios as trees ------------------------------------------------------------------- */
 
-static bool read_tree(struct tree *tree, const struct merge_part *part, stance_message *message)
+static bool read_tree(struct merge *m, struct tree *tree, const struct merge_part *part)
 {
     struct problems *problems = calloc(1, sizeof *problems);
     *tree = (struct tree){0};
     const bool good =
-        problems && part->origin.scenario &&
-        tree_parse(tree, part->origin.scenario, strlen(part->origin.scenario), problems);
+        problems && part->of.origin.scenario &&
+        tree_parse(tree, part->of.origin.scenario, strlen(part->of.origin.scenario), problems);
     free(problems);
     if (!good)
-        complain(message, "%.100s: its scenario cannot be read", part->file);
+        complain(&m->message, "%.100s: its scenario cannot be read", part->of.file);
     return good;
 }
 
@@ -94,21 +94,20 @@ static int axis_of(const char *path)
     return sscanf(path, "sweep.grid[%d]", &axis) == 1 ? axis : -1;
 }
 
-static bool misfit(const struct merge *m, const struct differences *found, size_t part,
-                   stance_message *message)
+static bool misfit(struct merge *m, const struct differences *found, size_t part)
 {
     char list[84] = "";
     for (size_t i = 0; i < found->count && strlen(list) + 41 < sizeof list; i++)
         words_add(list, sizeof list, "%s%.38s", i ? ", " : "", found->path[i]);
     return complain(
-        message,
+        &m->message,
         "%.32s: differs from %.32s in %.70s: parts may differ along one axis or in one value "
         "that can be swept",
-        m->part[part].file, m->part[0].file, list);
+        m->part[part].of.file, m->part[0].of.file, list);
 }
 
 /* A value that stands in every part and may become an axis. */
-static bool is_value(const struct merge *m, const struct tree *trees, const char *path)
+static bool is_value(struct merge *m, const struct tree *trees, const char *path)
 {
     static const char *const fixed[] = {"stance", "title", "scene", "seed", "sweep", "record"};
     for (size_t i = 0; i < sizeof fixed / sizeof fixed[0]; i++) {
@@ -122,7 +121,7 @@ static bool is_value(const struct merge *m, const struct tree *trees, const char
     return true;
 }
 
-static bool classify(struct merge *m, const struct tree *trees, stance_message *message)
+static bool classify(struct merge *m, const struct tree *trees)
 {
     struct differences found = {.count = 0};
     size_t last = 0;
@@ -152,7 +151,7 @@ static bool classify(struct merge *m, const struct tree *trees, stance_message *
     m->axis = 0;
     m->kind = MERGE_VALUE;
     snprintf(m->path, sizeof m->path, "%s", found.path[0]);
-    return (found.count == 1 && is_value(m, trees, m->path)) || misfit(m, &found, last, message);
+    return (found.count == 1 && is_value(m, trees, m->path)) || misfit(m, &found, last);
 }
 
 /* ---- points of the merged axis ------------------------------------------------------------ */
@@ -170,13 +169,6 @@ struct points {
     size_t count, room;
     bool numbers, rising, falling; /* all of them; in every part */
 };
-
-static void free_points(struct points *points)
-{
-    for (size_t i = 0; i < points->count; i++)
-        free(points->point[i].text);
-    free(points->point);
-}
 
 static bool add_point(struct points *points, const char *text, double number, size_t part,
                       size_t place)
@@ -201,57 +193,52 @@ static bool add_point(struct points *points, const char *text, double number, si
     return point->text != NULL;
 }
 
-static bool same_paths(const struct scenario_axis *a, const char paths[][96], int count)
+/* The points that a part has along the axis, as YAML: "0.1", or "0.1, 2" for several paths. */
+static bool add_points(const struct scenario_axis *axis, struct points *points, size_t part)
 {
-    bool same = a->paths == count;
-    for (int k = 0; same && k < count; k++)
-        same = strcmp(a->path[k], paths[k]) == 0;
-    return same;
+    char text[1024], value[128];
+    const bool number = !axis->words && axis->paths == 1;
+    bool good = true;
+    for (size_t i = 0; good && i < axis->count; i++) {
+        text[0] = '\0';
+        for (int k = 0; k < axis->paths; k++) {
+            scenario_axis_text(axis, i, k, value, sizeof value);
+            words_add(text, sizeof text, "%s%s", k ? ", " : "", value);
+        }
+        good = add_point(points, text, number ? scenario_axis_value(axis, i, 0) : NAN, part, i);
+    }
+    return good;
 }
 
-/* The points that the parts have along the axis. */
-static bool collect_axis(struct merge *m, struct points *points, stance_message *message)
+/* Of all parts, whose axes must have the same paths. */
+static bool collect_axis(struct merge *m, struct points *points)
 {
-    char(*paths)[96] = calloc(SCENARIO_MAX_PATHS, sizeof *paths), text[1024];
-    struct scenario *s = calloc(1, sizeof *s);
-    int path_count = 0;
-    bool good = (paths && s) || no_memory(message);
-
+    struct scenario_axis *first = calloc(1, sizeof *first);
+    bool good = first || no_memory(&m->message);
     for (size_t p = 0; good && p < m->parts; p++) {
-        good = merge_read_part(&m->part[p], s, message);
+        struct adopted *const part = &m->part[p].of;
+        good = adopt_scenario(part, &m->message);
         if (!good)
             break;
-        const struct scenario_axis *axis = &s->axis[m->axis];
-        if (p == 0) {
-            path_count = axis->paths;
-            memcpy(paths, axis->path, (size_t)path_count * sizeof *paths);
-            snprintf(m->path, sizeof m->path, "%s", axis->name);
-        } else if (!same_paths(axis, (const char(*)[96])paths, path_count)) {
-            good = complain(message, "%.80s: its axis %.40s is not that of %.80s", m->part[p].file,
-                            axis->name, m->part[0].file);
-        }
+        const struct scenario_axis *axis = &part->scenario->axis[m->axis];
+        if (p == 0)
+            *first = *axis; /* its paths, which are no pointers */
         m->part[p].points = axis->count;
-        for (size_t i = 0; good && i < axis->count; i++) {
-            const bool number = !axis->words && axis->paths == 1;
-            text[0] = '\0'; /* as YAML: "0.1", or "0.1, 2" for several paths */
-            for (int k = 0; k < axis->paths; k++) {
-                char value[128];
-                scenario_axis_text(axis, i, k, value, sizeof value);
-                words_add(text, sizeof text, "%s%s", k ? ", " : "", value);
-            }
-            good = add_point(points, text, number ? scenario_axis_value(axis, i, 0) : NAN, p, i) ||
-                   no_memory(message);
-        }
-        scenario_free(s);
+        good = axis->paths == first->paths;
+        for (int k = 0; good && k < axis->paths; k++)
+            good = strcmp(axis->path[k], first->path[k]) == 0;
+        good = good ? add_points(axis, points, p) || no_memory(&m->message)
+                    : complain(&m->message, "%.80s: its axis %.40s is not that of %.80s",
+                               part->file, axis->name, m->part[0].of.file);
+        adopt_close(part);
     }
-    free(paths);
-    free(s);
+    snprintf(m->path, sizeof m->path, "%s", good ? first->name : "");
+    free(first);
     return good;
 }
 
 /* The value that each part has instead of an axis. */
-static bool collect_values(struct merge *m, const struct tree *trees, struct points *points,
-                           stance_message *message)
+static bool collect_values(struct merge *m, const struct tree *trees, struct points *points)
 {
     for (size_t p = 0; p < m->parts; p++) {
         const char *text = text_at(trees[p].root, m->path);
@@ -261,7 +248,7 @@ static bool collect_values(struct merge *m, const struct tree *trees, struct poi
             number = strcmp(text, "none") == 0 ? INFINITY : NAN;
         m->part[p].points = 1;
         if (!add_point(points, text, number, p, 0))
-            return no_memory(message);
+            return no_memory(&m->message);
     }
     return true;
 }
@@ -278,19 +265,14 @@ static int by_number_falling(const void *left, const void *right)
     return by_number(right, left);
 }
 
-static bool same_point(const struct points *points, const struct point *a, const struct point *b)
-{
-    return points->numbers ? a->number == b->number : strcmp(a->text, b->text) == 0;
-}
-
 /* Finds the place of every point in the merged axis; only the first of equal ones is kept in the
  * list, which is then the axis. */
-static bool place_points(struct merge *m, struct points *points, stance_message *message)
+static bool place_points(struct merge *m, struct points *points)
 {
     for (size_t p = 0; p < m->parts; p++) {
         m->part[p].position = calloc(m->part[p].points, sizeof *m->part[p].position);
         if (!m->part[p].position)
-            return no_memory(message);
+            return no_memory(&m->message);
     }
     const bool sort = points->numbers && (points->rising || points->falling);
     if (sort && points->count > 1) {
@@ -301,7 +283,8 @@ static bool place_points(struct merge *m, struct points *points, stance_message 
     for (size_t i = 0; i < points->count; i++) {
         struct point *point = &points->point[i];
         size_t at = sort && kept > 0 ? kept - 1 : 0; /* equal ones are neighbours when sorted */
-        while (at < kept && !same_point(points, point, &points->point[at]))
+        while (at < kept && (points->numbers ? points->point[at].number != point->number
+                                             : strcmp(points->point[at].text, point->text) != 0))
             at++;
         m->part[point->part].position[point->place] = at;
         if (at == kept) {
@@ -329,7 +312,7 @@ static bool is_range(const struct points *points, size_t count)
 }
 
 /* "sweep.grid[AXIS]={path: ..., values: [...]}"; freed by the caller. */
-static char *axis_setting(const struct merge *m, const struct points *points, int axis,
+static char *axis_setting(struct merge *m, const struct points *points, int axis,
                           const struct tree_node *paths)
 {
     char *text = NULL;
@@ -372,7 +355,7 @@ static struct tree_node *grid_of(const struct tree *tree)
 }
 
 /* Gives the tree of the first part the merged axis. */
-static bool set_axis(const struct merge *m, const struct points *points, struct tree *tree,
+static bool set_axis(struct merge *m, const struct points *points, struct tree *tree,
                      struct problems *problems)
 {
     struct tree_node *grid = grid_of(tree);
@@ -399,27 +382,26 @@ struct recorded {
 
 /* The cases that any part lists; those of a part that records all of them need no list, but then
  * all parts have to. */
-static bool collect_recorded(const struct merge *m, bool all, struct recorded *list,
-                             stance_message *message)
+static bool collect_recorded(struct merge *m, bool all, struct recorded *list)
 {
-    struct scenario *s = calloc(1, sizeof *s);
-    bool good = s || no_memory(message);
+    bool good = true;
     for (size_t p = 0; good && p < m->parts; p++) {
-        good = merge_read_part(&m->part[p], s, message);
+        struct merge_part *const part = &m->part[p];
+        good = adopt_scenario(&part->of, &m->message);
+        const struct scenario *const s = part->of.scenario;
         if (good && (s->record_cases == RECORD_ALL) != all) {
-            good = complain(message, "%.60s: record.cases is `all` in some of the files only",
-                            m->part[p].file);
+            good = complain(&m->message, "%.60s: record.cases is `all` in some of the files only",
+                            part->of.file);
         } else if (good) {
             uint64_t *larger =
                 realloc(list->row, (list->count + s->record_count + 1) * sizeof *larger);
             list->row = larger ? larger : list->row;
             for (size_t i = 0; larger && i < s->record_count; i++)
-                larger[list->count++] = merge_row(m, &m->part[p], s->record_list[i]);
-            good = larger || no_memory(message);
+                larger[list->count++] = merge_row(m, part, s->record_list[i]);
+            good = larger || no_memory(&m->message);
         }
-        scenario_free(s);
+        adopt_close(&part->of);
     }
-    free(s);
     list->count = list->row ? numbers_unite(list->row, list->count) : 0;
     return good;
 }
@@ -427,12 +409,12 @@ static bool collect_recorded(const struct merge *m, bool all, struct recorded *l
 /* record.cases lists cases by their number, which the merged axis changes. `first`: the first
  * part, whose text is left where it says the same. */
 static bool set_recorded(struct merge *m, const struct scenario *first, struct tree *tree,
-                         struct problems *problems, stance_message *message)
+                         struct problems *problems)
 {
     struct recorded list = {.count = 0};
     char *text = NULL;
     size_t size = 0;
-    bool good = collect_recorded(m, first->record_cases == RECORD_ALL, &list, message);
+    bool good = collect_recorded(m, first->record_cases == RECORD_ALL, &list);
     const bool same = list.count == first->record_count &&
                       (list.count == 0 ||
                        memcmp(list.row, first->record_list, list.count * sizeof *list.row) == 0);
@@ -443,105 +425,82 @@ static bool set_recorded(struct merge *m, const struct scenario *first, struct t
             fprintf(out, "%s%llu", i ? ", " : "[", (unsigned long long)list.row[i]);
         fputs("]", out);
         fclose(out);
-        good = tree_set(tree, text, 1, problems) || no_memory(message);
+        good = tree_set(tree, text, 1, problems) || no_memory(&m->message);
     } else if (good && !same) {
-        good = no_memory(message);
+        good = no_memory(&m->message);
     }
     free(list.row);
     free(text);
     return good;
 }
 
-/* From a text; the first error is the message. */
-static bool read_scenario(struct scenario *scenario, const char *file, const char *text,
-                          stance_message *message)
-{
-    char *said = NULL;
-    size_t size = 0;
-    FILE *errors = open_memstream(&said, &size);
-    if (!errors)
-        return no_memory(message);
-    const bool good = scenario_read(scenario, file, text, NULL, 0, errors);
-    fclose(errors);
-    if (!good)
-        complain(message, "%.*s", (int)strcspn(said, "\n"), said);
-    free(said);
-    return good;
-}
-
-static bool read_merged(struct merge *m, const struct tree *tree, stance_message *message)
+static bool read_merged(struct merge *m, const struct tree *tree)
 {
     char *text = tree_write(tree->root);
-    bool good = text ? read_scenario(&m->scenario, "the merged scenario", text, message)
-                     : no_memory(message);
+    struct scenario *const s = m->scenario =
+        text ? adopt_text("the merged scenario", text, &m->message) : NULL;
+    const struct adopted *const first = &m->part[0].of;
+    if (!text)
+        no_memory(&m->message);
     free(text);
-    if (good && m->part[0].origin.title)
-        snprintf(m->scenario.title, sizeof m->scenario.title, "%s", m->part[0].origin.title);
+    if (!s)
+        return false;
+    if (first->origin.title)
+        snprintf(s->title, sizeof s->title, "%s", first->origin.title);
     /* Computed axes as the first file has them: they may differ in last bits between processors. */
-    for (int a = 0; good && a < m->scenario.axes; a++) {
-        good = (a == m->axis && m->kind != MERGE_EQUAL) ||
-               store_read_axis(m->part[0].file, &m->scenario.axis[a], message);
-    }
-    return good;
+    const int before = m->kind == MERGE_EQUAL ? s->axes : m->axis;
+    return store_read_axes(first->file, s->axis, before, &m->message) &&
+           (before == s->axes ||
+            store_read_axes(first->file, s->axis + before + 1, s->axes - before - 1, &m->message));
 }
 
-static bool make_scenario(struct merge *m, struct tree *trees, stance_message *message)
+static bool make_scenario(struct merge *m, struct tree *trees)
 {
     struct points points = {.numbers = true, .rising = true, .falling = true};
     struct problems *problems = calloc(1, sizeof *problems);
-    struct scenario *first = calloc(1, sizeof *first);
-    bool good = (problems && first) || no_memory(message);
+    struct scenario *first = NULL;
+    bool good = problems || no_memory(&m->message);
 
-    good = good && (m->kind == MERGE_EQUAL
-                        ? true
-                        : (m->kind == MERGE_AXIS ? collect_axis(m, &points, message)
-                                                 : collect_values(m, trees, &points, message)) &&
-                              place_points(m, &points, message));
-    if (good && m->kind != MERGE_EQUAL && !set_axis(m, &points, &trees[0], problems)) {
-        good = no_memory(message);
-        if (problems->count > 0)
-            complain(message, "the merged axis: %.200s", problems->list[0].text);
+    if (good && m->kind != MERGE_EQUAL) {
+        good = (m->kind == MERGE_AXIS ? collect_axis(m, &points)
+                                      : collect_values(m, trees, &points)) &&
+               place_points(m, &points);
+        if (good && !set_axis(m, &points, &trees[0], problems)) {
+            good = no_memory(&m->message);
+            if (problems->count > 0)
+                complain(&m->message, "the merged axis: %.200s", problems->list[0].text);
+        }
     }
-    good = good && merge_read_part(&m->part[0], first, message);
+    if (good)
+        first = adopt_text(m->part[0].of.file, m->part[0].of.origin.scenario, &m->message);
+    good = first != NULL;
     if (good) {
         m->inner = first->cases;
         for (int a = 0; m->kind == MERGE_AXIS && a <= m->axis; a++)
             m->inner /= first->axis[a].count;
-        good = set_recorded(m, first, &trees[0], problems, message);
-        scenario_free(first);
+        good = set_recorded(m, first, &trees[0], problems);
     }
-    free(first);
+    scenario_drop(first);
     free(problems);
-    free_points(&points);
-    return good && read_merged(m, &trees[0], message);
+    for (size_t i = 0; i < points.count; i++)
+        free(points.point[i].text);
+    free(points.point);
+    return good && read_merged(m, &trees[0]);
 }
 
 /* ---- parts -------------------------------------------------------------------------------- */
 
-bool merge_read_part(const struct merge_part *part, struct scenario *scenario,
-                     stance_message *message)
-{
-    bool good = read_scenario(scenario, part->file, part->origin.scenario, message);
-    for (int a = 0; good && a < scenario->axes; a++) {
-        good = store_read_axis(part->file, &scenario->axis[a], message);
-        if (!good)
-            scenario_free(scenario);
-    }
-    return good;
-}
-
-static bool open_parts(struct merge *m, const char *const *files, size_t count,
-                       stance_message *message)
+static bool open_parts(struct merge *m, const char *const *files, size_t count)
 {
     m->part = calloc(count, sizeof *m->part);
     if (!m->part)
-        return no_memory(message);
+        return no_memory(&m->message);
     for (; m->parts < count; m->parts++) {
         struct merge_part *part = &m->part[m->parts];
-        part->file = files[m->parts];
+        part->of.file = files[m->parts];
         part->points = 1;
-        if (!store_check(part->file, true, message) ||
-            !store_read_origin(part->file, &part->origin, message))
+        if (!store_check(part->of.file, true, &m->message) ||
+            !store_read_origin(part->of.file, &part->of.origin, &m->message))
             return false;
     }
     return true;
@@ -560,42 +519,43 @@ static bool has_random_numbers(const struct scenario *s)
     return noise;
 }
 
-bool merge_plan(struct merge *m, const char *const *files, size_t count, bool *usage,
-                stance_message *message)
+bool merge_plan(struct merge *m, const char *const *files, size_t count)
 {
     *m = (struct merge){.points = 1};
-    *usage = false;
+    m->usage = false;
     struct tree *trees = calloc(count, sizeof *trees);
-    bool good = (trees || no_memory(message)) && open_parts(m, files, count, message);
+    bool good = (trees || no_memory(&m->message)) && open_parts(m, files, count);
     for (size_t p = 0; good && p < count; p++)
-        good = read_tree(&trees[p], &m->part[p], message);
+        good = read_tree(m, &trees[p], &m->part[p]);
     if (good) {
-        *usage = true;
+        m->usage = true;
         /* Of the values of keys that cases of several scenarios have, a file tells those of the
          * last one. */
         for (size_t p = 0; good && p < count; p++)
-            good = m->part[p].origin.ancestors == 0 ||
-                   complain(message, "%.120s: was made from several scenarios: it cannot be merged",
-                            m->part[p].file);
-        good = good && classify(m, trees, message) && make_scenario(m, trees, message);
+            good = m->part[p].of.origin.ancestors == 0 ||
+                   complain(&m->message,
+                            "%.120s: was made from several scenarios: it cannot be merged",
+                            m->part[p].of.file);
+        good = good && classify(m, trees) && make_scenario(m, trees);
     }
     for (size_t p = 0; good && p < count; p++)
-        good = store_same_points(m->part[p].file, &m->part[p].origin, &m->scenario, message);
+        good =
+            store_same_points(m->part[p].of.file, &m->part[p].of.origin, m->scenario, &m->message);
     for (size_t p = 0; trees && p < count; p++)
         tree_free(&trees[p]);
     free(trees);
-    m->keyed = good && m->kind != MERGE_EQUAL && has_random_numbers(&m->scenario);
-    m->refined = good && m->kind != MERGE_EQUAL && m->scenario.axis[m->axis].refined;
+    m->keyed = good && m->kind != MERGE_EQUAL && has_random_numbers(m->scenario);
+    m->refined = good && m->kind != MERGE_EQUAL && m->scenario->axis[m->axis].refined;
     return good;
 }
 
 void merge_free(struct merge *m)
 {
     for (size_t p = 0; p < m->parts; p++) {
-        store_origin_free(&m->part[p].origin);
+        store_origin_free(&m->part[p].of.origin);
         free(m->part[p].position);
     }
     free(m->part);
-    scenario_free(&m->scenario);
+    scenario_drop(m->scenario);
     *m = (struct merge){0};
 }

@@ -1,6 +1,7 @@
 /* results.c - reads results files with HDF5's serial driver; trusts nothing that it finds. */
 #include "file_checksums.h"
 #include "results_private.h"
+#include "results_rows.h"
 #include "store.h"
 
 #include "runner/base/checksum.h"
@@ -227,7 +228,8 @@ static bool read_axes(struct results *r, stance_message *message)
 
 /* ---- status, outcome, failure ------------------------------------------------------------- */
 
-void results_no_counts(double *values, size_t n)
+/* Counts that there are none of become NAN. */
+static void no_counts(double *values, size_t n)
 {
     for (size_t i = 0; i < n; i++)
         values[i] = values[i] == (double)STANCE_NO_COUNT ? NAN : values[i];
@@ -341,7 +343,7 @@ bool results_answer(const struct results *r, const char *name, double **values,
     void *numbers;
     const bool good = read_cases(r, name, KIND_double, &numbers, message);
     *values = numbers;
-    results_no_counts(*values, *values ? r->cases : 0);
+    no_counts(*values, *values ? r->cases : 0);
     for (uint64_t i = 0; *values && i < r->cases; i++)
         if (r->kind[i] == RESULTS_PENDING || r->kind[i] == RESULTS_FAILED)
             (*values)[i] = NAN;
@@ -380,6 +382,52 @@ bool results_timing(const struct results *r, double *longest, double *total, dou
         *cases += values[i];
     free(values);
     return n > 0 && isfinite(*total) && *longest > 0 && *cases > 0;
+}
+
+/* ---- some rows at a time ------------------------------------------------------------------- */
+
+bool results_column_open(const struct results *r, const char *name, struct results_column *column,
+                         stance_message *message)
+{
+    *column = (struct results_column){.id = -1};
+    snprintf(column->name, sizeof column->name, "%s", name);
+    const struct results_variable v = results_variable(r, name);
+    if (v.id < 0)
+        return !hdf_exists((hid_t)r->id, name) || results_failed(r, name, message);
+    bool good = (v.rank == r->axes || v.rank == r->axes + 1) && v.number;
+    for (int a = 0; good && a < r->axes; a++)
+        good = v.length[a] == r->axis[a].count;
+    column->width = good && v.rank > r->axes ? (size_t)v.length[v.rank - 1] : 1;
+    good = good && column->width <= SCENARIO_MAX_STATES;
+    column->id = v.id;
+    if (!good) {
+        results_column_close(column);
+        return results_failed(r, name, message);
+    }
+    column->words = hdf_text(v.id, "flag_meanings");
+    if (column->words)
+        results_clean(column->words);
+    return true;
+}
+
+void results_column_close(struct results_column *column)
+{
+    if (column->id >= 0)
+        hdf_close((hid_t)column->id);
+    free(column->words);
+    column->id = -1;
+    column->words = NULL;
+}
+
+bool results_column_read(const struct results *r, const struct results_column *column,
+                         uint64_t first, size_t rows, double *values, stance_message *message)
+{
+    const size_t n = rows * column->width;
+    if (!hdf_move((hid_t)column->id, hdf_type(KIND_double), first * column->width, n, HDF_READ,
+                  values))
+        return results_failed(r, column->name, message);
+    no_counts(values, n);
+    return true;
 }
 
 /* ---- opening ------------------------------------------------------------------------------ */

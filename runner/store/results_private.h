@@ -1,6 +1,5 @@
 /* results_private.h - how results files are read, shared by results.c (what is in all of them),
- * results_sample.c (values of a sample), results_rows.c and results_trajectory.c; nothing else
- * includes it.
+ * results_sample.c (values of a sample), results_trajectory.c and compare.c.
  */
 #ifndef STANCE_STORE_RESULTS_PRIVATE_H
 #define STANCE_STORE_RESULTS_PRIVATE_H
@@ -26,8 +25,6 @@ bool results_damaged(const struct results *r, const char *what, stance_message *
 bool results_no_memory(const struct results *r, stance_message *message);
 /* Name, unit and text of what an axis or a sampled variable holds. */
 void results_describe(hid_t dataset, const char *name, struct results_axis *axis);
-/* Counts that there are none of become NAN. */
-void results_no_counts(double *values, size_t n);
 void results_copy_attribute(hid_t object, const char *name, char *buffer, size_t size);
 /* What the axis `sample` varies, once the axes have been read; nothing where there is none. */
 bool results_read_sample(struct results *r, stance_message *message);

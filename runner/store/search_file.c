@@ -2,7 +2,7 @@
 #include "search_file.h"
 #include "build_info.h"
 #include "file_checksums.h"
-#include "store_make.h"
+#include "store_private.h"
 
 #include "runner/base/message.h"
 
@@ -12,28 +12,21 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
 
 #define VERSION 1
 enum { MOST_OVER = 3 };
 
-struct entry {
+static const struct entry {
     const char *name, *unit, *text;
-    size_t size, offset; /* of an element; of the pointer in struct search_file */
+    size_t offset; /* of the pointer in struct search_file */
     enum store_kind kind;
     int over[MOST_OVER];
-};
-
-static const struct entry table[] = {
+} table[] = {
 #define ENTRY(name, type, a, b, c, unit, text)                                                     \
-    {#name,                                                                                        \
-     unit,                                                                                         \
-     text,                                                                                         \
-     sizeof(type),                                                                                 \
-     offsetof(struct search_file, name),                                                           \
-     KIND_##type,                                                                                  \
-     {SEARCH_##a, SEARCH_##b, SEARCH_##c}},
+    {#name,       unit,                                                                            \
+     text,        offsetof(struct search_file, name),                                              \
+     KIND_##type, {SEARCH_##a, SEARCH_##b, SEARCH_##c}},
     SEARCH_VARIABLES(ENTRY) SEARCH_ADDED(ENTRY)
 #undef ENTRY
 };
@@ -53,50 +46,45 @@ static const struct {
 #undef DIMENSION
 };
 
-static char ***words_of(const struct search_file *f, int d)
-{
-    return (char ***)(void *)((char *)(uintptr_t)f + dimensions[d].words);
-}
-
 /* Attributes: texts, and numbers with the type of the file and of memory. */
 static const struct {
     const char *name;
-    size_t offset;
     enum store_kind kind;
-    bool text;
+    size_t offset;
 } attributes[] = {
-#define TEXT(name, member)                                                                         \
+#define ATTRIBUTE(name, kind, member)                                                              \
     {                                                                                              \
-        name, offsetof(struct search_file, member), KIND_uint8_t, true                             \
+        name, kind, offsetof(struct search_file, member)                                           \
     }
-#define NUMBER(name, type, member)                                                                 \
-    {                                                                                              \
-        name, offsetof(struct search_file, member), KIND_##type, false                             \
-    }
-    TEXT("git_revision", revision),
-    TEXT("date", date),
-    TEXT("scenario", scenario),
-    TEXT("first_scenario", first_scenario),
-    TEXT("note", note),
-    NUMBER("chosen", int64_t, chosen),
-    NUMBER("most_generations", int64_t, most_generations),
-    NUMBER("most_cases", double, most_cases),
-    NUMBER("finished", int32_t, finished),
-    NUMBER("linear_limit", double, linear_limit),
-    NUMBER("wall_time", double, seconds),
+    ATTRIBUTE("title", KIND_text, title),
+    ATTRIBUTE("git_revision", KIND_text, revision),
+    ATTRIBUTE("date", KIND_text, date),
+    ATTRIBUTE("scenario", KIND_text, scenario),
+    ATTRIBUTE("first_scenario", KIND_text, first_scenario),
+    ATTRIBUTE("note", KIND_text, note),
+    ATTRIBUTE("chosen", KIND_int64_t, chosen),
+    ATTRIBUTE("most_generations", KIND_int64_t, most_generations),
+    ATTRIBUTE("most_cases", KIND_double, most_cases),
+    ATTRIBUTE("finished", KIND_int32_t, finished),
+    ATTRIBUTE("linear_limit", KIND_double, linear_limit),
+    ATTRIBUTE("wall_time", KIND_double, seconds),
 };
 enum { ATTRIBUTES = sizeof attributes / sizeof *attributes };
 
-static void *attribute_of(const struct search_file *f, int i)
+/* What a row of these tables is of a file. */
+static void *member_of(const struct search_file *f, size_t offset)
 {
-    return (char *)(uintptr_t)f + attributes[i].offset;
+    return (char *)(uintptr_t)f + offset;
 }
 
-/* ---- room ----------------------------------------------------------------------------------- */
-
-static void **place_of(struct search_file *f, const struct entry *e)
+static void **place_of(const struct search_file *f, const struct entry *e)
 {
-    return (void **)(void *)((char *)f + e->offset);
+    return member_of(f, e->offset);
+}
+
+static char ***words_of(const struct search_file *f, int d)
+{
+    return member_of(f, dimensions[d].words);
 }
 
 static size_t elements_of(const struct search_file *f, const struct entry *e)
@@ -107,11 +95,13 @@ static size_t elements_of(const struct search_file *f, const struct entry *e)
     return n;
 }
 
+/* ---- room ----------------------------------------------------------------------------------- */
+
 bool search_file_room(struct search_file *f)
 {
     bool good = true;
     for (int i = 0; i < ENTRIES && good; i++) {
-        *place_of(f, &table[i]) = calloc(elements_of(f, &table[i]) + 1, table[i].size);
+        *place_of(f, &table[i]) = calloc(elements_of(f, &table[i]) + 1, hdf_size(table[i].kind));
         good = *place_of(f, &table[i]) != NULL;
     }
     for (int d = 0; d < SEARCH_DIMENSION_COUNT && good; d++)
@@ -123,11 +113,9 @@ bool search_file_room(struct search_file *f)
 void search_file_copy(struct search_file *f, const struct search_file *from,
                       enum search_dimension first)
 {
-    for (int i = 0; i < ENTRIES; i++)
-        if (table[i].over[0] == (int)first)
-            memcpy(*place_of(f, &table[i]),
-                   *place_of((struct search_file *)(uintptr_t)from, &table[i]),
-                   elements_of(from, &table[i]) * table[i].size);
+    for (const struct entry *e = table; e < table + ENTRIES; e++)
+        if (e->over[0] == (int)first)
+            memcpy(*place_of(f, e), *place_of(from, e), elements_of(from, e) * hdf_size(e->kind));
 }
 
 void search_file_free(struct search_file *f)
@@ -137,64 +125,57 @@ void search_file_free(struct search_file *f)
             hdf_free_words(*words_of(f, d), f->length[d]);
     for (int i = 0; i < ENTRIES; i++)
         free(*place_of(f, &table[i]));
-    free(f->title);
     for (int i = 0; i < ATTRIBUTES; i++)
-        if (attributes[i].text)
-            free(*(char **)attribute_of(f, i));
+        if (attributes[i].kind == KIND_text)
+            free(*(char **)member_of(f, attributes[i].offset));
     *f = (struct search_file){0};
 }
 
 /* ---- writing -------------------------------------------------------------------------------- */
 
-static bool put_dimension(hid_t file, const struct search_file *f, int d, int *count,
-                          struct dimension *dimension)
+static void put_variables(struct maker *m, const struct search_file *f)
 {
     static const char *const text[SEARCH_DIMENSION_COUNT] = {
         [SEARCH_CANDIDATE] = "number of the candidate",
         [SEARCH_GENERATION] = "number of the generation",
         [SEARCH_CONFIRMED] = "number of the candidate that was tried from fresh starts",
         [SEARCH_START] = "number of the fresh start"};
-    const struct variable variable = {dimensions[d].name, KIND_double, "1", text[d], .flags = NULL};
-    if (dimensions[d].words)
-        return make_words(count, file, dimensions[d].name, (const char *const *)*words_of(f, d),
-                          f->length[d], dimension);
-    return make_numbers(count, file, &variable, f->length[d], NULL, NULL, dimension);
-}
-
-static bool put_variables(hid_t file, const struct search_file *f)
-{
     struct dimension over[SEARCH_DIMENSION_COUNT];
-    int count = 0;
-    bool good = true;
-    for (int d = 0; d < SEARCH_DIMENSION_COUNT && good; d++)
-        good = f->length[d] == 0 || put_dimension(file, f, d, &count, &over[d]);
-    for (int i = 0; i < ENTRIES && good; i++) {
-        const struct entry *const e = &table[i];
-        const struct dimension *list[MOST_OVER];
-        int rank = 0;
-        if (elements_of(f, e) == 0)
-            continue;
-        while (rank < MOST_OVER && e->over[rank] != SEARCH_NO) {
-            list[rank] = &over[e->over[rank]];
-            rank++;
-        }
-        const struct variable variable = {e->name, e->kind, e->unit, e->text, .flags = NULL};
-        good = put_variable(file, &variable, list, rank, *place_of((struct search_file *)f, e));
+    for (int d = 0; d < SEARCH_DIMENSION_COUNT; d++) {
+        const bool words = dimensions[d].words > 0;
+        const struct dataset dataset = {dimensions[d].name,
+                                        words ? KIND_text : KIND_double,
+                                        false,
+                                        words ? NULL : "1",
+                                        text[d],
+                                        .values = words ? *words_of(f, d) : NULL,
+                                        .value = make_place,
+                                        .length = f->length[d]};
+        if (f->length[d] > 0)
+            make(m, &dataset, &over[d]);
     }
-    return good;
+    for (const struct entry *e = table; e < table + ENTRIES; e++) {
+        struct dataset dataset = {e->name, e->kind, false,
+                                  e->unit, e->text, .values = *place_of(f, e)};
+        for (int d = 0; d < MOST_OVER && e->over[d] != SEARCH_NO; d++)
+            dataset.over[d] = &over[e->over[d]];
+        if (elements_of(f, e) > 0)
+            make(m, &dataset, NULL);
+    }
 }
 
-static bool put_attributes(hid_t file, const struct search_file *f)
+static void put_attributes_of(struct maker *m, const struct search_file *f)
 {
-    bool good = put_text(file, "Conventions", "CF-1.8") && put_text(file, "title", f->title) &&
-                put_int(file, "search_version", VERSION);
-    for (int i = 0; good && i < ATTRIBUTES; i++) {
-        void *const value = attribute_of(f, i);
-        char *const text = attributes[i].text ? *(char **)value : NULL;
-        good = attributes[i].text ? put_text(file, attributes[i].name, text ? text : "")
-                                  : put_number(file, attributes[i].name, attributes[i].kind, value);
+    const int32_t version = VERSION;
+    struct attribute list[ATTRIBUTES + 2] = {{"Conventions", KIND_text, "CF-1.8"},
+                                             {"search_version", KIND_int32_t, &version}};
+    for (int i = 0; i < ATTRIBUTES; i++) {
+        const void *value = member_of(f, attributes[i].offset);
+        if (attributes[i].kind == KIND_text)
+            value = *(char *const *)value ? *(char *const *)value : "";
+        list[i + 2] = (struct attribute){attributes[i].name, attributes[i].kind, value};
     }
-    return good;
+    put_attributes(m, m->file, list, ATTRIBUTES + 2);
 }
 
 /* So that the name never stands for less than what has come to the disk. */
@@ -208,16 +189,19 @@ static bool sync_file(const char *file)
 bool search_file_write(const struct search_file *f, const char *file, stance_message *message)
 {
     char part[PATH_MAX];
+    struct maker m;
     if (snprintf(part, sizeof part, "%s.part", file) >= (int)sizeof part)
         return store_system_failed(message, file, "write", ENAMETOOLONG);
     hdf_remember();
     unlink(part); /* of a write that was killed */
-    const hid_t id = store_create_hdf(part);
-    if (id < 0)
+    make_file(&m, part);
+    if (m.failed)
         return store_failed(message, file, "write");
-    bool good = put_variables(id, f) && file_checksums_put(id) && put_attributes(id, f);
-    good = good || store_failed(message, file, "write");
-    if (H5Fclose(id) < 0 && good)
+    put_variables(&m, f);
+    m.failed = m.failed || !file_checksums_put(m.file);
+    put_attributes_of(&m, f);
+    bool good = !m.failed || store_failed(message, file, "write");
+    if (H5Fclose(m.file) < 0 && good)
         good = store_failed(message, file, "write");
     good = good && ((sync_file(part) && rename(part, file) == 0) ||
                     store_system_failed(message, file, "write", errno));
@@ -267,13 +251,11 @@ static bool read_variable(hid_t file, struct search_file *f, const struct entry 
         return true;
     }
     const hid_t dataset = H5Dopen2(file, e->name, H5P_DEFAULT);
-    int rank = 0;
-    while (rank < MOST_OVER && e->over[rank] != SEARCH_NO)
-        rank++;
-    bool good = dataset >= 0 && hdf_shape(dataset, length) == rank &&
-                hdf_elements(dataset) == elements_of(f, e);
-    for (int d = 0; d < rank && good; d++)
-        good = length[d] == f->length[e->over[d]];
+    const int rank = hdf_shape(dataset, length);
+    bool good = rank > 0 && rank <= MOST_OVER && hdf_elements(dataset) == elements_of(f, e);
+    for (int d = 0; d < MOST_OVER && good; d++)
+        good = d < rank ? e->over[d] != SEARCH_NO && length[d] == f->length[e->over[d]]
+                        : e->over[d] == SEARCH_NO;
     good = good && hdf_read(dataset, e->kind, *place_of(f, e));
     hdf_close(dataset);
     return good;
@@ -281,10 +263,10 @@ static bool read_variable(hid_t file, struct search_file *f, const struct entry 
 
 static bool read_attributes(hid_t file, struct search_file *f)
 {
-    bool good = (f->title = hdf_text(file, "title")) != NULL;
+    bool good = true;
     for (int i = 0; good && i < ATTRIBUTES; i++) {
-        void *const value = attribute_of(f, i);
-        good = attributes[i].text
+        void *const value = member_of(f, attributes[i].offset);
+        good = attributes[i].kind == KIND_text
                    ? (*(char **)value = hdf_text(file, attributes[i].name)) != NULL
                    : hdf_number(file, attributes[i].name, hdf_type(attributes[i].kind), value);
     }

@@ -17,26 +17,19 @@
 
 /* ---- tables ------------------------------------------------------------------------------- */
 
-const struct variable store_columns[COLUMNS] = {
-#define FILL_uint8_t false, 0 /* every number of a code is one of its words */
-#define FILL_int64_t true, (double)STANCE_NO_COUNT
-#define FILL_double true, NAN
-#define COLUMN(name, type, unit, text, ...)                                                        \
-    {                                                                                              \
-        name, KIND_##type, unit, text, __VA_ARGS__, NULL, sizeof(type)                             \
-    }
+const struct dataset store_columns[COLUMNS] = {
 #define STORE_COLUMN(name, type, how, told, unit, text)                                            \
-    [STANCE_ANSWER_##name] = COLUMN(#name, type, unit, text, FILL_##type),
+    [STANCE_ANSWER_##name] = {#name, KIND_##type, KIND_##type != KIND_uint8_t, unit, text},
+    /* every number of a code is one of its words */
     STANCE_ANSWERS(STORE_COLUMN)[COLUMN_FINAL_STATE] =
-        COLUMN("final_state", double, NULL,
-               "coordinates and their rates when the simulation stopped", FILL_double),
-    [COLUMN_SCENARIO_NUMBER] = COLUMN("scenario_number", uint8_t, NULL,
-                                      "scenario that the case was computed with: places of the "
-                                      "group history, then the file's own",
-                                      false, 0),
-    [COLUMN_CHECKSUM] =
-        COLUMN("checksum", uint32_t, "1", "CRC-32C over the answers of the case", false, 0),
-    [COLUMN_STATUS] = COLUMN("status", uint8_t, "1", "whether the case was computed", false, 0),
+        {"final_state", KIND_double, true, NULL,
+         "coordinates and their rates when the simulation stopped"},
+    [COLUMN_SCENARIO_NUMBER] = {"scenario_number", KIND_uint8_t, false, NULL,
+                                "scenario that the case was computed with: places of the group "
+                                "history, then the file's own"},
+    [COLUMN_CHECKSUM] = {"checksum", KIND_uint32_t, false, "1",
+                         "CRC-32C over the answers of the case"},
+    [COLUMN_STATUS] = {"status", KIND_uint8_t, false, "1", "whether the case was computed"},
 };
 
 #define TRACK(member, unit, text, over, parts)                                                     \
@@ -89,46 +82,28 @@ size_t store_trajectory_width(const stance_scene *scene, int variable)
     return (size_t)over[t->over] * t->parts;
 }
 
-int store_dimensions(const struct plan *plan, hsize_t lengths[SCENARIO_MAX_AXES])
-{
-    const struct scenario *s = plan->scenario;
-    if (plan->single || s->axes == 0) {
-        lengths[0] = 1;
-        return 1;
-    }
-    for (int a = 0; a < s->axes; a++)
-        lengths[a] = s->axis[a].count;
-    return s->axes;
-}
-
-void store_design_columns(const stance_scene *scene,
-                          struct store_design_column columns[DESIGN_COLUMNS])
-{
-    const int n = scene->coordinates, m = scene->actuators, p = 2 * scene->postures;
-    /* name, in struct resolved_design, unit, rows x columns, row length there, dimensions */
-#define VECTOR(name, member, unit, n, over, text)                                                  \
-    {                                                                                              \
-        name, offsetof(struct resolved_design, member), unit, 1, n, n, 1, {over}, text             \
-    }
-    const struct store_design_column all[DESIGN_COLUMNS] = {
-        {"gain",
-         offsetof(struct resolved_design, gain),
-         NULL,
-         m,
-         p,
-         2 * STANCE_MAX_POSTURE,
-         2,
-         {DESIGN_ACTUATOR, DESIGN_POSTURE},
-         "gains of the linear law: torque = feedforward - gain * error"},
-        VECTOR("equilibrium_position", equilibrium, NULL, n, DESIGN_COORDINATE,
-               "coordinates of the controller's equilibrium"),
-        VECTOR("equilibrium_torque", torque, "N m", m, DESIGN_ACTUATOR,
-               "torques that hold the controller's equilibrium"),
-        VECTOR("start_position", start, NULL, n, DESIGN_COORDINATE,
-               "coordinates of the initial equilibrium, foot at the origin"),
-    };
-    memcpy(columns, all, sizeof all);
-}
+const struct store_design_column store_design_columns[RESOLVED_PARTS] = {
+    {"gain",
+     NULL,
+     "gains of the linear law: torque = feedforward - gain * error",
+     RESOLVED_GAIN,
+     {DESIGN_ACTUATOR, DESIGN_POSTURE}},
+    {"equilibrium_position",
+     NULL,
+     "coordinates of the controller's equilibrium",
+     RESOLVED_EQUILIBRIUM,
+     {DESIGN_ONE, DESIGN_COORDINATE}},
+    {"equilibrium_torque",
+     "N m",
+     "torques that hold the controller's equilibrium",
+     RESOLVED_TORQUE,
+     {DESIGN_ONE, DESIGN_ACTUATOR}},
+    {"start_position",
+     NULL,
+     "coordinates of the initial equilibrium, foot at the origin",
+     RESOLVED_START,
+     {DESIGN_ONE, DESIGN_COORDINATE}},
+};
 
 /* ---- the library -------------------------------------------------------------------------- */
 
@@ -164,25 +139,6 @@ hid_t store_serial_access(void)
 
 /* ---- opening and closing ------------------------------------------------------------------ */
 
-static hid_t open_for_ranks(const char *file, int ranks)
-{
-    hid_t access = store_serial_access();
-    if (access < 0)
-        return -1;
-    hid_t id = -1;
-#if defined(STANCE_MPI) && defined(H5_HAVE_PARALLEL)
-    if (ranks > 1 && H5Pset_fapl_mpio(access, MPI_COMM_WORLD, MPI_INFO_NULL) < 0) {
-        hdf_close(access);
-        return -1;
-    }
-#else
-    (void)ranks;
-#endif
-    id = H5Fopen(file, H5F_ACC_RDWR, access);
-    hdf_close(access);
-    return id;
-}
-
 /* Collective: rank 0 reads where the dataset is and tells the others, lest thousands of ranks read
  * the same few bytes of the file. *there, where not NULL: whether there is one. */
 static hid_t find_dataset(const struct store *store, const char *name, bool *there)
@@ -200,29 +156,29 @@ static hid_t find_dataset(const struct store *store, const char *name, bool *the
     return dataset;
 }
 
-static hid_t open_dataset(const struct store *store, const char *name)
-{
-    return find_dataset(store, name, NULL);
-}
-
 static bool open_columns(struct store *store, stance_message *message)
 {
     const struct scenario *s = store->plan->scenario;
     hsize_t length[SCENARIO_MAX_AXES + 1], found[H5S_MAX_RANK];
-    memcpy(length, store->length, sizeof store->length);
+    const int axes = store->plan->single ? 0 : s->axes, dimensions = axes > 0 ? axes : 1;
+    length[0] = 1;
+    for (int a = 0; a < axes; a++)
+        length[a] = s->axis[a].count;
 
     for (int c = 0; c < COLUMNS; c++) {
         const bool history = c == COLUMN_SCENARIO_NUMBER && store->plan->ancestors > 0;
         if (!store_has_column(s, c) && !history)
             continue;
-        size_t width = store->width[c] = store_column_width(s, c);
-        const int rank = store->rank + (width > 1);
+        const size_t width = store_column_width(s, c);
+        store->width[c] = width;
+        store->size[c] = width * hdf_size(store_columns[c].kind);
+        const int rank = dimensions + (width > 1);
         const bool all = s->answers == UINT64_MAX && c < STANCE_ANSWER_COUNT;
         bool there = true;
         store->column[c] = find_dataset(store, store_columns[c].name, all ? &there : NULL);
         if (!there) /* all answers that the version knew which made the file */
             continue;
-        length[store->rank] = width;
+        length[dimensions] = width;
         if (store->column[c] < 0 || hdf_shape(store->column[c], found) != rank ||
             memcmp(found, length, (size_t)rank * sizeof *length) != 0) {
             return complain(message, "%.100s: variable '%s' is not as this scenario needs it",
@@ -246,11 +202,11 @@ static bool open_trajectories(struct store *store, stance_message *message)
             continue;
         char name[64];
         snprintf(name, sizeof name, "trajectory/%s", store_trajectories[v].name);
-        store->trajectory[v] = open_dataset(store, name);
+        store->trajectory[v] = find_dataset(store, name, NULL);
         if (store->trajectory[v] < 0)
             return store_failed(message, store->file, "open the trajectories");
     }
-    store->trajectory_checksum = open_dataset(store, "trajectory/checksum");
+    store->trajectory_checksum = find_dataset(store, "trajectory/checksum", NULL);
     return store->trajectory_checksum >= 0 ||
            store_failed(message, store->file, "open the trajectories");
 }
@@ -268,7 +224,6 @@ static bool open_store(struct store **result, hid_t id, const char *file, const 
     store->plan = plan;
     store->id = id;
     store->ranks = ranks;
-    store->rank = store_dimensions(plan, store->length);
     store->trajectory_checksum = -1;
     store->no_count = STANCE_NO_COUNT;
     for (int c = 0; c < COLUMNS; c++)
@@ -285,7 +240,14 @@ bool store_open(struct store **result, const char *file, const struct plan *plan
                 stance_message *message)
 {
     /* Collective: before anything that can fail alone. */
-    const hid_t id = open_for_ranks(file, ranks);
+    hid_t access = store_serial_access(), id = -1;
+    bool good = access >= 0;
+#if defined(STANCE_MPI) && defined(H5_HAVE_PARALLEL)
+    good = good && (ranks == 1 || H5Pset_fapl_mpio(access, MPI_COMM_WORLD, MPI_INFO_NULL) >= 0);
+#endif
+    if (good)
+        id = H5Fopen(file, H5F_ACC_RDWR, access);
+    hdf_close(access);
     return open_store(result, id, file, plan, ranks, message);
 }
 
@@ -299,7 +261,7 @@ bool store_open_to_read(struct store **result, const char *file, const struct pl
 void store_abandon(struct store *store)
 {
     if (store) {
-        store_block_free(store->checked);
+        free(store->checked);
         free(store);
     }
 }
@@ -322,30 +284,16 @@ bool store_close(struct store *store, stance_message *message)
 /* ---- rows --------------------------------------------------------------------------------- */
 
 /* All columns, in order: the checksum and then the status are the last ones. */
-bool store_move_rows(struct store *store, struct store_block *block, size_t slot,
+bool store_move_rows(const struct store *store, const struct store_block *block, size_t slot,
                      const struct rows *rows, enum hdf_direction way, stance_message *message)
 {
-    const size_t state = 2 * (size_t)store->plan->scenario->scene->coordinates;
-    hid_t narrow = hdf_select_rows(store->rank, store->length, 1, rows);
-    hid_t wide = hdf_select_rows(store->rank, store->length, state, rows);
-    bool good = (narrow >= 0 && wide >= 0) ||
-                store_failed(message, store->file, "select rows of the results");
-    for (int c = 0; good && c < COLUMNS; c++) {
-        if (store->column[c] < 0)
-            continue;
-        const hsize_t width = store->width[c], n = rows->count * width;
-        char *data = (char *)block->column[c] + slot * width * store_columns[c].size;
-        const hid_t dataset = store->column[c], type = hdf_type(store_columns[c].kind),
-                    space = width > 1 ? wide : narrow, memory = H5Screate_simple(1, &n, NULL);
-        good = memory >= 0 &&
-               (way == HDF_WRITE ? H5Dwrite(dataset, type, memory, space, H5P_DEFAULT, data)
-                                 : H5Dread(dataset, type, memory, space, H5P_DEFAULT, data)) >= 0;
-        good = good || store_failed(message, store->file,
-                                    way == HDF_WRITE ? "write the results" : "read the results");
-        hdf_close(memory);
-    }
-    hdf_close(narrow, wide);
-    return good;
+    bool good = true;
+    for (int c = 0; good && c < COLUMNS; c++)
+        good = store->column[c] < 0 ||
+               hdf_move_rows(store->column[c], hdf_type(store_columns[c].kind), store->width[c],
+                             rows, way, (char *)block->column[c] + slot * store->size[c]);
+    return good || store_failed(message, store->file,
+                                way == HDF_WRITE ? "write the results" : "read the results");
 }
 
 /* ---- rows in memory ----------------------------------------------------------------------- */
@@ -354,34 +302,26 @@ size_t store_row_size(const struct store *store)
 {
     size_t size = 0;
     for (int c = 0; c < COLUMNS; c++)
-        size += store->column[c] >= 0 ? store->width[c] * store_columns[c].size : 0;
+        size += store->column[c] >= 0 ? store->size[c] : 0;
     return size;
 }
 
 struct store_block *store_block_make(const struct store *store, size_t rows)
 {
-    struct store_block *block = calloc(1, sizeof *block);
-    bool good = block != NULL;
-    for (int c = 0; good && c < COLUMNS; c++) {
-        if (store->column[c] >= 0) {
-            block->column[c] = malloc(rows * store->width[c] * store_columns[c].size);
-            good = block->column[c] != NULL;
-        }
+    enum { ALIGNED = 16 };
+    size_t offset[COLUMNS], size = (sizeof(struct store_block) + ALIGNED - 1) / ALIGNED * ALIGNED;
+    for (int c = 0; c < COLUMNS; c++) {
+        offset[c] = size;
+        const size_t bytes = store->column[c] >= 0 ? rows * store->size[c] : 0;
+        size += (bytes + ALIGNED - 1) / ALIGNED * ALIGNED;
     }
-    if (!good) {
-        store_block_free(block);
-        return NULL;
+    struct store_block *const block = malloc(size);
+    if (block) {
+        *block = (struct store_block){.store = store};
+        for (int c = 0; c < COLUMNS; c++)
+            block->column[c] = store->column[c] >= 0 ? (char *)block + offset[c] : NULL;
     }
-    block->store = store;
-    block->rows = rows;
     return block;
-}
-
-void store_block_free(struct store_block *block)
-{
-    for (int c = 0; block && c < COLUMNS; c++)
-        free(block->column[c]);
-    free(block);
 }
 
 uint32_t store_row_checksum(const struct store_block *block, size_t slot)
@@ -389,7 +329,7 @@ uint32_t store_row_checksum(const struct store_block *block, size_t slot)
     uint32_t crc = 0;
     for (int c = 0; c < COLUMNS; c++) {
         if (block->column[c] && c != COLUMN_CHECKSUM) {
-            size_t size = block->store->width[c] * store_columns[c].size;
+            const size_t size = block->store->size[c];
             crc = checksum_crc32c(crc, (const char *)block->column[c] + slot * size, size);
         }
     }
@@ -450,7 +390,7 @@ static bool write_span(struct store *store, const struct store_block *block, siz
     if (!store_move_rows(store, between, 0, &span, HDF_READ, message))
         return false;
     for (int c = 0; c < COLUMNS; c++) {
-        const size_t size = store->width[c] * store_columns[c].size;
+        const size_t size = store->size[c];
         for (uint64_t k = 0; store->column[c] >= 0 && k < rows->count; k++)
             memcpy((char *)between->column[c] + (rows_at(rows, k) - first) * size,
                    (const char *)block->column[c] + (slot + k) * size, size);
@@ -477,7 +417,7 @@ bool store_write(struct store *store, struct store_block *block, size_t slot,
                    ? store_move_rows(store, block, slot + at, &part, HDF_WRITE, message)
                    : write_span(store, block, slot + at, &part, between, message);
     }
-    store_block_free(between);
+    free(between);
     return good;
 }
 
@@ -567,59 +507,76 @@ bool store_verify(struct store *store, const struct rows *rows, stance_result *r
 
 /* ---- designs and timing ------------------------------------------------------------------- */
 
-bool store_move_design(const struct plan *plan, struct plan *into,
-                       const struct store_design_column *column, hid_t dataset)
+static struct resolved_part part_of(const stance_scene *scene, int column)
 {
-    const size_t rows = (size_t)column->rows, length = (size_t)column->columns;
-    double *data = malloc(plan->designs * rows * length * sizeof *data);
-    bool good = data && (!into || hdf_read(dataset, KIND_double, data));
-    for (size_t i = 0; good && i < plan->designs * rows; i++) {
-        struct resolved_design own = plan_design_at(plan, i / rows);
-        double *design =
-            (double *)(void *)((char *)&own + column->offset) + i % rows * (size_t)column->stride;
-        const bool exists = plan->design_status[i / rows] == STANCE_DONE;
-        for (size_t k = 0; k < length; k++)
+    return resolve_part(scene, store_design_columns[column].part);
+}
+
+size_t store_design_width(const stance_scene *scene, int column)
+{
+    return part_of(scene, column).rows * part_of(scene, column).length;
+}
+
+/* Moves them from the plan, NAN where there is none, or into it. */
+static void move_designs(const struct plan *plan, bool into, int column, double *data)
+{
+    const size_t width = store_design_width(plan->scenario->scene, column),
+                 place = part_of(plan->scenario->scene, column).place;
+    for (size_t d = 0; d < plan->designs; d++) {
+        double *const own = &plan->design[d * plan->design_size + place];
+        for (size_t i = 0; i < width; i++, data++)
             if (into)
-                design[k] = data[i * length + k];
+                own[i] = *data;
             else
-                data[i * length + k] = exists ? design[k] : NAN;
-        if (into)
-            plan_design_put(into, i / rows, &own);
+                *data = plan->design_status[d] == STANCE_DONE ? own[i] : NAN;
     }
-    good = good && (into || hdf_write(dataset, KIND_double, data));
-    free(data);
-    return good;
+}
+
+static double *design_room(const struct plan *plan, int column)
+{
+    return malloc(plan->designs * store_design_width(plan->scenario->scene, column) *
+                  sizeof(double));
+}
+
+double *store_design_values(const struct plan *plan, int column)
+{
+    double *const data = design_room(plan, column);
+    if (data)
+        move_designs(plan, false, column, data);
+    return data;
 }
 
 bool store_read_designs(struct store *store, struct plan *plan, stance_message *message)
 {
-    struct store_design_column columns[DESIGN_COLUMNS];
     bool good = true;
-    store_design_columns(plan->scenario->scene, columns);
-    for (int k = 0; k < DESIGN_COLUMNS; k++) { /* all of them, even when this rank has failed */
-        if (columns[k].rows * columns[k].columns == 0)
-            continue;
+    for (int k = 0; k < RESOLVED_PARTS; k++) { /* all of them, even when this rank has failed */
         char name[64];
-        snprintf(name, sizeof name, "design/%s", columns[k].name);
-        const hid_t dataset = open_dataset(store, name);
-        good = store_move_design(plan, plan, &columns[k], dataset) && good;
+        if (store_design_width(plan->scenario->scene, k) == 0)
+            continue;
+        snprintf(name, sizeof name, "design/%s", store_design_columns[k].name);
+        const hid_t dataset = find_dataset(store, name, NULL);
+        double *const data = design_room(plan, k);
+        good = data && hdf_read(dataset, KIND_double, data) && good;
+        if (good)
+            move_designs(plan, true, k, data);
+        free(data);
         hdf_close(dataset);
     }
-    const hid_t dataset = open_dataset(store, "design/status");
+    const hid_t dataset = find_dataset(store, "design/status", NULL);
     good = good && hdf_read(dataset, KIND_uint8_t, plan->design_status);
     hdf_close(dataset);
     return good || store_failed(message, store->file, "read the designs");
 }
 
-/* Adds to a variable of the group, which may have fewer places than there are ranks. */
-static bool add_times(const struct store *store, const char *name, int ranks, const double *more)
+bool store_add_times(const struct store *store, const char *name, size_t first, size_t count,
+                     const double *more)
 {
     const hid_t dataset = H5Dopen2(store->id, name, H5P_DEFAULT);
     hsize_t length[H5S_MAX_RANK] = {0};
     double *total = hdf_shape(dataset, length) == 1 ? calloc(length[0] + 1, sizeof *total) : NULL;
     bool good = total && length[0] > 0 && hdf_read(dataset, KIND_double, total);
-    for (int rank = 0; good && rank < ranks; rank++)
-        total[(hsize_t)rank % length[0]] += more[rank];
+    for (size_t i = 0; good && i < count; i++)
+        total[(first + i) % length[0]] += more[i];
     good = good && hdf_write(dataset, KIND_double, total);
     free(total);
     hdf_close(dataset);
@@ -629,7 +586,8 @@ static bool add_times(const struct store *store, const char *name, int ranks, co
 bool store_add_timing(struct store *store, int ranks, const double *wall_time, const double *cases,
                       stance_message *message)
 {
-    return (add_times(store, "timing/wall_time", ranks, wall_time) &&
-            add_times(store, "timing/cases", ranks, cases)) ||
+    const size_t count = (size_t)ranks;
+    return (store_add_times(store, "timing/wall_time", 0, count, wall_time) &&
+            store_add_times(store, "timing/cases", 0, count, cases)) ||
            store_failed(message, store->file, "write the timing");
 }

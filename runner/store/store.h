@@ -71,22 +71,25 @@ uint64_t store_size(const struct plan *plan, int ranks);
 
 /* Rank 0 alone: creates the file, which must not exist, with everything but the cases, and
  * reserves its space, but for a shard, whose file has holes. On failure nothing is left behind.
- * Designs must have been computed. */
-bool store_create(const char *file, const struct plan *plan, int ranks, const char *hosts,
-                  stance_message *message);
+ * Designs must have been computed. `before`: the origin of a file whose rows it takes over to go on
+ * with another scenario (changed_scenario.h), for the group `history`; NULL: there is none. */
+struct store_origin;
+bool store_create(const char *file, const struct plan *plan, const struct store_origin *before,
+                  int ranks, const char *hosts, stance_message *message);
 
 /* Whether axes, designs and scenario of a file are as their checksums say (file_checksums.h). To
  * `resume` asks for more: that there are checksums, and that nothing in the file is out of order.
  * Damage may crash the HDF5 library: call it where that does no harm (sandbox.h). */
 bool store_check(const char *file, bool resume, stance_message *message);
 
-enum { STORE_MOST_ANCESTORS = 200 };
+enum { STORE_MOST_ANCESTORS = 200, STORE_TEXTS = 3 };
 
-/* A scenario that cases of a file were computed with before it went on with another. */
+/* A scenario that cases of a file were computed with before it went on with another: its resolved
+ * text, git_revision and date, as the group `history` names them. */
 struct store_ancestor {
-    char *scenario; /* resolved text */
-    char *revision, *date;
+    char *text[STORE_TEXTS];
 };
+extern const char *const store_text_names[STORE_TEXTS];
 
 /* What a file was made from, for a resume; release with store_origin_free. */
 struct store_origin {
@@ -105,9 +108,10 @@ void store_origin_free(struct store_origin *origin);
  * generator made them. */
 bool store_same_points(const char *file, const struct store_origin *origin,
                        const struct scenario *scenario, stance_message *message);
-/* Values of a logarithmic axis or of a sample as the file has them, into axis->value; other axes
- * are left. */
-bool store_read_axis(const char *file, struct scenario_axis *axis, stance_message *message);
+/* Values of logarithmic axes and of a sample as the file has them, into axis->value; other axes are
+ * left. */
+bool store_read_axes(const char *file, struct scenario_axis *axis, int axes,
+                     stance_message *message);
 
 /* Collective when `ranks` > 1: opens a file of this plan for writing. */
 bool store_open(struct store **store, const char *file, const struct plan *plan, int ranks,
@@ -125,10 +129,9 @@ void store_abandon(struct store *store);
 
 /* Collective, right after store_open: designs of the file into the plan. */
 bool store_read_designs(struct store *store, struct plan *plan, stance_message *message);
-/* Bytes of a row in a block; a block for `rows` rows, NULL: no memory. */
+/* Bytes of a row in a block; a block for `rows` rows, freed by free(); NULL: no memory. */
 size_t store_row_size(const struct store *store);
 struct store_block *store_block_make(const struct store *store, size_t rows);
-void store_block_free(struct store_block *block);
 /* What is stored of a result, its checksum included, into a slot of the block. */
 void store_put(struct store_block *block, size_t slot, const stance_result *result);
 /* As many slots of the block as there are rows (one at least), from `slot` on, to those rows of the
@@ -169,11 +172,6 @@ bool store_copy_timing(struct store *from, struct store *to, int *rank, stance_m
 bool store_annotate(struct store *store, const char *name, const char *text,
                     stance_message *message);
 
-/* A file that goes on with another scenario (changed_scenario.h): for a file that store_create has
- * just made, the group `history` with the scenarios of `origin`, and the variable
- * `scenario_number`. */
-bool store_add_history(const char *file, const struct plan *plan, const struct store_origin *origin,
-                       stance_message *message);
 /* Adds to the timing group; for rank 0. wall_time[ranks], cases[ranks]. */
 bool store_add_timing(struct store *store, int ranks, const double *wall_time, const double *cases,
                       stance_message *message);

@@ -1,5 +1,5 @@
 /* store_copy.c - rows, trajectories and times of one results file into another. */
-#include "store_make.h"
+#include "store_private.h"
 
 #include "runner/base/message.h"
 
@@ -32,7 +32,7 @@ static void translate(struct store_block *block, int64_t no_count, size_t rows)
 static bool same_row(const struct store_block *a, const struct store_block *b, size_t slot)
 {
     for (int c = 0; c < COLUMNS; c++) {
-        const size_t size = a->store->width[c] * store_columns[c].size;
+        const size_t size = a->store->size[c];
         if (c == COLUMN_CHECKSUM)
             continue;
         if (a->column[c] && b->column[c] &&
@@ -48,7 +48,7 @@ static void take_row(const struct store_block *from, size_t slot, struct store_b
                      size_t to_slot)
 {
     for (int c = 0; c < COLUMNS; c++) {
-        const size_t size = to->store->width[c] * store_columns[c].size;
+        const size_t size = to->store->size[c];
         if (to->column[c] && from->column[c]) {
             memcpy((char *)to->column[c] + to_slot * size,
                    (const char *)from->column[c] + slot * size, size);
@@ -163,7 +163,8 @@ bool store_copy(struct store *from, struct store *to,
     return good && (rows.count == 0 || copy_some(from, &rows, to, aim, copied, message));
 }
 
-/* The times of one file to as many places of the other, from `rank` on, as it has for them. */
+/* The times of one file to as many places of the other, which has none yet, from `rank` on, as it
+ * has for them. */
 static bool copy_times(struct store *from, struct store *to, const char *name, int rank,
                        size_t *count)
 {
@@ -173,9 +174,8 @@ static bool copy_times(struct store *from, struct store *to, const char *name, i
     const size_t left = room > (size_t)rank ? room - (size_t)rank : 0;
     double *values = there > 0 ? calloc(there, sizeof *values) : NULL;
     *count = there < left ? there : left;
-    const bool good =
-        values && hdf_read(source, KIND_double, values) &&
-        (*count == 0 || hdf_move(target, H5T_IEEE_F64LE, (hsize_t)rank, *count, HDF_WRITE, values));
+    const bool good = values && hdf_read(source, KIND_double, values) &&
+                      store_add_times(to, name, (size_t)rank, *count, values);
     free(values);
     hdf_close(source, target);
     return good;
@@ -194,6 +194,6 @@ bool store_copy_timing(struct store *from, struct store *to, int *rank, stance_m
 bool store_annotate(struct store *store, const char *name, const char *text,
                     stance_message *message)
 {
-    return put_text(store->id, name, text) ||
+    return put_attribute(store->id, name, KIND_text, text) ||
            store_failed(message, store->file, "write an attribute");
 }

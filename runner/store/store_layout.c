@@ -6,7 +6,7 @@
  */
 #include "build_info.h"
 #include "file_checksums.h"
-#include "store_make.h"
+#include "store_private.h"
 
 #include "runner/base/checksum.h"
 #include "runner/base/command.h"
@@ -16,7 +16,6 @@
 
 #include <errno.h>
 #include <limits.h>
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -27,13 +26,28 @@ enum { FORMAT_VERSION = 1, METADATA_SIZE = 96 * 1024, DATASET_SIZE = 1024, DISK_
 
 struct layout {
     const struct plan *plan;
-    hid_t file;
-    int dimensions; /* made so far: the next `_Netcdf4Dimid` */
-    int rank;       /* of the cases */
+    const struct store_origin *before; /* of a file that goes on with another scenario, or NULL */
+    struct maker make;
     struct dimension axis[SCENARIO_MAX_AXES];
+    const struct dimension *over[SCENARIO_MAX_AXES + 1]; /* of the cases; NULL after the last */
     int ranks;
     const char *hosts;
 };
+
+static struct dataset dataset(const char *name, enum store_kind kind, const char *unit,
+                              const char *text)
+{
+    return (struct dataset){.name = name, .kind = kind, .unit = unit, .text = text};
+}
+
+/* A dimension whose points are words; none where there are none. */
+static void make_words(struct layout *l, const char *name, const char *const *words, int n,
+                       struct dimension *dimension)
+{
+    const struct dataset d = {name, KIND_text, .values = words, .length = (hsize_t)n};
+    if (n > 0)
+        make(&l->make, &d, dimension);
+}
 
 /* ---- the axes ----------------------------------------------------------------------------- */
 
@@ -50,69 +64,48 @@ static double axis_value(const void *context, uint64_t i)
     return scenario_axis_value(values->axis, values->single ? values->point : i, values->path);
 }
 
-/* Point of axis a that a case has. */
-static size_t axis_point(const struct scenario *s, int a, uint64_t index)
-{
-    for (int b = s->axes - 1; b > a; b--)
-        index /= s->axis[b].count;
-    return (size_t)(index % s->axis[a].count);
-}
-
-/* The other paths of an axis of words may hold numbers. */
-static bool has_words(const struct scenario_axis *axis, int path)
-{
-    return axis->words && axis->enumeration[path];
-}
-
-/* A variable of the values of one path; open, or -1. */
-static hid_t put_axis_values(hid_t file, const char *name, const struct axis_values *values,
-                             hsize_t n)
-{
-    const struct scenario_axis *axis = values->axis;
-    if (has_words(axis, values->path)) {
-        const char **words = malloc(n * sizeof *words);
-        for (hsize_t i = 0; words && i < n; i++) {
-            size_t point = values->single ? values->point : (size_t)i;
-            words[i] = axis->word[point * (size_t)axis->paths + (size_t)values->path];
-        }
-        const hid_t dataset = words ? put_words(file, name, words, n) : -1;
-        free(words);
-        return dataset;
-    }
-    const enum store_kind kind = axis->integer[values->path] ? KIND_int32_t : KIND_double;
-    const hid_t dataset = make_dataset(file, name, hdf_type(kind), 1, &n);
-    if (dataset >= 0 && write_values(dataset, n, axis_value, values))
-        return dataset;
-    hdf_close(dataset);
-    return -1;
-}
-
-/* The values of one path of an axis, as the axis's own dimension or as a variable `over` one. */
-static bool put_path(struct layout *layout, const struct axis_values *values,
+/* The values of one path of an axis, as the axis's own dimension or as a variable `over` one. Of an
+ * axis of words the other paths may hold numbers; a sample has words as codes. */
+static void put_path(struct layout *l, const struct axis_values *values,
                      const struct dimension *over, struct dimension *dimension)
 {
     const struct scenario_axis *axis = values->axis;
-    hsize_t n = over ? over->length : axis->count;
-    const char *name = values->path == 0 ? axis->name : axis->path[values->path];
-    hid_t dataset = put_axis_values(layout->file, name, values, n);
-    bool good =
-        dataset >= 0 && (values->path > 0 ||
-                         put_meaning(dataset, has_words(axis, 0) ? NULL : axis->unit, axis->text));
-    if (over) {
-        good = good && attach(dataset, &over, 1);
-        hdf_close(dataset);
-    } else {
-        good = good && make_scale(&layout->dimensions, dataset, name, n, dimension);
+    const int k = values->path;
+    const struct scenario_meaning *meaning = axis->sample ? &axis->meaning[k] : NULL;
+    const bool first = k == 0 && !meaning, text = axis->words && axis->enumeration[k];
+    const size_t n = over ? over->length : axis->count;
+    const char **words = text ? malloc(n * sizeof *words) : NULL;
+    struct dataset d = dataset(axis->path[k], axis->integer[k] ? KIND_int32_t : KIND_double, NULL,
+                               first ? axis->text : NULL);
+    if (first) {
+        d.name = axis->name;
+        d.unit = text ? NULL : axis->unit;
     }
-    return good;
+    if (meaning) {
+        d.unit = meaning->unit;
+        d.text = meaning->text;
+        d.flags = meaning->words;
+    }
+    d.kind = text ? KIND_text : d.flags ? KIND_uint8_t : d.kind;
+    for (size_t i = 0; words && i < n; i++) {
+        const size_t point = values->single ? values->point : i;
+        words[i] = axis->word[point * (size_t)axis->paths + (size_t)k];
+    }
+    d.values = words;
+    d.value = axis_value;
+    d.context = values;
+    d.length = n;
+    d.over[0] = over;
+    l->make.failed = l->make.failed || (text && !words);
+    make(&l->make, &d, dimension);
+    free(words);
 }
 
-/* ---- the sample --------------------------------------------------------------------------- */
-
 /* Names of the paths that a sample varies, with such signs between those of a factor and between
- * factors; freed by the caller, NULL: no memory. */
-static char *sampled_paths(const struct scenario *s, char within, char between)
+ * factors; freed by the caller. */
+static char *sampled_paths(struct layout *l, char within, char between)
 {
+    const struct scenario *s = l->plan->scenario;
     const struct scenario_axis *axis = &s->axis[s->axes - 1];
     char *text = calloc((size_t)axis->paths, sizeof axis->path[0] + 1), *end = text;
     for (size_t j = 0; text && j < s->sample.design.factors; j++) {
@@ -122,104 +115,79 @@ static char *sampled_paths(const struct scenario *s, char within, char between)
                            axis->path[f->first + k]);
         }
     }
+    l->make.failed = l->make.failed || !text;
     return text;
 }
 
-/* The dimension: numbers of the points, and what design they are of. */
-static bool make_sample(struct layout *layout, const struct scenario_axis *axis,
+/* The dimension of a sample: numbers of the points, and what design they are of. */
+static void make_sample(struct layout *l, const struct scenario_axis *axis,
                         struct dimension *dimension)
 {
-    const struct doe *design = &layout->plan->scenario->sample.design;
+    const struct doe *design = &l->plan->scenario->sample.design;
     const char *generator = doe_generator(design->method);
-    char *paths = sampled_paths(layout->plan->scenario, ',', ';');
-    bool good =
-        paths &&
-        make_numbers(
-            &layout->dimensions, layout->file,
-            &(struct variable){axis->name, KIND_int64_t, axis->unit, axis->text, .flags = NULL},
-            axis->count, NULL, NULL, dimension) &&
-        put_text(dimension->id, "method", doe_words[design->method]) &&
-        (!generator[0] || put_text(dimension->id, "generator", generator)) &&
-        put_number(dimension->id, "count", KIND_uint64_t, &design->count) &&
-        put_int(dimension->id, "factors", (int)design->factors) &&
-        put_int(dimension->id, "block", (int)doe_block(design)) &&
-        (design->method != DOE_MORRIS || put_int(dimension->id, "levels", design->levels)) &&
-        (design->method != DOE_SALTELLI ||
-         put_int(dimension->id, "second_order", design->second_order)) &&
-        put_text(dimension->id, "paths", paths);
+    char *paths = sampled_paths(l, ',', ';');
+    const int32_t factors = (int32_t)design->factors, block = (int32_t)doe_block(design),
+                  levels = design->levels, second_order = design->second_order;
+    struct dataset d = dataset(axis->name, KIND_int64_t, axis->unit, axis->text);
+    d.value = make_place;
+    d.length = axis->count;
+    const struct attribute attributes[] = {
+        {"method", KIND_text, doe_words[design->method]},
+        {"generator", KIND_text, generator[0] ? generator : NULL},
+        {"count", KIND_uint64_t, &design->count},
+        {"factors", KIND_int32_t, &factors},
+        {"block", KIND_int32_t, &block},
+        {"levels", KIND_int32_t, design->method == DOE_MORRIS ? &levels : NULL},
+        {"second_order", KIND_int32_t, design->method == DOE_SALTELLI ? &second_order : NULL},
+        {"paths", KIND_text, paths},
+    };
+    make(&l->make, &d, dimension);
+    put_attributes(&l->make, dimension->id, attributes, sizeof attributes / sizeof attributes[0]);
     free(paths);
-    return good;
 }
-
-/* The values of one path of a sample, over the sample or the one case of a file. */
-static bool put_sampled(struct layout *layout, const struct axis_values *values,
-                        const struct dimension *over)
-{
-    const struct scenario_axis *axis = values->axis;
-    const struct scenario_meaning *meaning = &axis->meaning[values->path];
-    const enum store_kind kind = meaning->words                ? KIND_uint8_t
-                                 : axis->integer[values->path] ? KIND_int32_t
-                                                               : KIND_double;
-    const struct variable variable = {axis->path[values->path], kind, meaning->unit, meaning->text,
-                                      .flags = meaning->words};
-    hid_t dataset = make_variable(layout->file, &variable, &over, 1);
-    bool good = dataset >= 0 && write_values(dataset, over->length, axis_value, values);
-    hdf_close(dataset);
-    return good;
-}
-
-/* CF's `coordinates`: the sampled values are those of the sample's points. */
-static bool put_coordinates(const struct layout *layout, hid_t dataset)
-{
-    const struct scenario *s = layout->plan->scenario;
-    if (!s->sample.given || layout->plan->single)
-        return true;
-    char *paths = sampled_paths(s, ' ', ' ');
-    bool good = paths && put_text(dataset, "coordinates", paths);
-    free(paths);
-    return good;
-}
-
-/* ---- all axes ----------------------------------------------------------------------------- */
-
-static const struct variable case_variable = {
-    "case", KIND_int64_t, "1", "flat index of the case, row-major over the axes", .flags = NULL};
 
 static double case_value(const void *context, uint64_t i)
 {
     return (double)plan_case(context, i);
 }
 
-static bool put_axes(struct layout *layout)
+/* The dimension `case`: numbers of cases. */
+static void make_cases(struct layout *l, uint64_t n,
+                       double (*value)(const void *context, uint64_t i),
+                       struct dimension *dimension)
 {
-    const struct plan *plan = layout->plan;
-    const struct scenario *s = plan->scenario;
-    struct dimension *one = NULL;
+    struct dataset d =
+        dataset("case", KIND_int64_t, "1", "flat index of the case, row-major over the axes");
+    d.value = value;
+    d.context = l->plan;
+    d.length = n;
+    make(&l->make, &d, dimension);
+}
 
-    if (plan->single || s->axes == 0) {
-        one = &layout->axis[0];
-        if (!make_numbers(&layout->dimensions, layout->file, &case_variable, 1, case_value, plan,
-                          one))
-            return false;
-    }
+static void put_axes(struct layout *l)
+{
+    const struct plan *plan = l->plan;
+    const struct scenario *s = plan->scenario;
+    const bool one = plan->single || s->axes == 0;
+    uint64_t inner = s->cases; /* cases in one point of an axis */
+
+    if (one)
+        make_cases(l, 1, case_value, &l->axis[0]);
     for (int a = 0; a < s->axes; a++) {
-        struct axis_values values = {&s->axis[a], 0, plan->single, 0};
-        if (plan->single)
-            values.point = axis_point(s, a, plan->single_case);
-        const bool sample = s->axis[a].sample;
-        if (sample && !one && !make_sample(layout, &s->axis[a], &layout->axis[a]))
-            return false;
-        for (; values.path < s->axis[a].paths; values.path++) {
-            const struct dimension *over = one                         ? one
-                                           : sample || values.path > 0 ? &layout->axis[a]
-                                                                       : NULL;
-            if (sample ? !put_sampled(layout, &values, over)
-                       : !put_path(layout, &values, over, &layout->axis[a]))
-                return false;
+        const struct scenario_axis *const axis = &s->axis[a];
+        struct dimension *const own = &l->axis[one ? 0 : a];
+        inner /= axis->count;
+        struct axis_values values = {axis, 0, plan->single,
+                                     (size_t)(plan->single_case / inner % axis->count)};
+        if (axis->sample && !one)
+            make_sample(l, axis, own);
+        for (; values.path < axis->paths; values.path++) {
+            const bool first = !one && !axis->sample && values.path == 0;
+            put_path(l, &values, first ? NULL : own, first ? own : NULL);
         }
     }
-    layout->rank = one ? 1 : s->axes;
-    return true;
+    for (int d = 0; d < (one ? 1 : s->axes); d++)
+        l->over[d] = &l->axis[d];
 }
 
 /* ---- the answers -------------------------------------------------------------------------- */
@@ -237,120 +205,100 @@ static const char *flags_of(const stance_scene *scene, int column, char text[FLA
 }
 
 /* Names of the state: the coordinates, then "v" and the coordinates, of the body or the posture. */
-static bool make_state_names(struct layout *layout, hid_t parent, const char *name, bool posture,
+static void make_state_names(struct layout *l, const char *name, bool posture,
                              struct dimension *dimension)
 {
-    const stance_scene *scene = layout->plan->scenario->scene;
+    const stance_scene *scene = l->plan->scenario->scene;
     char text[SCENARIO_MAX_STATES][SCENARIO_NAME];
     const char *words[SCENARIO_MAX_STATES];
-    int n = posture ? scene->postures : scene->coordinates;
+    const int n = posture ? scene->postures : scene->coordinates;
 
-    for (int i = 0; i < n; i++) {
-        const char *coordinate = scene->coordinate[posture ? scene->posture[i] : i].name;
-        snprintf(text[i], sizeof text[i], "%s", coordinate);
-        snprintf(text[n + i], sizeof text[n + i], "v%s", coordinate);
-    }
-    for (int i = 0; i < 2 * n; i++)
+    for (int i = 0; i < 2 * n; i++) {
+        const char *coordinate = scene->coordinate[posture ? scene->posture[i % n] : i % n].name;
+        snprintf(text[i], sizeof text[i], "%s%s", i < n ? "" : "v", coordinate);
         words[i] = text[i];
-    return make_words(&layout->dimensions, parent, name, words, 2 * (hsize_t)n, dimension);
+    }
+    make_words(l, name, words, 2 * n, dimension);
 }
 
-static bool put_answers(struct layout *layout)
+/* Of a sweep with a sample the sampled values are CF's coordinates. */
+static void put_answers(struct layout *l)
 {
-    const struct scenario *s = layout->plan->scenario;
-    struct dimension state = {-1, 0};
-    const struct dimension *over[SCENARIO_MAX_AXES + 1] = {NULL};
-    for (int d = 0; d < layout->rank; d++)
-        over[d] = &layout->axis[d];
-    over[layout->rank] = &state;
-    if (store_has_column(s, COLUMN_FINAL_STATE) &&
-        !make_state_names(layout, layout->file, "state", false, &state))
-        return false;
+    const struct scenario *s = l->plan->scenario;
+    char *paths = s->sample.given && !l->plan->single ? sampled_paths(l, ' ', ' ') : NULL;
+    struct dimension state;
+    int rank = 0;
+    while (l->over[rank])
+        rank++;
+    if (store_has_column(s, COLUMN_FINAL_STATE))
+        make_state_names(l, "state", false, &state);
     for (int c = 0; c < COLUMNS; c++) {
+        const bool number = c == COLUMN_SCENARIO_NUMBER;
         char flags[FLAGS];
-        struct variable variable = store_columns[c];
-        if (!store_has_column(s, c))
+        struct dataset d = store_columns[c];
+        if (!store_has_column(s, c) && !(number && l->before))
             continue;
-        variable.flags = flags_of(s->scene, c, flags);
-        hid_t dataset =
-            make_variable(layout->file, &variable, over, layout->rank + (c == COLUMN_FINAL_STATE));
-        bool good = dataset >= 0 && put_coordinates(layout, dataset);
-        hdf_close(dataset);
-        if (!good)
-            return false;
+        d.flags = flags_of(s->scene, c, flags);
+        d.coordinates = number ? NULL : paths;
+        memcpy(d.over, l->over, sizeof l->over);
+        d.over[rank] = c == COLUMN_FINAL_STATE ? &state : NULL;
+        make(&l->make, &d, NULL);
     }
-    return true;
+    free(paths);
 }
 
 /* ---- names of coordinates, actuators, contacts -------------------------------------------- */
 
-static bool make_coordinates(struct layout *layout, hid_t parent, struct dimension *dimension)
+static void make_coordinates(struct layout *l, struct dimension *coordinate,
+                             struct dimension *actuator)
 {
-    const stance_scene *scene = layout->plan->scenario->scene;
+    const stance_scene *scene = l->plan->scenario->scene;
     const char *words[STANCE_MAX_COORDINATES];
     for (int i = 0; i < scene->coordinates; i++)
         words[i] = scene->coordinate[i].name;
-    return make_words(&layout->dimensions, parent, "coordinate", words, (hsize_t)scene->coordinates,
-                      dimension);
-}
-
-static bool make_actuators(struct layout *layout, hid_t parent, struct dimension *dimension)
-{
-    const stance_scene *scene = layout->plan->scenario->scene;
-    return scene->actuators == 0 ||
-           make_words(&layout->dimensions, parent, "actuator", scene->actuator_name,
-                      (hsize_t)scene->actuators, dimension);
+    make_words(l, "coordinate", words, scene->coordinates, coordinate);
+    make_words(l, "actuator", scene->actuator_name, scene->actuators, actuator);
 }
 
 /* ---- the designs -------------------------------------------------------------------------- */
 
-static bool put_design_columns(struct layout *layout, hid_t group, const struct dimension **over,
-                               int rank, const struct dimension inner[DESIGN_DIMENSIONS])
+static void put_designs(struct layout *l)
 {
-    struct store_design_column columns[DESIGN_COLUMNS];
-    store_design_columns(layout->plan->scenario->scene, columns);
-    for (int k = 0; k < DESIGN_COLUMNS; k++) {
-        if (columns[k].rows * columns[k].columns == 0)
-            continue;
-        for (int i = 0; i < columns[k].dimensions; i++)
-            over[rank + i] = &inner[columns[k].over[i]];
-        const struct variable variable = {
-            columns[k].name, KIND_double, columns[k].unit, columns[k].text, true, NAN, NULL, 0};
-        hid_t dataset = make_variable(group, &variable, over, rank + columns[k].dimensions);
-        bool good = dataset >= 0 && store_move_design(layout->plan, NULL, &columns[k], dataset);
-        hdf_close(dataset);
-        if (!good)
-            return false;
-    }
-    return true;
-}
-
-static bool put_designs(struct layout *layout)
-{
-    const struct plan *plan = layout->plan;
+    const struct plan *plan = l->plan;
     const struct scenario *s = plan->scenario;
-    struct dimension inner[DESIGN_DIMENSIONS] = {{-1, 0}, {-1, 0}, {-1, 0}};
-    const struct dimension *over[SCENARIO_MAX_AXES + 2] = {NULL};
-    const bool postures = s->scene->actuators > 0 && s->scene->postures > 0;
+    struct dimension inner[DESIGN_DIMENSIONS];
+    const struct dimension *over[SCENARIO_MAX_AXES + 3] = {NULL};
     int rank = 0;
-    hid_t group = make_group(layout->file, "design");
+    char flags[FLAGS];
 
+    make_group(&l->make, "design");
     for (int a = 0; !plan->single && a < s->axes; a++)
         if (s->axis[a].design)
-            over[rank++] = &layout->axis[a];
-    bool good = group >= 0 && make_coordinates(layout, group, &inner[DESIGN_COORDINATE]) &&
-                make_actuators(layout, group, &inner[DESIGN_ACTUATOR]) &&
-                (!postures ||
-                 make_state_names(layout, group, "posture_state", true, &inner[DESIGN_POSTURE])) &&
-                put_design_columns(layout, group, over, rank, inner);
-    if (good) {
-        char flags[FLAGS];
-        const struct variable variable = {"status", KIND_uint8_t, NULL, "whether the design exists",
-                                          .flags = flags_of(s->scene, COLUMN_STATUS, flags)};
-        good = put_variable(group, &variable, over, rank, plan->design_status);
+            over[rank++] = &l->axis[a];
+    make_coordinates(l, &inner[DESIGN_COORDINATE], &inner[DESIGN_ACTUATOR]);
+    if (s->scene->actuators > 0 && s->scene->postures > 0)
+        make_state_names(l, "posture_state", true, &inner[DESIGN_POSTURE]);
+    for (int k = 0; k < RESOLVED_PARTS; k++) {
+        const struct store_design_column *const c = &store_design_columns[k];
+        struct dataset d = dataset(c->name, KIND_double, c->unit, c->text);
+        double *const values = store_design_values(plan, k);
+        d.filled = true;
+        d.values = values;
+        if (store_design_width(s->scene, k) > 0) {
+            l->make.failed = l->make.failed || !values;
+            memcpy(d.over, over, sizeof over);
+            for (int i = 0; i < 2; i++)
+                if (c->over[i] != DESIGN_ONE)
+                    d.over[rank + i - (c->over[0] == DESIGN_ONE)] = &inner[c->over[i]];
+            make(&l->make, &d, NULL);
+        }
+        free(values);
     }
-    hdf_close(group);
-    return good;
+    struct dataset d = dataset("status", KIND_uint8_t, NULL, "whether the design exists");
+    d.flags = flags_of(s->scene, COLUMN_STATUS, flags);
+    d.values = plan->design_status;
+    memcpy(d.over, over, sizeof over);
+    make(&l->make, &d, NULL);
 }
 
 /* ---- the trajectories --------------------------------------------------------------------- */
@@ -366,83 +314,89 @@ static double recorded_time(const void *context, uint64_t i)
     return (double)i * plan->record_interval;
 }
 
-static bool put_trajectories(struct layout *layout)
+static void put_trajectories(struct layout *l)
 {
-    const struct plan *plan = layout->plan;
+    const struct plan *plan = l->plan;
     const stance_scene *scene = plan->scenario->scene;
     static const char *const components[] = {"normal", "tangential"};
-    static const struct variable instant = {"time", KIND_double, "s",
-                                            "instant; the step that ends nearest to it is stored",
-                                            .flags = NULL};
-    struct dimension number, time, coordinate, actuator, contact, component;
+    struct dataset instant =
+        dataset("time", KIND_double, "s", "instant; the step that ends nearest to it is stored");
+    struct dimension number, time, last[3], component;
 
     if (plan->record_rows == 0)
-        return true;
-    hid_t group = make_group(layout->file, "trajectory");
-    bool good = group >= 0 &&
-                make_numbers(&layout->dimensions, group, &case_variable, plan->record_cases,
-                             recorded_case, plan, &number) &&
-                make_numbers(&layout->dimensions, group, &instant, (hsize_t)plan->record_rows,
-                             recorded_time, plan, &time) &&
-                make_coordinates(layout, group, &coordinate) &&
-                make_actuators(layout, group, &actuator) &&
-                (scene->contacts == 0 ||
-                 (make_words(&layout->dimensions, group, "contact", scene->contact_name,
-                             (hsize_t)scene->contacts, &contact) &&
-                  make_words(&layout->dimensions, group, "component", components, 2, &component)));
-    const struct dimension *const last[] = {&coordinate, &actuator, &contact};
-    for (int v = 0; good && v < TRAJECTORIES; v++) {
+        return;
+    instant.value = recorded_time;
+    instant.context = plan;
+    instant.length = (hsize_t)plan->record_rows;
+    make_group(&l->make, "trajectory");
+    make_cases(l, plan->record_cases, recorded_case, &number);
+    make(&l->make, &instant, &time);
+    make_coordinates(l, &last[OVER_COORDINATES], &last[OVER_ACTUATORS]);
+    make_words(l, "contact", scene->contact_name, scene->contacts, &last[OVER_CONTACTS]);
+    make_words(l, "component", components, scene->contacts > 0 ? 2 : 0, &component);
+    for (int v = 0; v < TRAJECTORIES; v++) {
         const struct store_trajectory *t = &store_trajectories[v];
-        const struct dimension *over[] = {&number, &time, last[t->over], &component};
-        const struct variable variable = {t->name, KIND_double, t->unit, t->text,
-                                          true,    NAN,         NULL,    0};
-        good = store_trajectory_width(scene, v) == 0 ||
-               put_variable(group, &variable, over, t->parts > 1 ? 4 : 3, NULL);
+        struct dataset d = dataset(t->name, KIND_double, t->unit, t->text);
+        d.filled = true;
+        d.over[0] = &number;
+        d.over[1] = &time;
+        d.over[2] = &last[t->over];
+        d.over[3] = t->parts > 1 ? &component : NULL;
+        if (store_trajectory_width(scene, v) > 0)
+            make(&l->make, &d, NULL);
     }
-    if (good) {
-        const struct dimension *over[] = {&number};
-        struct variable checksum = store_columns[COLUMN_CHECKSUM];
-        checksum.text = "CRC-32C over the trajectory of the case";
-        good = put_variable(group, &checksum, over, 1, NULL);
-    }
-    hdf_close(group);
-    return good;
+    struct dataset checksum = store_columns[COLUMN_CHECKSUM];
+    checksum.text = "CRC-32C over the trajectory of the case";
+    checksum.over[0] = &number;
+    make(&l->make, &checksum, NULL);
 }
 
-/* ---- timing and provenance ---------------------------------------------------------------- */
+/* ---- timing, earlier scenarios, provenance ------------------------------------------------ */
 
-static bool put_timing(struct layout *layout)
+static void put_timing(struct layout *l)
 {
     struct dimension rank;
-    const struct dimension *over[] = {&rank};
     char label[80];
-    hsize_t n = (hsize_t)layout->ranks;
-    hid_t group = make_group(layout->file, "timing");
-    snprintf(label, sizeof label, "This is a netCDF dimension but not a netCDF variable.%10d",
-             layout->ranks);
+    void *const none = calloc((size_t)l->ranks, sizeof(double)); /* of numbers of either type */
     /* Such dimensions are known by their label; the type is what netCDF gives them. */
-    if (group < 0 ||
-        !make_scale(&layout->dimensions, make_dataset(group, "rank", H5T_IEEE_F32BE, 1, &n), label,
-                    n, &rank))
-        return false;
-    static const struct variable wall_time = {"wall_time", KIND_double, "s",
-                                              "wall time of computing", .flags = NULL},
-                                 computed = {"cases", KIND_int64_t, "1", "cases computed",
-                                             .flags = NULL};
-    void *const none = calloc(n, sizeof(double)); /* zeros, of numbers of either type */
-    const bool good = none && put_variable(group, &wall_time, over, 1, none) &&
-                      put_variable(group, &computed, over, 1, none);
+    const struct dataset rows[] = {
+        {"rank", .label = label, .length = (hsize_t)l->ranks},
+        {"wall_time", KIND_double, false, "s", "wall time of computing", .values = none,
+         .over = {&rank}},
+        {"cases", KIND_int64_t, false, "1", "cases computed", .values = none, .over = {&rank}},
+    };
+    snprintf(label, sizeof label, "This is a netCDF dimension but not a netCDF variable.%10d",
+             l->ranks);
+    make_group(&l->make, "timing");
+    l->make.failed = l->make.failed || !none;
+    for (int k = 0; k < 3; k++)
+        make(&l->make, &rows[k], k == 0 ? &rank : NULL);
     free(none);
-    hdf_close(group);
-    return good;
 }
 
-static bool put_provenance(struct layout *layout)
+/* The earlier scenarios of the file, and the last one's. */
+static void put_history(struct layout *l)
 {
-    const struct plan *plan = layout->plan;
+    const struct store_origin *const o = l->before;
+    const char *text[STORE_TEXTS][STORE_MOST_ANCESTORS + 1];
+    if (!o)
+        return;
+    make_group(&l->make, "history");
+    for (int k = 0; k < STORE_TEXTS; k++) {
+        for (size_t i = 0; i < o->ancestors; i++)
+            text[k][i] = o->ancestor[i].text[k];
+        text[k][o->ancestors] = k == 0 ? o->scenario : k == 1 ? o->revision : o->date;
+        make_words(l, store_text_names[k], text[k], (int)o->ancestors + 1, NULL);
+    }
+}
+
+static void put_provenance(struct layout *l)
+{
+    const struct plan *plan = l->plan;
     const struct scenario *s = plan->scenario;
     char axes[SCENARIO_MAX_AXES * 98 + 8] = "case", compiler[1024], date[40], hash[80];
     char libraries[BUILD_LIBRARIES_SIZE], shard[SHARD_TEXT], isas[INSTRUCTION_SETS_SIZE];
+    const int32_t version = FORMAT_VERSION, ranks = l->ranks;
     time_t now = time(NULL);
     struct tm utc;
 
@@ -450,43 +404,58 @@ static bool put_provenance(struct layout *layout)
         axes[0] = '\0';
     for (int a = 0; !plan->single && a < s->axes; a++)
         words_add(axes, sizeof axes, "%s%s", a ? "," : "", s->axis[a].name);
-    snprintf(compiler, sizeof compiler, "%s; %s", build_compiler(), build_flags());
+    snprintf(compiler, sizeof compiler, "%s; %s", build_compiler, build_flags);
     strftime(date, sizeof date, "%Y-%m-%dT%H:%M:%SZ", gmtime_r(&now, &utc));
     build_libraries(libraries);
     kernels_instruction_sets(plan, isas);
     shard_text(&plan->shard, shard);
     checksum_sha256(s->text, strlen(s->text), hash);
-    return put_text(layout->file, "Conventions", "CF-1.8") &&
-           put_text(layout->file, "title", s->title) &&
-           put_int(layout->file, "format_version", FORMAT_VERSION) &&
-           put_text(layout->file, "program_version", STANCE_VERSION) &&
-           put_text(layout->file, "git_revision", build_revision()) &&
-           put_text(layout->file, "compiler", compiler) &&
-           put_text(layout->file, "library_versions", libraries) &&
-           put_text(layout->file, "instruction_set", isas) &&
-           put_int(layout->file, "ranks", layout->ranks) &&
-           put_text(layout->file, "hosts", layout->hosts) && put_text(layout->file, "date", date) &&
-           put_number(layout->file, "seed", KIND_uint64_t, &s->seed) &&
-           put_text(layout->file, "axes", axes) &&
-           (plan->shard.count == 0 || put_text(layout->file, "shard", shard)) &&
-           put_text(layout->file, "scenario", s->text) &&
-           put_text(layout->file, "scenario_sha256", hash);
+    const struct attribute attributes[] = {
+        {"Conventions", KIND_text, "CF-1.8"},
+        {"title", KIND_text, s->title},
+        {"format_version", KIND_int32_t, &version},
+        {"program_version", KIND_text, STANCE_VERSION},
+        {"git_revision", KIND_text, build_revision},
+        {"compiler", KIND_text, compiler},
+        {"library_versions", KIND_text, libraries},
+        {"instruction_set", KIND_text, isas},
+        {"ranks", KIND_int32_t, &ranks},
+        {"hosts", KIND_text, l->hosts},
+        {"date", KIND_text, date},
+        {"seed", KIND_uint64_t, &s->seed},
+        {"axes", KIND_text, axes},
+        {"shard", KIND_text, plan->shard.count > 0 ? shard : NULL},
+        {"scenario", KIND_text, s->text},
+        {"scenario_sha256", KIND_text, hash}, /* the last one: the creation came to its end */
+    };
+    put_attributes(&l->make, l->make.file, attributes, sizeof attributes / sizeof attributes[0]);
 }
 
 /* ---- creation ----------------------------------------------------------------------------- */
+
+/* Bytes of a row of a column; 0: it is not stored. */
+static uint64_t row_size(const struct scenario *s, int c)
+{
+    return store_has_column(s, c) ? store_column_width(s, c) * hdf_size(store_columns[c].kind) : 0;
+}
+
+static uint64_t instant_size(const struct scenario *s)
+{
+    uint64_t size = 0;
+    for (int v = 0; v < TRAJECTORIES; v++)
+        size += sizeof(double) * store_trajectory_width(s->scene, v);
+    return size;
+}
 
 /* Without holes. */
 static uint64_t whole_size(const struct plan *plan, int ranks)
 {
     const struct scenario *s = plan->scenario;
     uint64_t size = METADATA_SIZE + 16 * (uint64_t)ranks + 2 * strlen(s->text);
-    uint64_t datasets = COLUMNS + 20, per_row = 0, per_instant = 0;
+    uint64_t datasets = COLUMNS + 20;
 
     for (int c = 0; c < COLUMNS; c++)
-        if (store_has_column(s, c))
-            per_row += store_column_width(s, c) * store_columns[c].size;
-    for (int v = 0; v < TRAJECTORIES; v++)
-        per_instant += sizeof(double) * store_trajectory_width(s->scene, v);
+        size += plan->rows * row_size(s, c);
     for (int a = 0; a < s->axes; a++) {
         datasets += (uint64_t)s->axis[a].paths;
         const uint64_t point = s->axis[a].sample ? sizeof(double) : 32; /* words take more */
@@ -494,9 +463,8 @@ static uint64_t whole_size(const struct plan *plan, int ranks)
         size += s->axis[a].sample ? COLUMNS * sizeof s->axis[a].path[0] : 0;
     }
     size += sizeof(double) * (uint64_t)plan->record_rows;
-    size += plan->record_cases * (12 + (uint64_t)plan->record_rows * per_instant);
-    return size + plan->rows * per_row + datasets * DATASET_SIZE +
-           plan->designs * sizeof(struct resolved_design);
+    size += plan->record_cases * (12 + (uint64_t)plan->record_rows * instant_size(s));
+    return size + datasets * DATASET_SIZE + plan->designs * sizeof(struct resolved_design);
 }
 
 /* What rows of a plan take that a shard leaves out, but for the ends of its stripes. */
@@ -504,20 +472,14 @@ static uint64_t holes(const struct plan *plan)
 {
     const struct scenario *s = plan->scenario;
     const struct shard *shard = &plan->shard;
-    uint64_t size = 0;
     if (shard->count == 0)
         return 0;
     const uint64_t rows = shard_rows(shard), stripes = rows / shard->stripe + 1;
+    const uint64_t left_out = plan->record_cases - plan->record_cases / shard->count;
+    uint64_t size = left_out * (uint64_t)plan->record_rows * instant_size(s);
     for (int c = 0; c < COLUMNS; c++) {
-        const uint64_t width =
-            store_has_column(s, c) ? store_column_width(s, c) * store_columns[c].size : 0;
-        const uint64_t taken = rows * width + stripes * DISK_BLOCK;
+        const uint64_t width = row_size(s, c), taken = rows * width + stripes * DISK_BLOCK;
         size += plan->rows * width > taken ? plan->rows * width - taken : 0;
-    }
-    for (int v = 0; v < TRAJECTORIES; v++) {
-        const uint64_t width = sizeof(double) * store_trajectory_width(s->scene, v);
-        const uint64_t left_out = plan->record_cases - plan->record_cases / shard->count;
-        size += left_out * (uint64_t)plan->record_rows * width;
     }
     return size;
 }
@@ -528,10 +490,13 @@ uint64_t store_size(const struct plan *plan, int ranks)
 }
 
 /* Under another name until it is whole, so that a killed creation leaves no file to be resumed. */
-bool store_create(const char *file, const struct plan *plan, int ranks, const char *hosts,
-                  stance_message *message)
+bool store_create(const char *file, const struct plan *plan, const struct store_origin *before,
+                  int ranks, const char *hosts, stance_message *message)
 {
-    struct layout layout = {.plan = plan, .ranks = ranks, .hosts = hosts};
+    static void (*const parts[])(struct layout *) = {put_axes,         put_answers, put_designs,
+                                                     put_trajectories, put_timing,  put_history};
+    struct layout layout = {.plan = plan, .before = before, .ranks = ranks, .hosts = hosts};
+    struct maker *const m = &layout.make;
     char part[PATH_MAX];
 
     if (access(file, F_OK) == 0)
@@ -540,14 +505,15 @@ bool store_create(const char *file, const struct plan *plan, int ranks, const ch
     unlink(part); /* of a creation that was killed */
     if (!store_fits(file, store_size(plan, ranks), whole_size(plan, ranks), message))
         return false;
-    layout.file = store_create_hdf(part);
-    if (layout.file < 0)
+    make_file(m, part);
+    if (m->failed)
         return store_failed(message, file, "create");
-    bool good = put_axes(&layout) && put_answers(&layout) && put_designs(&layout) &&
-                put_trajectories(&layout) && put_timing(&layout) &&
-                file_checksums_put(layout.file) && put_provenance(&layout);
-    good = good || store_failed(message, file, "lay out");
-    if (H5Fclose(layout.file) < 0 && good)
+    for (size_t k = 0; k < sizeof parts / sizeof parts[0]; k++)
+        parts[k](&layout);
+    m->failed = m->failed || !file_checksums_put(m->file);
+    put_provenance(&layout);
+    bool good = !m->failed || store_failed(message, file, "lay out");
+    if (H5Fclose(m->file) < 0 && good)
         good = store_failed(message, file, "write the layout");
     good = good && (plan->shard.count > 0 || store_reserve(part, message)) &&
            (rename(part, file) == 0 || store_system_failed(message, file, "create", errno));

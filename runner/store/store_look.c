@@ -41,6 +41,33 @@ bool store_check(const char *file, bool resume, stance_message *message)
     return good;
 }
 
+const char *const store_text_names[STORE_TEXTS] = {"scenario", "git_revision", "date"};
+
+/* The scenarios of a file before its own, whose texts must be as many of each kind; none without a
+ * group `history`. */
+static bool read_history(hid_t file, struct store_origin *origin)
+{
+    const bool there = H5Lexists(file, "history", H5P_DEFAULT) > 0;
+    hid_t group = there ? H5Gopen2(file, "history", H5P_DEFAULT) : -1;
+    bool good = true;
+    for (int k = 0; there && good && k < STORE_TEXTS; k++) {
+        const hid_t dataset = H5Dopen2(group, store_text_names[k], H5P_DEFAULT);
+        const size_t n = hdf_elements(dataset);
+        if (k == 0 && n <= STORE_MOST_ANCESTORS) {
+            origin->ancestor = calloc(n + 1, sizeof *origin->ancestor);
+            origin->ancestors = origin->ancestor ? n : 0;
+        }
+        char **words = n > 0 && n == origin->ancestors ? hdf_words(dataset, 0, n) : NULL;
+        for (size_t i = 0; words && i < n; i++)
+            origin->ancestor[i].text[k] = words[i];
+        good = words != NULL;
+        free(words);
+        hdf_close(dataset);
+    }
+    hdf_close(group);
+    return good;
+}
+
 bool store_read_origin(const char *file, struct store_origin *origin, stance_message *message)
 {
     *origin = (struct store_origin){0};
@@ -59,7 +86,7 @@ bool store_read_origin(const char *file, struct store_origin *origin, stance_mes
     hdf_close(sample);
     const bool good =
         read_shard(id, file, &origin->shard, message) &&
-        (store_read_history(id, origin) || store_failed(message, file, "read its history")) &&
+        (read_history(id, origin) || store_failed(message, file, "read its history")) &&
         (origin->scenario || not_resumable(id, file, message));
     H5Fclose(id);
     free(revision);
@@ -71,11 +98,9 @@ bool store_read_origin(const char *file, struct store_origin *origin, stance_mes
 
 void store_origin_free(struct store_origin *origin)
 {
-    for (size_t k = 0; k < origin->ancestors; k++) {
-        free(origin->ancestor[k].scenario);
-        free(origin->ancestor[k].revision);
-        free(origin->ancestor[k].date);
-    }
+    for (size_t k = 0; k < origin->ancestors; k++)
+        for (int t = 0; t < STORE_TEXTS; t++)
+            free(origin->ancestor[k].text[t]);
     free(origin->ancestor);
     free(origin->scenario);
     free(origin->title);
@@ -98,32 +123,44 @@ bool store_same_points(const char *file, const struct store_origin *origin,
         file, doe_words[method]);
 }
 
-bool store_read_axis(const char *file, struct scenario_axis *axis, stance_message *message)
+/* *fits: it has as many points there. */
+static bool read_axis(hid_t file, struct scenario_axis *axis, double *value, bool *fits)
 {
-    if (!axis->log && !axis->sample)
-        return true;
-    hid_t id = hdf_open_to_read(file, message);
-    if (id < 0)
-        return false;
     const size_t paths = (size_t)axis->paths;
-    hsize_t length[H5S_MAX_RANK];
-    double *value = malloc(axis->count * sizeof *value);
-    bool good = value != NULL, fits = true;
+    bool good = value != NULL;
     for (size_t k = 0; good && k < paths; k++) {
-        hid_t dataset = H5Dopen2(id, axis->path[k], H5P_DEFAULT);
-        fits = dataset < 0 || (hdf_shape(dataset, length) == 1 && length[0] == axis->count);
-        good = fits && hdf_read(dataset, KIND_double, value);
+        hsize_t length[H5S_MAX_RANK];
+        hid_t dataset = H5Dopen2(file, axis->path[k], H5P_DEFAULT);
+        *fits = dataset < 0 || (hdf_shape(dataset, length) == 1 && length[0] == axis->count);
+        good = *fits && hdf_read(dataset, KIND_double, value);
         for (size_t i = 0; good && i < axis->count; i++)
             axis->value[i * paths + k] = value[i];
         hdf_close(dataset);
     }
-    free(value);
-    H5Fclose(id);
-    if (!fits) {
-        return complain(message, "%.100s: holds one case of a sweep (run --only), not the sweep",
-                        file);
+    return good;
+}
+
+bool store_read_axes(const char *file, struct scenario_axis *axis, int axes,
+                     stance_message *message)
+{
+    hid_t id = -1;
+    bool good = true, fits = true;
+    for (int a = 0; good && a < axes; a++) {
+        if (!axis[a].log && !axis[a].sample)
+            continue;
+        if (id < 0 && (id = hdf_open_to_read(file, message)) < 0)
+            return false;
+        double *value = malloc(axis[a].count * sizeof *value);
+        good = read_axis(id, &axis[a], value, &fits);
+        free(value);
     }
-    return good || store_failed(message, file, "read an axis");
+    if (!good)
+        fits ? store_failed(message, file, "read an axis")
+             : complain(message, "%.100s: holds one case of a sweep (run --only), not the sweep",
+                        file);
+    if (id >= 0)
+        H5Fclose(id);
+    return good;
 }
 
 /* Reads the status variable, whatever its shape, in pieces. */
@@ -187,17 +224,7 @@ static bool open_columns(struct store *store, hid_t file, uint64_t cases)
         good = good && elements > 0 && (uint64_t)elements % cases == 0 &&
                (uint64_t)elements / cases <= SCENARIO_MAX_STATES;
         store->width[c] = good ? (size_t)((uint64_t)elements / cases) : 1;
-    }
-    return good;
-}
-
-static bool read_rows(const struct store *store, struct store_block *block, uint64_t at, size_t n)
-{
-    bool good = true;
-    for (int c = 0; good && c < COLUMNS; c++) {
-        const size_t width = store->width[c];
-        good = store->column[c] < 0 || hdf_move(store->column[c], hdf_type(store_columns[c].kind),
-                                                at * width, n * width, HDF_READ, block->column[c]);
+        store->size[c] = store->width[c] * hdf_size(store_columns[c].kind);
     }
     return good;
 }
@@ -205,6 +232,7 @@ static bool read_rows(const struct store *store, struct store_block *block, uint
 bool store_distrust(int64_t file, uint8_t *status, uint64_t cases, struct store_damage *damage)
 {
     struct store store = {.id = (hid_t)file};
+    stance_message ignored;
     bool good = open_columns(&store, store.id, cases);
     struct store_block *block =
         good ? store_block_make(&store, cases < VERIFIED_ROWS ? (size_t)cases : VERIFIED_ROWS)
@@ -219,7 +247,8 @@ bool store_distrust(int64_t file, uint8_t *status, uint64_t cases, struct store_
             marked = status[i] != STANCE_PENDING;
         if (!marked)
             continue;
-        good = read_rows(&store, block, at, n);
+        good = store_move_rows(&store, block, 0, &(struct rows){.first = at, .count = n}, HDF_READ,
+                               &ignored);
         const uint32_t *stored = good ? block->column[COLUMN_CHECKSUM] : NULL;
         for (uint64_t i = 0; stored && i < n; i++) {
             if (status[at + i] != STANCE_PENDING &&
@@ -229,7 +258,7 @@ bool store_distrust(int64_t file, uint8_t *status, uint64_t cases, struct store_
             }
         }
     }
-    store_block_free(block);
+    free(block);
     hdf_close_all(store.column, COLUMNS);
     return good;
 }

@@ -1,53 +1,59 @@
-/* store_make.h - pieces that results files are made of: attributes, variables, dimensions, as
- * netCDF-4 has them. -1 or false: HDF5 remembers why.
+/* store_make.h - what HDF5 files of ours are made of: datasets and attributes as rows that say what
+ * they are, put into a file as netCDF-4 has them. After one that failed, the others are left out;
+ * HDF5 remembers why.
  */
 #ifndef STANCE_STORE_STORE_MAKE_H
 #define STANCE_STORE_STORE_MAKE_H
 
-#include "store_private.h"
+#include "hdf.h"
+
+#include "runner/scenario/scenario.h"
+
+/* A file that is being made. */
+struct maker {
+    hid_t file, group; /* where datasets go: the file, or a group of it */
+    int dimensions;    /* so far: the next `_Netcdf4Dimid` */
+    bool failed;
+};
 
 struct dimension {
     hid_t id;
     hsize_t length;
 };
 
-/* ---- attributes --------------------------------------------------------------------------- */
+/* A dataset, and what it says of itself. */
+struct dataset {
+    const char *name;
+    enum store_kind kind;
+    bool filled;             /* has `_FillValue`: NAN, of counts STANCE_NO_COUNT */
+    const char *unit, *text; /* may be NULL */
+    const char *flags;       /* of a code, which has no unit: CF's words for 0, 1, ..., with blanks
+                              * between them, at most 32; NULL: it is none */
+    const char *coordinates; /* CF's; NULL: none */
+    const char *label;       /* what netCDF knows a dimension without points by */
+    const void *values;      /* in its own type; NULL: those of `value`, or none yet */
+    double (*value)(const void *context, uint64_t i);
+    const void *context;
+    hsize_t length; /* of one that is over no other; 0: it is one number */
+    const struct dimension *over[SCENARIO_MAX_AXES + 3]; /* NULL after the last */
+};
 
-bool put_text(hid_t object, const char *name, const char *text);
-bool put_number(hid_t object, const char *name, enum store_kind kind, const void *value);
-bool put_int(hid_t object, const char *name, int value);
-/* `units` and `long_name`, where not NULL. */
-bool put_meaning(hid_t object, const char *unit, const char *text);
-/* CF's flags: the values 0 ... n - 1 and a word for each, separated by blanks; n <= 32. */
-bool put_flags(hid_t object, const char *words);
+/* The numbers 0, 1, ... of a dimension. */
+double make_place(const void *unused, uint64_t i);
 
-/* ---- groups, variables, dimensions --------------------------------------------------------- */
+/* A new file; `failed`: there is none. */
+void make_file(struct maker *maker, const char *file);
+/* From now on datasets go into a new group. */
+void make_group(struct maker *maker, const char *name);
+/* A dataset with its values; `dimension` not NULL: it becomes one. */
+void make(struct maker *maker, const struct dataset *dataset, struct dimension *dimension);
 
-hid_t make_group(hid_t parent, const char *name);
-/* A variable of `rank` lengths; 0: a number. */
-hid_t make_dataset(hid_t parent, const char *name, hid_t type, int rank, const hsize_t *length);
-bool attach(hid_t dataset, const struct dimension *const *dimension, int rank);
-/* A variable over dimensions. */
-hid_t make_variable(hid_t parent, const struct variable *variable,
-                    const struct dimension *const *dimension, int rank);
-/* The same with its values, unless NULL, in its own type. */
-bool put_variable(hid_t parent, const struct variable *variable,
-                  const struct dimension *const *dimension, int rank, const void *values);
-/* Turns a one-dimensional dataset into a dimension. `label` is what netCDF looks at; `dimensions`
- * counts those of the file. */
-bool make_scale(int *dimensions, hid_t dataset, const char *label, hsize_t length,
-                struct dimension *dimension);
-/* A variable of one dimension, of words of any length; open, or -1. */
-hid_t put_words(hid_t parent, const char *name, const char *const *words, hsize_t n);
-/* A dimension whose points are words. */
-bool make_words(int *dimensions, hid_t parent, const char *name, const char *const *words,
-                hsize_t n, struct dimension *dimension);
-
-/* Value i of a coordinate; NULL: i. */
-typedef double (*value_function)(const void *context, uint64_t i);
-bool write_values(hid_t dataset, hsize_t n, value_function value, const void *context);
-/* A dimension whose points are numbers. */
-bool make_numbers(int *dimensions, hid_t parent, const struct variable *variable, hsize_t n,
-                  value_function value, const void *context, struct dimension *dimension);
+struct attribute {
+    const char *name;
+    enum store_kind kind; /* KIND_text: value is a char * */
+    const void *value;    /* NULL: it is left out */
+};
+bool put_attribute(hid_t object, const char *name, enum store_kind kind, const void *value);
+void put_attributes(struct maker *maker, hid_t object, const struct attribute *list, size_t count);
 
 #endif

@@ -1,12 +1,11 @@
 /* store_private.h - shared by those who write results files: store.c (rows), store_copy.c (rows of
- * another file), store_make.c and store_layout.c (creation), store_history.c (files of several
- * scenarios), store_space.c (room on the disk), store_look.c (questions) and file_checksums.c
- * (checksums). */
+ * another file), store_make.c and store_layout.c (creation), store_space.c (room on the disk),
+ * store_look.c (questions) and file_checksums.c (checksums). */
 #ifndef STANCE_STORE_STORE_PRIVATE_H
 #define STANCE_STORE_STORE_PRIVATE_H
 
-#include "hdf.h"
 #include "store.h"
+#include "store_make.h"
 
 #include "runner/plan/plan.h"
 
@@ -21,17 +20,7 @@ enum {
     COLUMNS,
 };
 
-/* A variable, and what it says of itself. */
-struct variable {
-    const char *name;
-    enum store_kind kind;
-    const char *unit, *text; /* may be NULL */
-    bool filled;
-    double fill;       /* where `filled`: `_FillValue`, in the variable's own type */
-    const char *flags; /* see put_flags; NULL: none */
-    size_t size;       /* of one element of a column */
-};
-extern const struct variable store_columns[COLUMNS];
+extern const struct dataset store_columns[COLUMNS];
 
 /* The variables of a trajectory: (case, time, what it is over, parts). */
 enum { TRAJECTORIES = 5 };
@@ -50,45 +39,29 @@ size_t store_column_width(const struct scenario *scenario, int column);
 /* Elements per row of a trajectory; 0: the variable is left out. */
 size_t store_trajectory_width(const stance_scene *scene, int variable);
 
-/* A new HDF5 file that netCDF-4 reads; HDF5 identifier, or -1. */
-hid_t store_create_hdf(const char *file);
-
-/* Lengths of the dimensions of the cases; returns how many (>= 1). */
-int store_dimensions(const struct plan *plan, hsize_t lengths[SCENARIO_MAX_AXES]);
-
-/* The scenarios of a file before its own; none without a group `history`. false: no memory, or it
- * cannot be read. */
-bool store_read_history(hid_t file, struct store_origin *origin);
-
 /* "FILE: cannot ...: reason" of a system call. Returns false. */
 bool store_system_failed(stance_message *message, const char *file, const char *what, int error);
 /* Reserves the space of the whole file and brings it to the disk. */
 bool store_reserve(const char *file, stance_message *message);
 
-/* Dimensions of the columns of group `design` beside the axes. */
+/* Columns of group `design`: parts of designs, over the axes and these. */
 enum design_dimension {
+    DESIGN_ONE,
     DESIGN_COORDINATE,
     DESIGN_ACTUATOR,
     DESIGN_POSTURE, /* posture_state */
     DESIGN_DIMENSIONS,
 };
-
-/* Columns of group `design`, in struct resolved_design: name, first element, width per design. */
-struct store_design_column {
-    const char *name;
-    size_t offset; /* in struct resolved_design */
-    const char *unit;
-    int rows, columns, stride; /* of the matrix; its row length in memory; rows 0: left out */
-    int dimensions;
+/* In the order of the file. */
+extern const struct store_design_column {
+    const char *name, *unit, *text;
+    enum resolved_parts part;
     enum design_dimension over[2];
-    const char *text;
-};
-enum { DESIGN_COLUMNS = 4 };
-void store_design_columns(const stance_scene *scene,
-                          struct store_design_column columns[DESIGN_COLUMNS]);
-/* Moves a column of all designs between the plan and its variable; NAN where there is none. */
-bool store_move_design(const struct plan *plan, struct plan *into,
-                       const struct store_design_column *column, hid_t dataset);
+} store_design_columns[RESOLVED_PARTS];
+/* Numbers of one design; 0: the column is left out. */
+size_t store_design_width(const stance_scene *scene, int column);
+/* Those of all designs, NAN where there is none, freed by the caller; NULL: no memory. */
+double *store_design_values(const struct plan *plan, int column);
 
 struct store {
     char file[1024];
@@ -97,26 +70,24 @@ struct store {
     int ranks;                   /* that have it open together */
     bool spans;                  /* see store_set_spans */
     hid_t column[COLUMNS];       /* -1: not stored */
-    size_t width[COLUMNS];       /* elements per case */
+    size_t width[COLUMNS];       /* elements per case, and */
+    size_t size[COLUMNS];        /* ... bytes */
     int64_t no_count;            /* what it has for a count that there is none of: `_FillValue` */
     struct store_block *checked; /* [STORE_ROWS], for store_verify; made when it is needed */
     hid_t trajectory[TRAJECTORIES];       /* -1: not stored */
     size_t trajectory_size[TRAJECTORIES]; /* elements per case; 0: not stored */
     hid_t trajectory_checksum;
-    int rank; /* dimensions of the cases */
-    hsize_t length[SCENARIO_MAX_AXES];
 };
 
 /* Rows in memory, column after column. */
 struct store_block {
     const struct store *store;
-    size_t rows;
     void *column[COLUMNS]; /* [rows][width]; NULL: not stored */
 };
 
 /* Moves rows between the file and a block, from `slot` on: all columns in order, the checksum and
  * then the status last. */
-bool store_move_rows(struct store *store, struct store_block *block, size_t slot,
+bool store_move_rows(const struct store *store, const struct store_block *block, size_t slot,
                      const struct rows *rows, enum hdf_direction way, stance_message *message);
 /* What the checksum of a row of a block ought to be. */
 uint32_t store_row_checksum(const struct store_block *block, size_t slot);
@@ -124,6 +95,10 @@ uint32_t store_row_checksum(const struct store_block *block, size_t slot);
  * as it is in the file. */
 bool store_move_trajectory(struct store *store, uint64_t place, enum hdf_direction way,
                            const stance_trajectory *trajectory, uint32_t *crc, uint32_t *stored);
+
+/* Adds to a variable of group `timing` from place `first` on, modulo its length. */
+bool store_add_times(const struct store *store, const char *name, size_t first, size_t count,
+                     const double *more);
 
 /* File access for one process: no HDF5 locks (ours is another), no buffering of raw data, so that
  * writes reach the system in the order in which they are made. Close with H5Pclose. */
