@@ -16,10 +16,9 @@
 /* ---- the checksum of a variable ----------------------------------------------------------- */
 
 /* A long variable is read in pieces. */
-static bool checksum_of(hid_t dataset, const char *path, uint32_t *crc)
+static bool checksum_of(hid_t dataset, const char *name, uint32_t *crc)
 {
     enum { PIECE = 1 << 16 };
-    const char *const slash = strrchr(path, '/'), *const name = slash ? slash + 1 : path;
     const size_t n = hdf_elements(dataset);
     hid_t type = H5Dget_type(dataset);
     const H5T_class_t class = type < 0 ? H5T_NO_CLASS : H5Tget_class(type);
@@ -48,46 +47,47 @@ static bool checksum_of(hid_t dataset, const char *path, uint32_t *crc)
 
 struct walk {
     bool put, strict;
-    const char *name; /* of the file */
+    const char *group; /* that is walked through: "", "design", ... */
+    const char *name;  /* of the file */
     stance_message *message;
 };
 
-static bool say_damaged(const struct walk *walk, const char *path, const char *what)
+static bool say_damaged(const struct walk *walk, const char *variable, const char *what)
 {
-    const char *const slash = strrchr(path, '/');
     char word[SHOWN_SIZE]; /* a damaged name may hold anything */
-    return complain(walk->message, "%.100s: damaged: %.*s%s %s", walk->name,
-                    slash ? (int)(slash + 1 - path) : 0, path,
-                    shown(word, slash ? slash + 1 : path), what);
+    return complain(walk->message, "%.100s: damaged: %s%s%s %s", walk->name, walk->group,
+                    walk->group[0] ? "/" : "", shown(word, variable), what);
 }
 
-static bool verify_checksum(const struct walk *walk, hid_t dataset, const char *path)
+static bool verify_checksum(const struct walk *walk, hid_t dataset, const char *variable)
 {
     uint32_t crc = 0, expected = 0;
     if (H5Aexists(dataset, CHECKSUM_ATTRIBUTE) <= 0)
-        return !walk->strict || say_damaged(walk, path, "has no checksum");
+        return !walk->strict || say_damaged(walk, variable, "has no checksum");
     if (!hdf_number(dataset, CHECKSUM_ATTRIBUTE, hdf_type(KIND_uint32_t), &expected) ||
-        !checksum_of(dataset, path, &crc))
-        return say_damaged(walk, path, "cannot be read");
-    return crc == expected || say_damaged(walk, path, "is not as its checksum says");
+        !checksum_of(dataset, variable, &crc))
+        return say_damaged(walk, variable, "cannot be read");
+    return crc == expected || say_damaged(walk, variable, "is not as its checksum says");
 }
 
-/* Looks at one link; a negative value ends the walk. */
-static herr_t visit(hid_t file, const char *path, const H5L_info_t *info, void *context)
+/* Looks at one link of a group; a negative value ends the walk. */
+static herr_t visit(hid_t group, const char *name, const H5L_info_t *info, void *context)
 {
     const struct walk *walk = context;
     uint32_t crc;
+    char path[128];
     (void)info;
-    if (store_is_column(path) || store_is_track(path) || strncmp(path, "timing/", 7) == 0)
+    snprintf(path, sizeof path, "%s%s%s", walk->group, walk->group[0] ? "/" : "", name);
+    if (store_is_column(path) || store_is_track(path))
         return 0;
-    hid_t object = H5Oopen(file, path, H5P_DEFAULT);
+    hid_t object = H5Oopen(group, name, H5P_DEFAULT);
     bool good = object >= 0;
     if (!good && !walk->put)
-        say_damaged(walk, path, "cannot be opened");
+        say_damaged(walk, name, "cannot be opened");
     if (good && H5Iget_type(object) == H5I_DATASET)
-        good = walk->put ? checksum_of(object, path, &crc) &&
+        good = walk->put ? checksum_of(object, name, &crc) &&
                                put_attribute(object, CHECKSUM_ATTRIBUTE, KIND_uint32_t, &crc)
-                         : verify_checksum(walk, object, path);
+                         : verify_checksum(walk, object, name);
     hdf_close(object);
     return good ? 0 : -1;
 }
@@ -107,24 +107,36 @@ static bool touch_attributes(hid_t object, H5_index_t order)
 }
 
 /* Opens one link and its attributes; HDF5 verifies the checksums of what it touches. */
-static herr_t touch(hid_t file, const char *path, const H5L_info_t *info, void *context)
+static herr_t touch(hid_t group, const char *name, const H5L_info_t *info, void *context)
 {
     H5O_info_t all;
     (void)info;
-    hid_t object = H5Oopen(file, path, H5P_DEFAULT);
+    hid_t object = H5Oopen(group, name, H5P_DEFAULT);
     bool good = object >= 0 && H5Oget_info2(object, &all, H5O_INFO_ALL) >= 0 &&
                 touch_attributes(object, H5_INDEX_NAME);
     if (good && H5Iget_type(object) == H5I_DATASET) /* netCDF's order */
         good = hdf_elements(object) > 0 && touch_attributes(object, H5_INDEX_CRT_ORDER);
     hdf_close(object);
-    return good || say_damaged(context, path, "cannot be opened") ? 0 : -1;
+    return good || say_damaged(context, name, "cannot be opened") ? 0 : -1;
 }
 
+/* Group by group, each opened by itself: H5Lvisit gives up at what cannot be opened, though it may
+ * not matter. */
 static bool walk_through(hid_t file, struct walk *walk, H5_index_t order, H5L_iterate_t look)
 {
-    if (H5Lvisit(file, order, H5_ITER_INC, look, walk) >= 0)
-        return true;
-    return walk->message->text[0] ? false : say_damaged(walk, "its variables", "cannot be listed");
+    static const char *const groups[] = {"", "design", "trajectory", "history"};
+    bool good = true;
+    for (size_t i = 0; good && i < sizeof groups / sizeof groups[0]; i++) {
+        walk->group = groups[i];
+        if (groups[i][0] && H5Lexists(file, groups[i], H5P_DEFAULT) <= 0)
+            continue;
+        const hid_t id = H5Gopen2(file, groups[i][0] ? groups[i] : "/", H5P_DEFAULT);
+        good = id >= 0 && H5Literate(id, order, H5_ITER_INC, NULL, look, walk) >= 0;
+        if (!good && !walk->put && walk->message->text[0] == '\0')
+            say_damaged(walk, groups[i][0] ? "*" : "its variables", "cannot be listed");
+        hdf_close(id);
+    }
+    return good;
 }
 
 /* ---- both uses ---------------------------------------------------------------------------- */
@@ -132,13 +144,13 @@ static bool walk_through(hid_t file, struct walk *walk, H5_index_t order, H5L_it
 bool file_checksums_put(int64_t file)
 {
     struct walk walk = {.put = true};
-    return H5Lvisit((hid_t)file, H5_INDEX_NAME, H5_ITER_INC, visit, &walk) >= 0;
+    return walk_through((hid_t)file, &walk, H5_INDEX_NAME, visit);
 }
 
 bool file_checksums_verify(int64_t file, const char *name, const char *scenario, const char *hash,
                            bool strict, stance_message *message)
 {
-    struct walk walk = {.strict = strict, .name = name, .message = message};
+    struct walk walk = {.strict = strict, .group = "", .name = name, .message = message};
     const hid_t id = (hid_t)file;
     char found[CHECKSUM_SHA256_TEXT];
     H5O_info_t all;
