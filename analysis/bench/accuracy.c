@@ -3,6 +3,7 @@
 #include "studies.h"
 
 #include "runner/base/message.h"
+#include "runner/plan/kernels.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -255,13 +256,19 @@ static void fit_orders(struct accuracy *a)
 static bool measure(struct accuracy *a, const struct scenario *s, const struct results *r,
                     double budget, stance_message *message)
 {
+    const struct parallel alone = parallel_alone();
+    const struct kernels_choice choice = {.always = true}; /* what long runs compute with */
     struct plan plan;
+    struct kernels kernels;
     const size_t n = accuracy_cases(a, r);
-    bool good = true;
     if (!study_plan(&plan, s, message))
         return false;
-    for (size_t k = 0; good && k < a->rows; k++)
-        good = measure_rows(&plan, k * n, n, budget, &a->row[k].cost, message);
+    bool good = kernels_take(&kernels, &plan, &choice, &alone, message) == EXIT_DONE;
+    if (good) {
+        for (size_t k = 0; good && k < a->rows; k++)
+            good = measure_rows(&plan, k * n, n, budget, &a->row[k].cost, message);
+        kernels_give_back(&kernels);
+    }
     plan_free(&plan);
     return good;
 }

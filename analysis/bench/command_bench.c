@@ -260,13 +260,12 @@ const struct command command_bench = {
     options,
     "Prints nanoseconds per case-step - the median of N rounds (default 5), the lowest and the "
     "highest -, nanoseconds per simulated second, Newton iterations per step and the speed-up "
-    "over one lane, for each method and instruction set, in steps of 1 ms. The regimes are\n"
-    "  ball    flight, sliding\n"
-    "  block   at rest, sliding\n"
-    "  rod     flight, one end, two ends\n"
-    "  biped   flight    nothing near the ground\n"
-    "          one foot  linear balance control, torques held for 1 ms\n"
-    "          two feet  standing with the legs held\n",
+    "over one lane, for each method and instruction set, in steps of 1 ms. The regimes of the "
+    "biped, "
+    "for which kernels are built in, are\n"
+    "  flight    nothing near the ground\n"
+    "  one foot  linear balance control, torques held for 1 ms\n"
+    "  two feet  standing with the legs held\n",
     "`make bench` measures all of this, the whole program and other engines, and draws it with "
     "`stance bench plot`. More: `stance bench accuracy -h`, error against cost; `stance bench "
     "failure -h`, where methods fail; `stance bench plot -h`, the picture.",

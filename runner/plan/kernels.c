@@ -195,7 +195,7 @@ enum exit_code kernels_take(struct kernels *kernels, const struct plan *plan,
     double steps;
     kernels->count = 0;
     kernels->brief = true;
-    if (!choice->always && all_ahead(plan))
+    if (!choice->again && all_ahead(plan))
         return EXIT_DONE;
     stance_case *const check = calloc(CHECKS, sizeof *check);
     if (!check)

@@ -21,7 +21,7 @@ struct kernels_choice {
     const char *const *method, *const *isa; /* others: names, or 0 of them */
     size_t methods, isas;
     bool always; /* compiles however little there is to compute */
-    bool again;  /* compiles what was refused before */
+    bool again;  /* compiles what was refused before, and what is built in */
     bool quiet;  /* says nothing where all goes well */
     bool looks;  /* compiles nothing, and leaves the cache as it is */
 };

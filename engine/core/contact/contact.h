@@ -39,7 +39,7 @@
 /* Contacts that matter in any lane: bit c. With an end of a sole its first one is in, too, which
  * holds the tangential impulse. What an open contact would do costs nothing. */
 typedef unsigned contact_set;
-#define CONTACT_ALL ((1u << SCENE_CONTACTS) - 1)
+#define CONTACT_ALL ((1u << OWN_CONTACTS) - 1)
 
 /* The contact that holds the friction of contact c: itself, the first end of its sole; -1: none. */
 HOT int contact_grip(int c)
