@@ -3,7 +3,7 @@
 # said last), which is committed. `.ci/run` refuses rows that say that something failed, and those that are more
 # than seven days older than the change that it judges. Seven: in a week there are some hundred changes, of which
 # the one that a stage objects to is found by seven runs of what failed; nobody runs the stages, which take a
-# machine an hour or two, for each of them.
+# machine some hours, for each of them. A row "not run yet", of a stage that is new, is as good for as long.
 # Usage: tests/long.sh [STAGE]...  all of them, or some; tests/long.sh --judge
 set -u
 cd "$(dirname "$0")/.." || exit 1
