@@ -112,11 +112,12 @@ char *fonts_replace(const char *family, const char *text, size_t length)
         const size_t bytes = utf8_letter(text + i, length - i, &letter), own = bytes ? bytes : 1;
         if (bytes > 1 && !has(&fonts, letter)) {
             char one[8];
+            const size_t listed = strlen(missing);
             any = true;
             used += (size_t)sprintf(drawn + used, "%s", has(&fonts, 0x25a1) ? "□" : "?");
             snprintf(one, sizeof one, "%.*s", (int)bytes, text + i);
-            if (strlen(missing) + bytes + 1 < sizeof missing && !strstr(missing, one))
-                strcat(missing, one);
+            if (listed + bytes + 1 < sizeof missing && !strstr(missing, one))
+                memcpy(missing + listed, one, bytes + 1);
         } else {
             memcpy(drawn + used, text + i, own);
             used += own;

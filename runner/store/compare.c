@@ -351,12 +351,15 @@ struct names {
 
 static herr_t add_name(struct names *names, const char *name)
 {
-    char **larger = realloc(names->name, (names->count + 1) * sizeof *larger);
-    names->name = larger ? larger : names->name;
-    char *own = larger ? strdup(name) : NULL;
-    if (own)
+    char *const own = strdup(name);
+    char **const larger = own ? realloc(names->name, (names->count + 1) * sizeof *larger) : NULL;
+    if (larger) {
+        names->name = larger;
         names->name[names->count++] = own;
-    names->failed = names->failed || !own;
+    } else {
+        free(own);
+        names->failed = true;
+    }
     return 0;
 }
 
