@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # What takes too long for every change: each stage leaves a row in tests/verdicts (stage, day, revision, what it
-# said last), which is committed. `.ci/run` refuses rows that say that something failed, and those that are more
+# said last), which is committed. `--judge` refuses rows that say that something failed, and those that are more
 # than seven days older than the change that it judges. Seven: in a week there are some hundred changes, of which
 # the one that a stage objects to is found by seven runs of what failed; nobody runs the stages, which take a
-# machine some hours, for each of them. A row "not run yet", of a stage that is new, is as good for as long.
+# machine some hours, for each of them.
 # Usage: tests/long.sh [STAGE]...  all of them, or some; tests/long.sh --judge
 set -u
 cd "$(dirname "$0")/.." || exit 1

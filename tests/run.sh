@@ -13,7 +13,6 @@ build=${BUILD:-build} pattern=${1:-} passed=0 failed=0 unchanged=0 stopped=
 # Not what the user's settings and files make of it: kernels that tests compile are theirs, too.
 unset CDPATH STANCE_ISA STANCE_SCRIPTS "${!SLURM_@}"
 STANCE_CACHE=$(realpath -m "$build")/cache && export STANCE_CACHE
-[ -n "${STANCE_TEST_SCRIPTS:-}${STANCE_TEST_LONG:-}" ] || export CC=$PWD/tests/quick_cc
 export CMOCKA_MESSAGE_OUTPUT=TAP PYTHON=${PYTHON:-/usr/bin/python3} BUILD=$build
 # make sanitize: what a sanitizer finds is a crash; the plug-ins of MPI leave memory allocated.
 export ASAN_OPTIONS=abort_on_error=1 UBSAN_OPTIONS=abort_on_error=1:print_stacktrace=1
