@@ -25,13 +25,16 @@ mkdir copy && (cd "$source" && git ls-files -co --exclude-standard engine runner
 cd copy || exit 1
 # One method, two scenes: what is not built need not be waited for.
 sed -i 's/^METHODS = .*/METHODS = implicit/; s/^SCALAR_METHODS = .*/SCALAR_METHODS =/' Makefile
+# Of the page its data: neither a browser nor an engine for it.
+sed -i "s/-DSTANCE_PAGE_ENGINES='[^']*'/-DSTANCE_PAGE_ENGINES=/" Makefile
+echo '<!--stance:data--><!--stance:more-->' >page.html
 "$python" "$tests/adding.py" . >places 2>log
 check "the additions find their places" test -s places
 while read -r kind places files; do
     check "$kind: $places places ($files)" test "$places" -le 3
 done <places
 isa=$("$stance" --version | sed -n 's/.*in use: //p')
-check "it builds" make -j"$(nproc)" ISAS="$isa" KERNEL_CFLAGS=-O1 CFLAGS=-O0 BUILD="$scratch/build" \
+check "it builds" make -j"$(nproc)" ISAS="$isa" PAGE="$PWD/page.html" KERNEL_CFLAGS=-O1 CFLAGS=-O0 BUILD="$scratch/build" \
     PROGRAM="$scratch/stance" "$scratch/stance"
 cd "$scratch" || exit 1
 

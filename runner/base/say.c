@@ -64,8 +64,10 @@ static void put_value(const struct scope *scope, const json_t *value, const char
         snprintf(own, sizeof own, spec, number);
     else if (json_is_integer(value) && !hundredfold)
         snprintf(own, sizeof own, "%" JSON_INTEGER_FORMAT, json_integer_value(value));
+    else if (json_is_number(value))
+        snprintf(own, sizeof own, "%.6g", number);
     else
-        snprintf(own, sizeof own, json_is_number(value) ? "%.6g" : "", number);
+        text = "";
     const size_t flags = strspn(spec, "%-+");
     const int width =
         spec[flags] == '*' ? (int)json_integer_value(find(scope, ".width", 6)) : atoi(spec + flags);
