@@ -66,7 +66,7 @@ HOT mask direct_one(const lanes D[2][2], const lanes uf[2], lanes friction, cons
 HOT void direct_rows(const mask *active, mask (*rows)[2])
 {
     mask all[CONTACTS];
-    EACH (c, 0, SCENE_CONTACTS)
+    EACH_CONTACT (c, 0)
         all[c] = LANES_ALL;
     contact_mode_rows(active, all, rows);
 }
@@ -75,8 +75,8 @@ HOT void direct_rows(const mask *active, mask (*rows)[2])
 HOT mask direct_stood(const struct contact_rule *rule, contact_set touching, const mask *active)
 {
     mask stood = rule->before ? LANES_ALL : MASK_NONE;
-    for (int c = 0; c < SCENE_CONTACTS && rule->before; c++) {
-        if (!(touching >> c & 1))
+    EACH_IN (c, touching) {
+        if (!rule->before)
             continue;
         mask stands = mask_less(lanes_of(0), rule->before[c][0]);
         if (contact_is_point(c))
@@ -94,9 +94,7 @@ HOT mask direct_stood(const struct contact_rule *rule, contact_set touching, con
 HOT mask direct_obeys(lanes friction, contact_set touching, const lanes (*r)[2])
 {
     mask inside = LANES_ALL;
-    EACH (c, 0, SCENE_CONTACTS) {
-        if (!(touching >> c & 1))
-            continue;
+    EACH_IN (c, touching) {
         inside &= mask_less_equal(lanes_of(0), r[c][0]);
         if (contact_unknowns(c) == 2)
             inside &= contact_inside(friction, contact_load(c, r), r[c][1]);
@@ -120,15 +118,16 @@ HOT mask direct_stick(const struct contact_rule *rule, const lanes (*D)[CONTACTS
 HOT void direct_velocities(const lanes (*D)[CONTACTS][2][2], const lanes (*uf)[2],
                            contact_set touching, const lanes (*r)[2], lanes (*u)[2])
 {
-    EACH (c, 0, SCENE_CONTACTS)
+    EACH_CONTACT (c, 0)
+        u[c][0] = u[c][1] = lanes_of(0);
+    EACH_IN (c, touching)
         EACH (a, 0, 2) {
-            u[c][a] = lanes_of(0);
-            if (!(touching >> c & 1) || a >= contact_unknowns(c))
+            if (a >= contact_unknowns(c))
                 continue;
             u[c][a] = uf[c][a];
-            EACH (k, 0, SCENE_CONTACTS)
+            EACH_IN (k, touching)
                 EACH (b, 0, 2)
-                    if (b < contact_unknowns(k) && (touching >> k & 1))
+                    if (b < contact_unknowns(k))
                         u[c][a] = lanes_fma(D[c][k][a][b], r[k][b], u[c][a]);
         }
 }
@@ -140,8 +139,8 @@ COLD void direct_factor(contact_set touching, enum contact_care care,
                         double ridge, lanes (*M)[CONTACTS][2][2], struct contact_factors *f)
 {
     contact_matrix(touching, D, rows, edge, M);
-    for (int c = 0; c < SCENE_CONTACTS; c++)
-        if (contact_unknowns(c) == 2 && touching >> c & 1)
+    EACH_IN (c, touching)
+        if (contact_unknowns(c) == 2)
             M[c][c][1][1] = (1 + ridge) * M[c][c][1][1];
     contact_factor(touching, care, M, f);
 }
@@ -151,7 +150,7 @@ HOT void direct_rest(contact_set touching, const mask (*rows)[2], const struct c
                      const lanes (*u)[2], lanes (*x)[2])
 {
     lanes part[CONTACTS][2];
-    EACH (c, 0, SCENE_CONTACTS)
+    EACH_IN (c, touching)
         EACH (a, 0, 2)
             part[c][a] = choose(rows[c][a], u[c][a], lanes_of(0));
     contact_back(touching, f, (const lanes(*)[2])part, x);
@@ -196,9 +195,8 @@ static inline mask direct_redundant(contact_set touching, const lanes (*D)[CONTA
         any |= here;
         for (int a = 0; a < contact_unknowns(p); a++) {
             n[p][a] = choose(here, null[a], lanes_of(0));
-            for (int k = p + 1; k < SCENE_CONTACTS; k++)
-                if (touching >> k & 1)
-                    n[p][a] = contact_row(k, f->push[p][k][a], n[k], n[p][a]);
+            EACH_IN_FROM (k, p + 1, touching)
+                n[p][a] = contact_row(k, f->push[p][k][a], n[k], n[p][a]);
         }
     }
     return any & LANES_NOT(*many);
@@ -210,8 +208,8 @@ static inline lanes direct_middle(lanes friction, contact_set touching, const la
 {
     const lanes none = lanes_of(0);
     lanes low = lanes_of(-INFINITY), high = lanes_of(INFINITY);
-    for (int c = 0; c < SCENE_CONTACTS; c++)
-        for (int side = -1; side <= 1 && touching >> c & 1; side++) {
+    EACH_IN (c, touching)
+        for (int side = -1; side <= 1; side++) {
             lanes room = r[c][0], rate = n[c][0];
             if (side == 0 ? contact_is_point(c) : contact_unknowns(c) == 1)
                 continue;
@@ -294,24 +292,24 @@ COLD mask direct_unique(lanes friction, const lanes (*D)[CONTACTS][2][2], contac
     for (int c = 0; c < SCENE_CONTACTS; c++)
         sum[c] = lanes_of(0);
     lanes largest = lanes_of(0);
-    for (int h = 0; h < SCENE_CONTACTS; h++) {
-        if (!(touching >> h & 1) || contact_unknowns(h) != 2)
+    EACH_IN (h, touching) {
+        if (contact_unknowns(h) != 2)
             continue;
         for (int c = 0; c < SCENE_CONTACTS; c++) {
             u[c][0] = lanes_of(contact_grip(c) == h ? -1 : 0);
             u[c][1] = lanes_of(0);
         }
         direct_back(touching, (const mask(*)[2])rows, &f, (const lanes(*)[2])u, x);
-        for (int g = 0; g < SCENE_CONTACTS; g++)
-            if (touching >> g & 1 && contact_unknowns(g) == 2)
+        EACH_IN (g, touching)
+            if (contact_unknowns(g) == 2)
                 sum[g] += lanes_abs(contact_load(g, (const lanes(*)[2])x));
     }
     for (int g = 0; g < SCENE_CONTACTS; g++) {
         lanes row = lanes_of(0);
         if (!(touching >> g & 1) || contact_unknowns(g) != 2)
             continue;
-        for (int h = 0; h < SCENE_CONTACTS; h++)
-            if (touching >> h & 1 && contact_unknowns(h) == 2)
+        EACH_IN (h, touching)
+            if (contact_unknowns(h) == 2)
                 row += choose(rows[g][1] & rows[h][1], lanes_abs(D[g][h][1][1]), lanes_of(0));
         largest = lanes_max(sum[g] * row, largest);
     }
@@ -325,9 +323,7 @@ HOT lanes direct_violation(const struct contact_rule *rule, const lanes (*D)[CON
 {
     const lanes none = lanes_of(0);
     lanes worst = none;
-    for (int c = 0; c < SCENE_CONTACTS; c++) {
-        if (!(touching >> c & 1))
-            continue;
+    EACH_IN (c, touching) {
         const lanes pushes = r[c][0] * lanes_abs(D[c][c][0][0]);
         lanes off = lanes_max(-u[c][0], -pushes);
         off = lanes_max(lanes_min(lanes_abs(u[c][0]), lanes_abs(pushes)), off);
@@ -354,11 +350,10 @@ HOT lanes direct_violation(const struct contact_rule *rule, const lanes (*D)[CON
 static inline void direct_take(lanes friction, contact_set touching, const lanes (*solution)[2],
                                mask m, lanes (*r)[2])
 {
-    for (int c = 0; c < SCENE_CONTACTS; c++)
-        if (touching >> c & 1)
-            r[c][0] = choose(m, lanes_max(solution[c][0], lanes_of(0)), r[c][0]);
-    for (int c = 0; c < SCENE_CONTACTS; c++) {
-        if (!(touching >> c & 1) || contact_unknowns(c) == 1)
+    EACH_IN (c, touching)
+        r[c][0] = choose(m, lanes_max(solution[c][0], lanes_of(0)), r[c][0]);
+    EACH_IN (c, touching) {
+        if (contact_unknowns(c) == 1)
             continue;
         const lanes bound = friction * contact_load(c, (const lanes(*)[2])r);
         const lanes asked = solution[c][1], size = lanes_abs(asked);
@@ -403,8 +398,8 @@ COLD mask direct_modes(const struct contact_rule *rule, const lanes (*D)[CONTACT
         contact_mode_rows(closed, sticks, rows);
         direct_factor(touching, CONTACT_CAREFUL, D, (const mask(*)[2])rows, edge, 0, M, &f);
         direct_back(touching, (const mask(*)[2])rows, &f, uf, candidate);
-        for (int c = 0; c < SCENE_CONTACTS; c++)
-            if (touching >> c & 1 && contact_unknowns(c) == 2)
+        EACH_IN (c, touching)
+            if (contact_unknowns(c) == 2)
                 candidate[c][1] = lanes_fma(edge[c], contact_load(c, (const lanes(*)[2])candidate),
                                             candidate[c][1]);
         direct_velocities(D, uf, touching, (const lanes(*)[2])candidate, u);
@@ -414,9 +409,7 @@ COLD mask direct_modes(const struct contact_rule *rule, const lanes (*D)[CONTACT
         found |= good;
         todo &= LANES_NOT(good);
         direct_take(friction, touching, (const lanes(*)[2])candidate, good, r);
-        for (int c = 0; c < SCENE_CONTACTS; c++) {
-            if (!(touching >> c & 1))
-                continue;
+        EACH_IN (c, touching) {
             const mask carries = closed[c] & mask_less(none, candidate[c][0]);
             closed[c] = carries | (active[c] & LANES_NOT(closed[c]) & mask_less(u[c][0], none));
             if (contact_unknowns(c) == 1)

@@ -159,8 +159,8 @@ static inline mask pair_every(const struct contact_rule *rule, const lanes (*D)[
                 !contact_is_point(b))
                 continue;
             mask both = todo & active[a] & active[b], several;
-            for (int c = 0; c < SCENE_CONTACTS; c++)
-                if (c != a && c != b && touching >> c & 1)
+            EACH_IN (c, touching)
+                if (c != a && c != b)
                     both &= LANES_NOT(active[c]);
             if (!mask_any(both))
                 continue;
