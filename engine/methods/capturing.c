@@ -371,7 +371,11 @@ COLD mask capture_standing(struct advance *a, const struct setting *set, const l
     for (int lane = 0; lane < LANES && mask_any(left); lane++) {
         if (!mask_get(left, lane))
             continue;
-        const contact_set touching = step_touching(set, from.gap, mask_of_lane(lane));
+        contact_set touching = 0;
+        EACH_CONTACT (c, 0)
+            if (lane_get(&set->may_touch[c], lane) > 0 &&
+                lane_get(&from.gap[c], lane) <= STEP_CLOSED)
+                touching |= contact_with(c);
         const mask fit = capture_stands(touching, a, set, h, left, &from);
         left &= LANES_NOT(fit | mask_of_lane(lane));
         if (!mask_any(fit))

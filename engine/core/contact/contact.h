@@ -226,12 +226,32 @@ HOT mask contact_invert(int unknowns, enum contact_care care, const lanes own[2]
     return mask_less(CONTACT_REGULAR * lanes_abs(product), determinant);
 }
 
-/* sum + row . x, of contact c's unknowns. */
-HOT lanes contact_row(int c, const lanes row[2], const lanes x[2], lanes sum)
+/* sum + row . x, of n unknowns. */
+HOT lanes contact_row(int n, const lanes row[2], const lanes x[2], lanes sum)
 {
-    if (contact_unknowns(c) == 2)
+    if (n == 2)
         sum = lanes_fma(row[1], x[1], sum);
     return lanes_fma(row[0], x[0], sum);
+}
+/* sum + A B, of blocks with n rows, m columns and `inner` between. */
+HOT void contact_block(int n, int inner, int m, const lanes A[2][2], const lanes B[2][2],
+                       lanes sum[2][2])
+{
+    EACH (a, 0, 2)
+        EACH (b, 0, 2) {
+            const lanes column[2] = {B[0][b], B[1][b]};
+            if (a < n && b < m)
+                sum[a][b] = contact_row(inner, A[a], column, sum[a][b]);
+        }
+}
+/* The same; without a question in between where all are points, as most are. */
+HOT void contact_product(int n, int inner, int m, const lanes A[2][2], const lanes B[2][2],
+                         lanes sum[2][2])
+{
+    if (n + inner + m == 6)
+        contact_block(2, 2, 2, A, B, sum);
+    else
+        contact_block(n, inner, m, A, B, sum);
 }
 
 /* Factors M, from contact_matrix, which is spoiled. */
@@ -247,28 +267,19 @@ HOT void contact_factor(contact_set touching, enum contact_care care, lanes (*M)
             f->inverse[p][a][0] = f->inverse[p][a][1] = lanes_of(0);
         f->regular &= contact_invert(contact_unknowns(p), care, own[p], (const lanes(*)[2])M[p][p],
                                      f->inverse[p]);
+        const int n = contact_unknowns(p);
         EACH_IN_FROM (k, p + 1, touching) {
-            EACH (b, 0, 2) {
-                const lanes column[2] = {M[p][k][0][b], M[p][k][1][b]};
+            EACH (b, 0, 2)
                 EACH (a, 0, 2) {
                     f->through[p][k][b][a] = M[k][p][b][a];
                     f->push[p][k][a][b] = lanes_of(0);
-                    if (a < contact_unknowns(p) && b < contact_unknowns(k))
-                        f->push[p][k][a][b] = contact_row(p, f->inverse[p][a], column, lanes_of(0));
                 }
-            }
+            contact_product(n, n, contact_unknowns(k), f->inverse[p], M[p][k], f->push[p][k]);
         }
-        EACH_IN_FROM (i, p + 1, touching) {
-            EACH_IN_FROM (k, p + 1, touching) {
-                EACH (a, 0, 2)
-                    EACH (b, 0, 2) {
-                        const lanes column[2] = {f->push[p][k][0][b], f->push[p][k][1][b]};
-                        if (a < contact_unknowns(i) && b < contact_unknowns(k))
-                            M[i][k][a][b] =
-                                contact_row(p, f->through[p][i][a], column, M[i][k][a][b]);
-                    }
-            }
-        }
+        EACH_IN_FROM (i, p + 1, touching)
+            EACH_IN_FROM (k, p + 1, touching)
+                contact_product(contact_unknowns(i), n, contact_unknowns(k), f->through[p][i],
+                                f->push[p][k], M[i][k]);
     }
 }
 
@@ -285,18 +296,19 @@ HOT void contact_back(contact_set touching, const struct contact_factors *f, con
     EACH_IN (p, touching) {
         EACH (a, 0, 2)
             if (a < contact_unknowns(p))
-                x[p][a] = contact_row(p, f->inverse[p][a], left[p], lanes_of(0));
+                x[p][a] = contact_row(contact_unknowns(p), f->inverse[p][a], left[p], lanes_of(0));
         EACH_IN_FROM (k, p + 1, touching)
             EACH (b, 0, 2)
                 if (b < contact_unknowns(k))
-                    left[k][b] = contact_row(p, f->through[p][k][b], x[p], left[k][b]);
+                    left[k][b] =
+                        contact_row(contact_unknowns(p), f->through[p][k][b], x[p], left[k][b]);
     }
     for (int p = SCENE_CONTACTS - 1; p >= 0; p--) {
         EACH (a, 0, 2) {
             if (!(touching >> p & 1) || a >= contact_unknowns(p))
                 continue;
             EACH_IN_FROM (k, p + 1, touching)
-                x[p][a] = contact_row(k, f->push[p][k][a], x[k], x[p][a]);
+                x[p][a] = contact_row(contact_unknowns(k), f->push[p][k][a], x[k], x[p][a]);
             x[p][a] = x[p][a] + 0.0;
         }
     }

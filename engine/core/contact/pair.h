@@ -79,9 +79,9 @@ COLD mask pair_enumerate(const struct contact_rule *rule, const lanes (*D)[CONTA
             never[c][BACKWARD] |= mask_less(none, slide);
         }
     }
-    const mask holds =
-        direct_hold(rule->friction, tolerance->most, D, uf, touching, active, candidate) &
-        LANES_NOT(never[first][STICK] | never[second][STICK]);
+    const mask holds = direct_hold(rule->friction, tolerance->most, D, uf, touching, active,
+                                   MASK_NONE, candidate) &
+                       LANES_NOT(never[first][STICK] | never[second][STICK]);
     direct_velocities(D, uf, touching, (const lanes(*)[2])candidate, u);
     pair_offer(rule, uf, tolerance->most, touching, active, (const lanes(*)[2])candidate,
                (const lanes(*)[2])u, todo & holds, todo & holds, &best);

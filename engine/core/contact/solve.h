@@ -22,7 +22,8 @@ COLD void solve_rest(const struct contact_rule *rule, const lanes (*D)[CONTACTS]
     const mask stood = unsure & direct_stood(rule, touching, active);
     mask done = MASK_NONE;
     if (mask_any(stood)) {
-        done = stood & direct_hold(rule->friction, tolerance.most, D, uf, touching, active, stick);
+        done = stood &
+               direct_hold(rule->friction, tolerance.most, D, uf, touching, active, stood, stick);
         for (int c = 0; c < SCENE_CONTACTS; c++)
             for (int a = 0; a < 2; a++)
                 r[c][a] = choose(done, stick[c][a], r[c][a]);
@@ -119,6 +120,9 @@ HOT void solve_contacts(const struct contact_rule *rule, const lanes (*D)[CONTAC
                     if (contact_is_point(c))
                         r[c][a] = choose(one & active[c], alone[a], r[c][a]);
         }
+#ifdef CONTACT_LISTS
+        unsure |= many; /* solve_rest holds them the same way */
+#else
         if (mask_any(many)) {
             lanes all[CONTACTS][2];
             const mask stays = many & direct_stick(rule, D, uf, touching, active, all) &
@@ -129,10 +133,14 @@ HOT void solve_contacts(const struct contact_rule *rule, const lanes (*D)[CONTAC
                     if (a < contact_unknowns(c))
                         r[c][a] = choose(stays, all[c][a], r[c][a]);
         }
+#endif
     }
     unsure &= where;
     if (!mask_any(unsure))
         return;
+#ifdef CONTACT_LISTS
+    solve_rest(rule, D, uf, touching, active, unsure, r, v);
+#else
     /* Copies, because what is passed by address has to stay in memory. */
     struct contact_rule own = *rule;
     lanes D1[CONTACTS][CONTACTS][2][2], uf1[CONTACTS][2], r1[CONTACTS][2];
@@ -168,6 +176,7 @@ HOT void solve_contacts(const struct contact_rule *rule, const lanes (*D)[CONTAC
         EACH (a, 0, 2)
             r[c][a] = r1[c][a];
     *v = verdict;
+#endif
 }
 
 #endif

@@ -96,7 +96,9 @@ HOT void iterate_contacts(const struct setting *set, const struct motion *from, 
     EACH_IN (c, touching) {
         lanes now[2], moved[2];
         scene_contact_velocity(&set->body, &it->end, c, it->w, now);
-        scene_contact_velocity_change(&set->body, &it->end, c, it->w, lever, dw, moved);
+        scene_rows rows;
+        scene_contact_rows(&set->body, &it->end, c, it->w, lever, &rows);
+        scene_rows_velocity(&set->body, c, &rows, dw, moved);
         rebound[c][0] = set->restitution[c] * lanes_min(from->approach[c], lanes_of(0));
         uf[c][0] = now[0] + moved[0] + rebound[c][0];
         uf[c][1] = now[1] + moved[1];
@@ -106,8 +108,7 @@ HOT void iterate_contacts(const struct setting *set, const struct motion *from, 
             EACH (b, 0, 2) {
                 if (b >= contact_unknowns(k))
                     continue;
-                scene_contact_velocity_change(&set->body, &it->end, c, it->w, lever, response[k][b],
-                                              moved);
+                scene_rows_velocity(&set->body, c, &rows, response[k][b], moved);
                 D[c][k][0][b] = moved[0];
                 D[c][k][1][b] = moved[1];
             }

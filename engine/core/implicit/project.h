@@ -41,12 +41,15 @@ HOT void project_multipliers(const struct setting *set, const scene_trig *trig,
 {
     lanes G[CONTACTS][CONTACTS], U[CONTACTS][CONTACTS], reciprocal[CONTACTS];
     mask idle[CONTACTS], any = MASK_NONE;
-    EACH_IN (c, touching)
+    EACH_IN (c, touching) {
+        scene_rows rows;
+        scene_contact_rows(&set->body, trig, c, NULL, lanes_of(0), &rows);
         EACH_IN (k, touching) {
             lanes u[2];
-            scene_contact_velocity(&set->body, trig, c, lift[k], u);
+            scene_rows_velocity(&set->body, c, &rows, lift[k], u);
             G[c][k] = U[c][k] = choose(held[c] & held[k], u[0], lanes_of(c == k));
         }
+    }
     EACH_IN (p, touching) {
         idle[p] = MASK_NONE;
         reciprocal[p] = 1 / U[p][p];
@@ -222,13 +225,15 @@ HOT void grip_factor(const struct setting *set, const scene_trig *trig, contact_
 {
     lanes D[CONTACTS][CONTACTS][2][2], M[CONTACTS][CONTACTS][2][2];
     EACH_IN (c, touching) {
+        scene_rows rows;
+        scene_contact_rows(&set->body, trig, c, NULL, lanes_of(0), &rows);
         EACH_IN (k, touching)
             EACH (b, 0, 2) {
                 D[c][k][0][b] = D[c][k][1][b] = lanes_of(0);
                 if (b >= contact_unknowns(k))
                     continue;
                 lanes moved[2];
-                scene_contact_velocity(&set->body, trig, c, response[k][b], moved);
+                scene_rows_velocity(&set->body, c, &rows, response[k][b], moved);
                 D[c][k][0][b] = moved[0], D[c][k][1][b] = moved[1];
             }
     }
