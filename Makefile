@@ -417,6 +417,7 @@ FUZZ_SECONDS ?= 30
 FUZZ          = $(BUILD)/fuzz
 FUZZ_CFLAGS   = -O1 -g1 -fno-omit-frame-pointer -fsanitize=address,undefined -fno-sanitize-recover=undefined \
                 -fsanitize-coverage=inline-8bit-counters,pc-table $(FUZZ_COVERAGE) -Wno-bitwise-instead-of-logical \
+                -Wno-missing-field-initializers \
                 '-DCMPLX(a,b)=__builtin_complex((double)(a),(double)(b))'
 fuzz_sources := $(filter-out runner/main.c,$(program_sources)) $(filter-out engine/kernels.c,$(engine_sources))
 fuzz_objects := $(fuzz_sources:%.c=$(FUZZ)/%.o)
