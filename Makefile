@@ -205,7 +205,7 @@ other_programs = $(BUILD)/tests/bench_schedule $(BUILD)/tests/bench_truths $(BUI
 $(BUILD)/tests/%.o: tests/%.c $(BUILD)/flags $(BUILD)/kernels
 	@mkdir -p $(@D)
 	$(call QUIET,cc,$@)$(CC) $(TEST_CFLAGS) $(ALLFLAGS) $(kernel_warnings) $(PROGRAM_CFLAGS) $(isa_list) $(EXTRA) -MMD -MP -c -o $@ $<
-$(test_programs): $(BUILD)/tests/%: $(BUILD)/tests/%.o $(product)
+$(test_programs) $(BUILD)/tests/peer_self: $(BUILD)/tests/%: $(BUILD)/tests/%.o $(product)
 	$(call QUIET,link,$@)$(CC) $(TEST_CFLAGS) $(SANITIZE) -o $@ $< $(test_objects) $(product) $(test_ldflags) $(LDFLAGS) $(LIBS) -lcmocka
 .PRECIOUS: $(BUILD)/tests/%.o
 $(BUILD)/tests/build_info.o: runner/store/build_info.c $(BUILD)/flags
@@ -417,6 +417,7 @@ FUZZ_SECONDS ?= 30
 FUZZ          = $(BUILD)/fuzz
 FUZZ_CFLAGS   = -O1 -g1 -fno-omit-frame-pointer -fsanitize=address,undefined -fno-sanitize-recover=undefined \
                 -fsanitize-coverage=inline-8bit-counters,pc-table $(FUZZ_COVERAGE) -Wno-bitwise-instead-of-logical \
+                -Wno-missing-field-initializers \
                 '-DCMPLX(a,b)=__builtin_complex((double)(a),(double)(b))'
 fuzz_sources := $(filter-out runner/main.c,$(program_sources)) $(filter-out engine/kernels.c,$(engine_sources))
 fuzz_objects := $(fuzz_sources:%.c=$(FUZZ)/%.o)

@@ -137,9 +137,9 @@ void __wrap_sandbox_limit(bool begin)
 bool __wrap_gnuplot_end(struct gnuplot *g);
 bool __wrap_gnuplot_end(struct gnuplot *g)
 {
-    const bool good = !g->missing;
+    const bool drawn = !g->missing;
     gnuplot_abandon(g);
-    return good;
+    return drawn;
 }
 
 /* ---- findings inside a worker --------------------------------------------------------------- */
