@@ -58,6 +58,7 @@ HOT void scene_contact_rows(const scene_body *b, const scene_trig *trig, int c, 
     lanes(*const H)[TREE_SLOTS(TREE_ANGLES)] = rows->of;
     TREE_UNROLL
     for (int j = 0; j < tree_angles; j++) {
+        H[0][j] = H[1][j] = lanes_of(0);
         if (tree_is_stop(c) || tree_path[c][j] < 0)
             continue;
         lanes reach[2], grip[2];

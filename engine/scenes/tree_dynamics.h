@@ -98,7 +98,7 @@ HOT void tree_base_add(const scene_body *b, lanes factor, const lanes v[2], lane
 HOT lanes tree_base(const scene_body *b, const lanes *x, int axis)
 {
     if (tree_free)
-        return x[axis];
+        return x[axis]; // NOLINT: responses are set, which clang loses sight of in lagrange.c
     if (tree_rail)
         return b->rail[axis] * x[0];
     return lanes_of(0);
