@@ -303,11 +303,11 @@ static inline void direct_exchange(const lanes (*D)[CONTACTS][2][2], contact_set
 }
 
 /* As lane_hold, in lanes: impulses with which all active contacts stick, whatever the operator, and
- * the lanes where they obey the laws. `stood`: lanes where those of direct_stick are taken, if they
- * do. */
+ * the lanes where they obey the laws. `where`: lanes that matter; `stood`: those where the impulses
+ * of direct_stick are taken, if they do. */
 COLD mask direct_hold(lanes friction, lanes tolerance, const lanes (*D)[CONTACTS][2][2],
-                      const lanes (*uf)[2], contact_set touching, const mask *active, mask stood,
-                      lanes (*r)[2])
+                      const lanes (*uf)[2], contact_set touching, const mask *active, mask where,
+                      mask stood, lanes (*r)[2])
 {
     const lanes none = lanes_of(0);
     struct contact_factors f;
@@ -321,7 +321,7 @@ COLD mask direct_hold(lanes friction, lanes tolerance, const lanes (*D)[CONTACTS
     direct_back(touching, (const mask(*)[2])rows, &f, uf, first);
     const mask sticks =
         stood & f.regular & direct_obeys(friction, touching, (const lanes(*)[2])first);
-    if (mask_any(stood) && !mask_any(stood & LANES_NOT(sticks))) {
+    if (!mask_any(where & LANES_NOT(sticks))) {
         memcpy(r, first, sizeof first);
         return sticks;
     }

@@ -79,7 +79,7 @@ COLD mask pair_enumerate(const struct contact_rule *rule, const lanes (*D)[CONTA
             never[c][BACKWARD] |= mask_less(none, slide);
         }
     }
-    const mask holds = direct_hold(rule->friction, tolerance->most, D, uf, touching, active,
+    const mask holds = direct_hold(rule->friction, tolerance->most, D, uf, touching, active, todo,
                                    MASK_NONE, candidate) &
                        LANES_NOT(never[first][STICK] | never[second][STICK]);
     direct_velocities(D, uf, touching, (const lanes(*)[2])candidate, u);

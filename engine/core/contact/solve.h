@@ -8,10 +8,11 @@
 
 #define SOLVE_ENUMERATED 4 /* elements: more are not enumerated */
 
-/* What is not decided in the hot loop, in the lanes of `unsure`. */
+/* What is not decided in the hot loop, in the lanes of `unsure`; `many`: those with more than a
+ * point. */
 COLD void solve_rest(const struct contact_rule *rule, const lanes (*D)[CONTACTS][2][2],
                      const lanes (*uf)[2], contact_set touching, const mask *active, mask unsure,
-                     lanes (*r)[2], struct contact_verdict *v)
+                     mask many, lanes (*r)[2], struct contact_verdict *v)
 {
     const lanes none = lanes_of(0);
     lanes stick[CONTACTS][2], largest = none;
@@ -22,8 +23,8 @@ COLD void solve_rest(const struct contact_rule *rule, const lanes (*D)[CONTACTS]
     const mask stood = unsure & direct_stood(rule, touching, active);
     mask done = MASK_NONE;
     if (mask_any(stood)) {
-        done = stood &
-               direct_hold(rule->friction, tolerance.most, D, uf, touching, active, stood, stick);
+        done = stood & direct_hold(rule->friction, tolerance.most, D, uf, touching, active, stood,
+                                   stood & many, stick);
         for (int c = 0; c < SCENE_CONTACTS; c++)
             for (int a = 0; a < 2; a++)
                 r[c][a] = choose(done, stick[c][a], r[c][a]);
@@ -139,7 +140,7 @@ HOT void solve_contacts(const struct contact_rule *rule, const lanes (*D)[CONTAC
     if (!mask_any(unsure))
         return;
 #ifdef CONTACT_LISTS
-    solve_rest(rule, D, uf, touching, active, unsure, r, v);
+    solve_rest(rule, D, uf, touching, active, unsure, many, r, v);
 #else
     /* Copies, because what is passed by address has to stay in memory. */
     struct contact_rule own = *rule;
@@ -171,7 +172,7 @@ HOT void solve_contacts(const struct contact_rule *rule, const lanes (*D)[CONTAC
     own.before = rule->before ? (const lanes(*)[2])before : NULL;
     own.last = rule->last ? (const lanes(*)[2])last : NULL;
     solve_rest(&own, (const lanes(*)[CONTACTS][2][2])D1, (const lanes(*)[2])uf1, touching, part,
-               unsure, r1, &verdict);
+               unsure, many, r1, &verdict);
     EACH_CONTACT (c, 0)
         EACH (a, 0, 2)
             r[c][a] = r1[c][a];
