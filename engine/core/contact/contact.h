@@ -50,7 +50,7 @@ HOT int contact_next(contact_set set, int from)
 /* Loops over all contacts from one on, and over those in a set. Where there are few they are
  * unrolled, and compiled anew for each set that is a constant; else a set is gone through as a
  * list, so that neither time nor code is that of contacts which are open. */
-#if defined(TREE_RUNTIME) || TREE_CONTACTS > 4
+#if TREE_CONTACTS > 4
 #define CONTACT_LISTS
 #define EACH_CONTACT(c, from) for (int c = (from); c < SCENE_CONTACTS; c++)
 #define EACH_IN_FROM(c, from, set)                                                                 \
