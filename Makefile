@@ -125,7 +125,7 @@ BUILD_INFO = -DSTANCE_REVISION='"$(REVISION)"' \
              -DSTANCE_COMPILER='"$(shell $(CC) --version | head -n 1)"' \
              -DSTANCE_CFLAGS='"$(KERNEL_CFLAGS) $(STRICT)"'
 
-.PHONY: all help packages demo golden golden-neon golden-web web web-page test check check-programs check-scripts check-length test-scripts test-length mutations test-neon test-web test-long test-kills hunt test-slurm test-hosts fuzz fuzz-programs bench bench-run truths bench-peers bench-peers-run bench-web bench-schedule profile lint sanitize install uninstall clean FORCE
+.PHONY: all help packages demo golden golden-memory golden-neon golden-web web web-page test check check-programs check-scripts check-length test-scripts test-length mutations test-neon test-web test-long test-kills hunt test-slurm test-hosts fuzz fuzz-programs bench bench-run truths bench-peers bench-peers-run bench-web bench-schedule profile lint sanitize install uninstall clean FORCE
 all: $(PROGRAM)
 
 $(PROGRAM): $(program_objects) $(archives)
@@ -505,8 +505,15 @@ profile: $(PROGRAM)
 lint: packages-test
 	@+bash tests/lint.sh
 
+# The kernels of one lane by clang, which ends them at what depends on memory that nothing was written to.
+MEMORY = -O1 -g -fsanitize=memory
+golden-memory:
+	+@$(MAKE) BUILD=$(BUILD)/memory CC=clang ISAS=scalar SCALAR_METHODS= LIBRARY_CFLAGS= GOLDEN_LIBS=-lm WARNINGS=-w \
+	    CFLAGS='$(MEMORY)' TEST_CFLAGS='$(MEMORY)' KERNEL_CFLAGS='$(MEMORY)' golden
+	$(BUILD)/memory/tests/golden 10
+
 # Full debugging information of instrumented kernels takes gcc minutes each.
-sanitize: packages-test
+sanitize: packages-test golden-memory
 	+STANCE_SLOW=1 $(MAKE) BUILD=build/sanitize PROGRAM=build/sanitize/bin/stance CFLAGS='-O1 -g' KERNEL_CFLAGS='-O1 -g1' \
 	    SANITIZE='-fsanitize=address,undefined -fno-sanitize-recover=undefined' FUZZ_CC=none check
 

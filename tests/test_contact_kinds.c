@@ -17,6 +17,7 @@ enum {
     STOPS = 2,
 };
 static const int scene_grip[SCENE_CONTACTS] = {0, 1, 2, 3, 4, 5, 6, 6, 8, 8, -1, -1};
+static const int scene_other[SCENE_CONTACTS] = {-1, -1, -1, -1, -1, -1, 7, 6, 9, 8, -1, -1};
 #include "engine/core/contact/solve.h"
 #define DENSE_ROWS 18
 #include "dense.h"

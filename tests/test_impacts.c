@@ -14,6 +14,7 @@ enum {
     N = SCENE_COORDINATES,
 };
 static const int scene_grip[SCENE_CONTACTS] = {0, 1, 2, 3};
+static const int scene_other[SCENE_CONTACTS] = {-1, -1, -1, -1};
 #include "engine/core/contact/impact.h"
 #define DENSE_ROWS N
 #include "dense.h"

@@ -271,7 +271,7 @@ HOT mask capture_stands(contact_set touching, const struct advance *a, const str
     mask fit = run & mask_less_equal(a->wait, none) & mask_less_equal(a->hunting, none) &
                mask_less_equal(a->done, none) & mask_less_equal(h, a->part) &
                mask_less_equal(h, scene_longest_step(&set->body));
-    EACH (c, 0, SCENE_CONTACTS) {
+    EACH_CONTACT (c, 0) {
         const mask closed = mask_less(none, set->may_touch[c]) &
                             mask_less_equal(now->gap[c], lanes_of(STEP_CLOSED));
         fit &= touching >> c & 1 ? closed & mask_less(none, a->stood[c]) : LANES_NOT(closed);
@@ -308,7 +308,7 @@ HOT void capture_watch(const struct advance *a, const struct setting *set, const
         capture_inside(set, now, next, h, watched, report);
 }
 
-/* Compiled for sets of contacts. */
+/* Compiled for sets of contacts, and for any. */
 #define CAPTURE_STAND(name, there, touching)                                                       \
     COLD mask capture_##name(const struct advance *a, const struct setting *set,                   \
                              const lanes *torque, bool coupled, lanes h, mask run,                 \
@@ -320,6 +320,23 @@ HOT void capture_watch(const struct advance *a, const struct setting *set, const
         return capture_stand(touching, a, set, torque, coupled, h, run, now, next, report);        \
     }
 CONTACT_SETS(CAPTURE_STAND)
+COLD mask capture_any(contact_set touching, const struct advance *a, const struct setting *set,
+                      const lanes *torque, bool coupled, lanes h, mask run,
+                      const struct motion *now, struct motion *next, struct step_report *report)
+{
+    return capture_stand(touching, a, set, torque, coupled, h, run, now, next, report);
+}
+HOT mask capture_take(contact_set touching, const struct advance *a, const struct setting *set,
+                      const lanes *torque, bool coupled, lanes h, mask run,
+                      const struct motion *now, struct motion *next, struct step_report *report)
+{
+#define TRY(name, there, contacts)                                                                 \
+    if ((there) && touching == (contacts))                                                         \
+        return capture_##name(a, set, torque, coupled, h, run, now, next, report);
+    CONTACT_SETS(TRY)
+#undef TRY
+    return capture_any(touching, a, set, torque, coupled, h, run, now, next, report);
+}
 
 /* One standing step of all lanes; false: it is none in some, and nothing has happened. */
 #define ADVANCE_ORDINARY
@@ -332,16 +349,9 @@ HOT bool advance_ordinary(struct advance *a, const struct setting *set, const la
                           struct motion *now, struct step_report *report)
 {
     struct motion next;
-    mask good = MASK_NONE;
     if (mask_any(live & LANES_NOT(capture_stands(touching, a, set, h, live, now))))
         return false;
-#define TRY(name, there, contacts)                                                                 \
-    if ((there) && touching == (contacts))                                                         \
-        good = capture_##name(a, set, torque, coupled, h, live, now, &next, report);               \
-    else
-    CONTACT_SETS(TRY)
-    return false;
-#undef TRY
+    const mask good = capture_take(touching, a, set, torque, coupled, h, live, now, &next, report);
     if (mask_any(live & LANES_NOT(good)))
         return false;
     capture_watch(a, set, now, &next, h, live, report);
@@ -355,24 +365,29 @@ COLD mask capture_standing(struct advance *a, const struct setting *set, const l
                            bool coupled, lanes h, mask run, struct motion *now,
                            struct step_report *report)
 {
-    mask done = MASK_NONE, tried = MASK_NONE;
+    mask done = MASK_NONE, tried = MASK_NONE, left = run;
     struct motion from = *now, next;
     struct step_report part;
-#define TRY(name, there, touching)                                                                 \
-    if (there) {                                                                                   \
-        const mask fit = capture_stands(touching, a, set, h, run & LANES_NOT(tried), &from);       \
-        if (mask_any(fit)) {                                                                       \
-            const mask good =                                                                      \
-                capture_##name(a, set, torque, coupled, h, fit, &from, &next, &part);              \
-            capture_watch(a, set, &from, &next, h, good, &part);                                   \
-            choose_all(good, &next, now, sizeof next);                                             \
-            choose_all(good, &part, report, sizeof part);                                          \
-            tried |= fit;                                                                          \
-            done |= good;                                                                          \
-        }                                                                                          \
+    for (int lane = 0; lane < LANES && mask_any(left); lane++) {
+        if (!mask_get(left, lane))
+            continue;
+        contact_set touching = 0;
+        EACH_CONTACT (c, 0)
+            if (lane_get(&set->may_touch[c], lane) > 0 &&
+                lane_get(&from.gap[c], lane) <= STEP_CLOSED)
+                touching |= contact_with(c);
+        const mask fit = capture_stands(touching, a, set, h, left, &from);
+        left &= LANES_NOT(fit | mask_of_lane(lane));
+        if (!mask_any(fit))
+            continue;
+        const mask good =
+            capture_take(touching, a, set, torque, coupled, h, fit, &from, &next, &part);
+        capture_watch(a, set, &from, &next, h, good, &part);
+        choose_all(good, &next, now, sizeof next);
+        choose_all(good, &part, report, sizeof part);
+        tried |= fit;
+        done |= good;
     }
-    CONTACT_SETS(TRY)
-#undef TRY
     const mask others = run & LANES_NOT(done);
     const lanes longer =
         choose(mask_less(lanes_of(0), a->ordinary), lanes_of(0), lanes_of(CAPTURE_WAIT));

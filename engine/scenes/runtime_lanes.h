@@ -47,7 +47,7 @@ static _Thread_local const stance_tree *tree_now;
 #define tree_carries (tree_now->carries)
 #define tree_kind (tree_now->kind)
 #define tree_body (tree_now->body)
-#define tree_other (tree_now->other)
+#define scene_other (tree_now->other)
 #define scene_grip (tree_now->grip)
 #define tree_top (tree_now->top)
 #define tree_point_top (tree_now->point_top)

@@ -46,9 +46,41 @@ HOT void scene_contact_response(const scene_body *b, const scene_matrix *m, bool
     }
 }
 
-/* Velocity of contact c: normal, tangential (of the grip; 0 at a stop). */
-HOT void scene_contact_velocity(const scene_body *b, const scene_trig *trig, int c, const lanes *w,
-                                lanes u[2])
+/* What the rates of the angles on its way do to the velocity of contact c, normal [0] and
+ * tangential [1] (of a disc that of its centre); w: NULL, or H + lever dH/ds w, as of angles that
+ * move by `lever` times a change of rates. Not of a stop. */
+typedef struct scene_rows {
+    lanes of[2][TREE_SLOTS(TREE_ANGLES)];
+} scene_rows;
+HOT void scene_contact_rows(const scene_body *b, const scene_trig *trig, int c, const lanes *w,
+                            lanes lever, scene_rows *rows)
+{
+    lanes(*const H)[TREE_SLOTS(TREE_ANGLES)] = rows->of;
+    TREE_UNROLL
+    for (int j = 0; j < tree_angles; j++) {
+        H[0][j] = H[1][j] = lanes_of(0);
+        if (tree_is_stop(c) || tree_path[c][j] < 0)
+            continue;
+        lanes reach[2], grip[2];
+        tree_reach(b, trig, c, j, false, reach);
+        tree_reach(b, trig, c, j, true, grip);
+        H[0][j] = reach[0], H[1][j] = -grip[1];
+        if (w) {
+            const lanes turn = lever * (tree_slides(j) ? tree_frame_rate(w, j) : w[TREE_BASE + j]);
+            H[0][j] = lanes_fnma(turn, reach[1], H[0][j]);
+            H[1][j] = lanes_fnma(turn, grip[0], H[1][j]);
+        }
+        if (w && tree_slides(j) && tree_above[j] >= 0) { /* E T (a' dl + l' da) */
+            const lanes turn = lever * w[TREE_BASE + j];
+            H[0][tree_above[j]] = lanes_fnma(turn, reach[1], H[0][tree_above[j]]);
+            H[1][tree_above[j]] = lanes_fnma(turn, reach[0], H[1][tree_above[j]]);
+        }
+    }
+}
+/* Velocity of contact c with the rates w, by its rows: normal, tangential (of the grip; 0 at a
+ * stop). */
+HOT void scene_rows_velocity(const scene_body *b, int c, const scene_rows *rows, const lanes *w,
+                             lanes u[2])
 {
     if (tree_is_stop(c)) {
         u[0] = tree_sign(c) * tree_joint(w, tree_body[c]);
@@ -61,46 +93,18 @@ HOT void scene_contact_velocity(const scene_body *b, const scene_trig *trig, int
     for (int j = 0; j < tree_angles; j++) {
         if (tree_path[c][j] < 0)
             continue;
-        lanes reach[2], grip[2];
-        tree_reach(b, trig, c, j, false, reach);
-        tree_reach(b, trig, c, j, true, grip);
-        u[0] = lanes_fma(w[TREE_BASE + j], reach[0], u[0]);
-        u[1] = lanes_fnma(w[TREE_BASE + j], grip[1], u[1]);
+        u[0] = lanes_fma(w[TREE_BASE + j], rows->of[0][j], u[0]);
+        u[1] = lanes_fma(w[TREE_BASE + j], rows->of[1][j], u[1]);
         if (tree_kind[c] == STANCE_TREE_DISC && tree_path[c][j] == TREE_OWN)
             u[1] = lanes_fma(w[TREE_BASE + j], b->end[c][2], u[1]);
     }
 }
-/* Its derivative along `change` of the velocity, when the angles move by `lever` times the change:
- * (H + lever dH/ds w) change. */
-HOT void scene_contact_velocity_change(const scene_body *b, const scene_trig *trig, int c,
-                                       const lanes *w, lanes lever, const lanes *change, lanes u[2])
+HOT void scene_contact_velocity(const scene_body *b, const scene_trig *trig, int c, const lanes *w,
+                                lanes u[2])
 {
-    if (tree_is_stop(c)) {
-        scene_contact_velocity(b, trig, c, change, u);
-        return;
-    }
-    u[0] = tree_base(b, change, 1);
-    u[1] = tree_base(b, change, 0);
-    TREE_UNROLL
-    for (int j = 0; j < tree_angles; j++) {
-        if (tree_path[c][j] < 0)
-            continue;
-        lanes reach[2], grip[2];
-        const lanes turn = lever * w[TREE_BASE + j], x = change[TREE_BASE + j];
-        tree_reach(b, trig, c, j, false, reach);
-        tree_reach(b, trig, c, j, true, grip);
-        if (tree_slides(j)) { /* E T (a' dl + l' da) */
-            const lanes bent =
-                lanes_fma(lever * tree_frame_rate(w, j), x, turn * tree_frame_rate(change, j));
-            u[0] = lanes_fma(x, reach[0], lanes_fnma(bent, reach[1], u[0]));
-            u[1] = lanes_fnma(x, reach[1], lanes_fnma(bent, reach[0], u[1]));
-            continue;
-        }
-        u[0] = lanes_fma(x, lanes_fnma(turn, reach[1], reach[0]), u[0]);
-        u[1] = lanes_fnma(x, lanes_fma(turn, grip[0], grip[1]), u[1]);
-        if (tree_kind[c] == STANCE_TREE_DISC && tree_path[c][j] == TREE_OWN)
-            u[1] = lanes_fma(x, b->end[c][2], u[1]);
-    }
+    scene_rows rows;
+    scene_contact_rows(b, trig, c, NULL, lanes_of(0), &rows);
+    scene_rows_velocity(b, c, &rows, w, u);
 }
 
 /* Acceleration of contact c (normal, tangential) when the coordinates do not accelerate. */

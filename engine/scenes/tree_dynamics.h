@@ -98,7 +98,7 @@ HOT void tree_base_add(const scene_body *b, lanes factor, const lanes v[2], lane
 HOT lanes tree_base(const scene_body *b, const lanes *x, int axis)
 {
     if (tree_free)
-        return x[axis];
+        return x[axis]; // NOLINT: responses are set, which clang loses sight of in lagrange.c
     if (tree_rail)
         return b->rail[axis] * x[0];
     return lanes_of(0);
@@ -238,14 +238,14 @@ HOT void tree_reach(const scene_body *b, const scene_trig *trig, int c, int j, b
         return;
     }
     tree_arm(b, trig, tree_straight_end[c], b->end[c], j, tree_path[c], out);
-    if (!tangential || tree_other[c] < 0)
+    if (!tangential || scene_other[c] < 0)
         return;
     lanes other[2];
-    tree_arm(b, trig, tree_straight_end[tree_other[c]], b->end[tree_other[c]], j, tree_path[c],
+    tree_arm(b, trig, tree_straight_end[scene_other[c]], b->end[scene_other[c]], j, tree_path[c],
              other);
     /* Of ends that are level the first one; both contacts see the same. */
     const mask lower =
-        tree_other[c] < c ? mask_less(out[1], other[1]) : mask_less_equal(out[1], other[1]);
+        scene_other[c] < c ? mask_less(out[1], other[1]) : mask_less_equal(out[1], other[1]);
     out[0] = choose(lower, out[0], other[0]);
     out[1] = choose(lower, out[1], other[1]);
 }

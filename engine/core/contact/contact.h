@@ -41,6 +41,29 @@
 typedef unsigned contact_set;
 #define CONTACT_ALL ((1u << OWN_CONTACTS) - 1)
 
+/* The first contact of a set from one on; SCENE_CONTACTS: none. */
+HOT int contact_next(contact_set set, int from)
+{
+    const contact_set left = set >> from;
+    return left ? from + __builtin_ctz(left) : SCENE_CONTACTS;
+}
+/* Loops over all contacts from one on, and over those in a set. Where there are few they are
+ * unrolled, and compiled anew for each set that is a constant; else a set is gone through as a
+ * list, so that neither time nor code is that of contacts which are open. */
+#if TREE_CONTACTS > 4
+#define CONTACT_LISTS
+#define EACH_CONTACT(c, from) for (int c = (from); c < SCENE_CONTACTS; c++)
+#define EACH_IN_FROM(c, from, set)                                                                 \
+    for (int c = contact_next(set, from); c < SCENE_CONTACTS; c = contact_next(set, c + 1))
+#else
+#define EACH_CONTACT(c, from) EACH (c, from, SCENE_CONTACTS)
+#define EACH_IN_FROM(c, from, set)                                                                 \
+    EACH (c, from, SCENE_CONTACTS)                                                                 \
+        if (!((set) >> c & 1)) {                                                                   \
+        } else
+#endif
+#define EACH_IN(c, set) EACH_IN_FROM (c, 0, set)
+
 /* The contact that holds the friction of contact c: itself, the first end of its sole; -1: none. */
 HOT int contact_grip(int c)
 {
@@ -51,72 +74,58 @@ HOT int contact_unknowns(int c)
 {
     return contact_grip(c) == c ? 2 : 1;
 }
-/* The contacts whose friction contact c holds; -1: those without. Spelt out, for the compiler to
- * know sets of contacts from the beginning. */
-HOT contact_set contact_leaning(int c)
+/* The second end of the sole whose friction contact c holds; -1: it holds none's. */
+HOT int contact_second(int c)
 {
-    _Static_assert(SCENE_CONTACTS <= 12, "all are looked at");
-#define LEANS(k) ((k) < SCENE_CONTACTS && scene_grip[(k) % CONTACTS] == c ? 1u << (k) : 0u)
-#define LEAN4(k) (LEANS(k) | LEANS((k) + 1) | LEANS((k) + 2) | LEANS((k) + 3))
-    return LEAN4(0) | LEAN4(4) | LEAN4(8);
-#undef LEAN4
-#undef LEANS
+    return scene_other[c] > c ? scene_other[c] : -1;
 }
 /* A point or a disc: nothing else has part in its friction. */
 HOT bool contact_is_point(int c)
 {
-    return contact_leaning(c) == 1u << c;
+    return contact_grip(c) == c && contact_second(c) < 0;
 }
 /* Contact c and those whose friction it holds. */
 HOT contact_set contact_ends(int c)
 {
-    return 1u << c | contact_leaning(c);
+    return 1u << c | (contact_second(c) >= 0 ? 1u << contact_second(c) : 0);
 }
 /* Contact c and what holds its friction. */
 HOT contact_set contact_with(int c)
 {
     return 1u << c | (contact_grip(c) >= 0 ? 1u << contact_grip(c) : 0);
 }
-/* The sets of contacts that have steps of their own, X(name, whether there is such a one, set):
- * none, all on the ground, each grip's alone. They are part of the method, and the same where the
- * structure is read at run time: a step is tried for them alone. */
-#define CONTACT_ON_GROUND (CONTACT_ALL & ~contact_leaning(-1))
+/* The sets of contacts that steps are compiled for, X(name, whether there is such a one, set): none
+ * and, where they are no lists, all on the ground and each grip's alone. */
+#define CONTACT_ON_GROUND                                                                          \
+    (CONTACT_OF_GROUND(0) | CONTACT_OF_GROUND(1) | CONTACT_OF_GROUND(2) | CONTACT_OF_GROUND(3))
+#define CONTACT_OF_GROUND(c)                                                                       \
+    ((c) < SCENE_CONTACTS && contact_grip((c) % CONTACTS) >= 0 ? 1u << (c) : 0u)
 #define CONTACT_SET_OF(X, c)                                                                       \
     X(grip##c, (c) < SCENE_CONTACTS && contact_grip((c) % CONTACTS) == (c),                        \
       contact_ends((c) % CONTACTS))
+#ifdef CONTACT_LISTS
+#define CONTACT_SETS(X) X(apart, true, 0)
+#else
 #define CONTACT_SETS(X)                                                                            \
     X(apart, true, 0)                                                                              \
     X(all, SCENE_CONTACTS > 1, CONTACT_ON_GROUND)                                                  \
     CONTACT_SET_OF(X, 0)                                                                           \
     CONTACT_SET_OF(X, 1)                                                                           \
     CONTACT_SET_OF(X, 2)                                                                           \
-    CONTACT_SET_OF(X, 3)                                                                           \
-    CONTACT_SET_OF(X, 4)                                                                           \
-    CONTACT_SET_OF(X, 5)                                                                           \
-    CONTACT_SET_OF(X, 6)                                                                           \
-    CONTACT_SET_OF(X, 7)                                                                           \
-    CONTACT_SET_OF(X, 8)                                                                           \
-    CONTACT_SET_OF(X, 9)                                                                           \
-    CONTACT_SET_OF(X, 10)                                                                          \
-    CONTACT_SET_OF(X, 11)
-_Static_assert(SCENE_CONTACTS <= 12, "each grip has its set");
+    CONTACT_SET_OF(X, 3)
+#endif
 /* Impulse normal to the ground that grip g may lean on, of impulses r[c][normal, tangential]. */
 HOT lanes contact_load(int g, const lanes (*r)[2])
 {
     lanes load = r[g][0];
-    EACH (c, g + 1, SCENE_CONTACTS)
-        if (contact_grip(c) == g)
-            load += r[c][0];
+    if (contact_second(g) >= 0)
+        load += r[contact_second(g)][0];
     return load;
 }
 /* Lanes where an end of grip g is in `part`. */
 HOT mask contact_part(int g, const mask *part)
 {
-    mask any = part[g];
-    EACH (c, g + 1, SCENE_CONTACTS)
-        if (contact_grip(c) == g)
-            any |= part[c];
-    return any;
+    return contact_second(g) >= 0 ? part[g] | part[contact_second(g)] : part[g];
 }
 
 /* Lanes where an impulse is inside the cone, and where it is well inside: the grip neither slides
@@ -145,12 +154,8 @@ struct contact_factors {
 HOT void contact_matrix(contact_set touching, const lanes (*D)[CONTACTS][2][2],
                         const mask (*rows)[2], const lanes *edge, lanes (*M)[CONTACTS][2][2])
 {
-    EACH (c, 0, SCENE_CONTACTS) {
-        if (!(touching >> c & 1))
-            continue;
-        EACH (k, 0, SCENE_CONTACTS) {
-            if (!(touching >> k & 1))
-                continue;
+    EACH_IN (c, touching) {
+        EACH_IN (k, touching) {
             EACH (a, 0, 2)
                 EACH (b, 0, 2) {
                     const int g = contact_grip(k);
@@ -221,12 +226,32 @@ HOT mask contact_invert(int unknowns, enum contact_care care, const lanes own[2]
     return mask_less(CONTACT_REGULAR * lanes_abs(product), determinant);
 }
 
-/* sum + row . x, of contact c's unknowns. */
-HOT lanes contact_row(int c, const lanes row[2], const lanes x[2], lanes sum)
+/* sum + row . x, of n unknowns. */
+HOT lanes contact_row(int n, const lanes row[2], const lanes x[2], lanes sum)
 {
-    if (contact_unknowns(c) == 2)
+    if (n == 2)
         sum = lanes_fma(row[1], x[1], sum);
     return lanes_fma(row[0], x[0], sum);
+}
+/* sum + A B, of blocks with n rows, m columns and `inner` between. */
+HOT void contact_block(int n, int inner, int m, const lanes A[2][2], const lanes B[2][2],
+                       lanes sum[2][2])
+{
+    EACH (a, 0, 2)
+        EACH (b, 0, 2) {
+            const lanes column[2] = {B[0][b], B[1][b]};
+            if (a < n && b < m)
+                sum[a][b] = contact_row(inner, A[a], column, sum[a][b]);
+        }
+}
+/* The same; without a question in between where all are points, as most are. */
+HOT void contact_product(int n, int inner, int m, const lanes A[2][2], const lanes B[2][2],
+                         lanes sum[2][2])
+{
+    if (n + inner + m == 6)
+        contact_block(2, 2, 2, A, B, sum);
+    else
+        contact_block(n, inner, m, A, B, sum);
 }
 
 /* Factors M, from contact_matrix, which is spoiled. */
@@ -235,44 +260,26 @@ HOT void contact_factor(contact_set touching, enum contact_care care, lanes (*M)
 {
     lanes own[CONTACTS][2];
     f->regular = LANES_ALL;
-    EACH (c, 0, SCENE_CONTACTS)
-        if (touching >> c & 1)
-            own[c][0] = M[c][c][0][0], own[c][1] = M[c][c][1][1];
-    EACH (p, 0, SCENE_CONTACTS) {
-        if (!(touching >> p & 1))
-            continue;
+    EACH_IN (c, touching)
+        own[c][0] = M[c][c][0][0], own[c][1] = M[c][c][1][1];
+    EACH_IN (p, touching) {
         EACH (a, 0, 2)
             f->inverse[p][a][0] = f->inverse[p][a][1] = lanes_of(0);
         f->regular &= contact_invert(contact_unknowns(p), care, own[p], (const lanes(*)[2])M[p][p],
                                      f->inverse[p]);
-        EACH (k, p + 1, SCENE_CONTACTS) {
-            if (!(touching >> k & 1))
-                continue;
-            EACH (b, 0, 2) {
-                const lanes column[2] = {M[p][k][0][b], M[p][k][1][b]};
+        const int n = contact_unknowns(p);
+        EACH_IN_FROM (k, p + 1, touching) {
+            EACH (b, 0, 2)
                 EACH (a, 0, 2) {
                     f->through[p][k][b][a] = M[k][p][b][a];
                     f->push[p][k][a][b] = lanes_of(0);
-                    if (a < contact_unknowns(p) && b < contact_unknowns(k))
-                        f->push[p][k][a][b] = contact_row(p, f->inverse[p][a], column, lanes_of(0));
                 }
-            }
+            contact_product(n, n, contact_unknowns(k), f->inverse[p], M[p][k], f->push[p][k]);
         }
-        EACH (i, p + 1, SCENE_CONTACTS) {
-            if (!(touching >> i & 1))
-                continue;
-            EACH (k, p + 1, SCENE_CONTACTS) {
-                if (!(touching >> k & 1))
-                    continue;
-                EACH (a, 0, 2)
-                    EACH (b, 0, 2) {
-                        const lanes column[2] = {f->push[p][k][0][b], f->push[p][k][1][b]};
-                        if (a < contact_unknowns(i) && b < contact_unknowns(k))
-                            M[i][k][a][b] =
-                                contact_row(p, f->through[p][i][a], column, M[i][k][a][b]);
-                    }
-            }
-        }
+        EACH_IN_FROM (i, p + 1, touching)
+            EACH_IN_FROM (k, p + 1, touching)
+                contact_product(contact_unknowns(i), n, contact_unknowns(k), f->through[p][i],
+                                f->push[p][k], M[i][k]);
     }
 }
 
@@ -282,27 +289,26 @@ HOT void contact_back(contact_set touching, const struct contact_factors *f, con
                       lanes (*x)[2])
 {
     lanes left[CONTACTS][2];
-    EACH (c, 0, SCENE_CONTACTS)
-        EACH (a, 0, 2)
-            left[c][a] = u[c][a], x[c][a] = lanes_of(0);
-    EACH (p, 0, SCENE_CONTACTS) {
-        if (!(touching >> p & 1))
-            continue;
+    EACH_CONTACT (c, 0)
+        x[c][0] = x[c][1] = lanes_of(0);
+    EACH_IN (c, touching)
+        left[c][0] = u[c][0], left[c][1] = u[c][1];
+    EACH_IN (p, touching) {
         EACH (a, 0, 2)
             if (a < contact_unknowns(p))
-                x[p][a] = contact_row(p, f->inverse[p][a], left[p], lanes_of(0));
-        EACH (k, p + 1, SCENE_CONTACTS)
+                x[p][a] = contact_row(contact_unknowns(p), f->inverse[p][a], left[p], lanes_of(0));
+        EACH_IN_FROM (k, p + 1, touching)
             EACH (b, 0, 2)
-                if (touching >> k & 1 && b < contact_unknowns(k))
-                    left[k][b] = contact_row(p, f->through[p][k][b], x[p], left[k][b]);
+                if (b < contact_unknowns(k))
+                    left[k][b] =
+                        contact_row(contact_unknowns(p), f->through[p][k][b], x[p], left[k][b]);
     }
     for (int p = SCENE_CONTACTS - 1; p >= 0; p--) {
         EACH (a, 0, 2) {
             if (!(touching >> p & 1) || a >= contact_unknowns(p))
                 continue;
-            EACH (k, p + 1, SCENE_CONTACTS)
-                if (touching >> k & 1)
-                    x[p][a] = contact_row(k, f->push[p][k][a], x[k], x[p][a]);
+            EACH_IN_FROM (k, p + 1, touching)
+                x[p][a] = contact_row(contact_unknowns(k), f->push[p][k][a], x[k], x[p][a]);
             x[p][a] = x[p][a] + 0.0;
         }
     }
@@ -312,7 +318,7 @@ HOT void contact_back(contact_set touching, const struct contact_factors *f, con
  * stick. */
 HOT void contact_mode_rows(const mask *closed, const mask *sticks, mask (*rows)[2])
 {
-    EACH (c, 0, SCENE_CONTACTS) {
+    EACH_CONTACT (c, 0) {
         rows[c][0] = closed[c];
         rows[c][1] = contact_unknowns(c) == 2 ? contact_part(c, closed) & sticks[c] : MASK_NONE;
     }
@@ -329,14 +335,12 @@ HOT mask contact_rest(contact_set touching, enum contact_care care,
     lanes M[CONTACTS][CONTACTS][2][2], u[CONTACTS][2];
     contact_matrix(touching, D, rows, edge, M);
     contact_factor(touching, care, M, &f);
-    EACH (c, 0, SCENE_CONTACTS)
-        EACH (a, 0, 2) {
-            r[c][a] = lanes_of(0);
+    EACH_IN (c, touching)
+        EACH (a, 0, 2)
             u[c][a] = choose(rows[c][a], uf[c][a], lanes_of(0));
-        }
     contact_back(touching, &f, (const lanes(*)[2])u, r);
-    for (int c = 0; c < SCENE_CONTACTS && edge; c++)
-        if (touching >> c & 1 && contact_unknowns(c) == 2)
+    EACH_IN (c, touching)
+        if (edge && contact_unknowns(c) == 2)
             r[c][1] = lanes_fma(edge[c], contact_load(c, (const lanes(*)[2])r), r[c][1]);
     return f.regular;
 }

@@ -66,7 +66,7 @@ HOT mask direct_one(const lanes D[2][2], const lanes uf[2], lanes friction, cons
 HOT void direct_rows(const mask *active, mask (*rows)[2])
 {
     mask all[CONTACTS];
-    EACH (c, 0, SCENE_CONTACTS)
+    EACH_CONTACT (c, 0)
         all[c] = LANES_ALL;
     contact_mode_rows(active, all, rows);
 }
@@ -75,8 +75,8 @@ HOT void direct_rows(const mask *active, mask (*rows)[2])
 HOT mask direct_stood(const struct contact_rule *rule, contact_set touching, const mask *active)
 {
     mask stood = rule->before ? LANES_ALL : MASK_NONE;
-    for (int c = 0; c < SCENE_CONTACTS && rule->before; c++) {
-        if (!(touching >> c & 1))
+    EACH_IN (c, touching) {
+        if (!rule->before)
             continue;
         mask stands = mask_less(lanes_of(0), rule->before[c][0]);
         if (contact_is_point(c))
@@ -94,9 +94,7 @@ HOT mask direct_stood(const struct contact_rule *rule, contact_set touching, con
 HOT mask direct_obeys(lanes friction, contact_set touching, const lanes (*r)[2])
 {
     mask inside = LANES_ALL;
-    EACH (c, 0, SCENE_CONTACTS) {
-        if (!(touching >> c & 1))
-            continue;
+    EACH_IN (c, touching) {
         inside &= mask_less_equal(lanes_of(0), r[c][0]);
         if (contact_unknowns(c) == 2)
             inside &= contact_inside(friction, contact_load(c, r), r[c][1]);
@@ -120,15 +118,16 @@ HOT mask direct_stick(const struct contact_rule *rule, const lanes (*D)[CONTACTS
 HOT void direct_velocities(const lanes (*D)[CONTACTS][2][2], const lanes (*uf)[2],
                            contact_set touching, const lanes (*r)[2], lanes (*u)[2])
 {
-    EACH (c, 0, SCENE_CONTACTS)
+    EACH_CONTACT (c, 0)
+        u[c][0] = u[c][1] = lanes_of(0);
+    EACH_IN (c, touching)
         EACH (a, 0, 2) {
-            u[c][a] = lanes_of(0);
-            if (!(touching >> c & 1) || a >= contact_unknowns(c))
+            if (a >= contact_unknowns(c))
                 continue;
             u[c][a] = uf[c][a];
-            EACH (k, 0, SCENE_CONTACTS)
+            EACH_IN (k, touching)
                 EACH (b, 0, 2)
-                    if (b < contact_unknowns(k) && (touching >> k & 1))
+                    if (b < contact_unknowns(k))
                         u[c][a] = lanes_fma(D[c][k][a][b], r[k][b], u[c][a]);
         }
 }
@@ -140,8 +139,8 @@ COLD void direct_factor(contact_set touching, enum contact_care care,
                         double ridge, lanes (*M)[CONTACTS][2][2], struct contact_factors *f)
 {
     contact_matrix(touching, D, rows, edge, M);
-    for (int c = 0; c < SCENE_CONTACTS; c++)
-        if (contact_unknowns(c) == 2 && touching >> c & 1)
+    EACH_IN (c, touching)
+        if (contact_unknowns(c) == 2)
             M[c][c][1][1] = (1 + ridge) * M[c][c][1][1];
     contact_factor(touching, care, M, f);
 }
@@ -151,7 +150,7 @@ HOT void direct_rest(contact_set touching, const mask (*rows)[2], const struct c
                      const lanes (*u)[2], lanes (*x)[2])
 {
     lanes part[CONTACTS][2];
-    EACH (c, 0, SCENE_CONTACTS)
+    EACH_IN (c, touching)
         EACH (a, 0, 2)
             part[c][a] = choose(rows[c][a], u[c][a], lanes_of(0));
     contact_back(touching, f, (const lanes(*)[2])part, x);
@@ -164,44 +163,44 @@ COLD void direct_back(contact_set touching, const mask (*rows)[2], const struct 
 }
 
 /* What can be exchanged between contacts in `rows` without any change of velocity: n with D n = 0,
- * from the blocks G that elimination has left. Returns the lanes where there is one such direction;
- * several: *many. */
-static inline mask direct_redundant(contact_set touching, const lanes (*D)[CONTACTS][2][2],
-                                    const mask (*rows)[2], const lanes (*G)[CONTACTS][2][2],
-                                    const struct contact_factors *f, lanes (*n)[2], mask *many)
+ * from the blocks G that elimination has left, with 1 for a row of contact p that depends on those
+ * before; `second`: for the other one of its rows, where both do. Returns the lanes where there is
+ * such a row. */
+static inline mask direct_null(contact_set touching, const lanes (*D)[CONTACTS][2][2],
+                               const mask (*rows)[2], const lanes (*G)[CONTACTS][2][2],
+                               const struct contact_factors *f, int p, bool second, lanes (*n)[2])
 {
-    mask any = MASK_NONE;
-    *many = MASK_NONE;
-    for (int p = SCENE_CONTACTS - 1; p >= 0; p--) {
-        const lanes(*const g)[2] = G[p][p];
-        lanes own[2], null[2] = {lanes_of(1), lanes_of(0)};
-        n[p][0] = n[p][1] = lanes_of(0);
-        if (!(touching >> p & 1))
-            continue;
-        for (int a = 0; a < 2; a++)
-            own[a] = choose(rows[p][a], lanes_abs(D[p][p][a][a]), lanes_of(1));
-        lanes left = g[0][0], whole = own[0];
-        if (contact_unknowns(p) == 2) {
-            const mask first = mask_less_equal(lanes_abs(g[1][1]), lanes_abs(g[0][0]));
-            const lanes larger = choose(first, g[0][0], g[1][1]);
-            left = lanes_fnma(g[0][1], g[1][0], g[0][0] * g[1][1]);
-            whole = own[0] * own[1];
-            null[0] = choose(first, -g[0][1], g[1][1]);
-            null[1] = choose(first, g[0][0], -g[1][0]);
-            *many |=
-                mask_less_equal(lanes_abs(larger), LANE_PARALLEL * choose(first, own[0], own[1]));
-        }
-        const mask here = mask_less_equal(lanes_abs(left), LANE_PARALLEL * whole);
-        *many |= any & here;
-        any |= here;
-        for (int a = 0; a < contact_unknowns(p); a++) {
-            n[p][a] = choose(here, null[a], lanes_of(0));
-            for (int k = p + 1; k < SCENE_CONTACTS; k++)
-                if (touching >> k & 1)
-                    n[p][a] = contact_row(k, f->push[p][k][a], n[k], n[p][a]);
-        }
+    const lanes(*const g)[2] = G[p][p];
+    lanes own[2], null[2] = {lanes_of(1), lanes_of(0)};
+    for (int a = 0; a < 2; a++)
+        own[a] = choose(rows[p][a], lanes_abs(D[p][p][a][a]), lanes_of(1));
+    mask here = mask_less_equal(lanes_abs(g[0][0]), LANE_PARALLEL * own[0]);
+    if (contact_unknowns(p) == 2) {
+        const mask first = mask_less_equal(lanes_abs(g[1][1]), lanes_abs(g[0][0]));
+        const lanes larger = choose(first, g[0][0], g[1][1]);
+        const lanes left = lanes_fnma(g[0][1], g[1][0], g[0][0] * g[1][1]);
+        const mask both =
+            mask_less_equal(lanes_abs(larger), LANE_PARALLEL * choose(first, own[0], own[1]));
+        here = mask_less_equal(lanes_abs(left), LANE_PARALLEL * (own[0] * own[1])) | both;
+        null[0] = choose(both, lanes_of(!second), choose(first, -g[0][1], g[1][1]));
+        null[1] = choose(both, lanes_of(second), choose(first, g[0][0], -g[1][0]));
+        if (second)
+            here = both;
+    } else if (second) {
+        return MASK_NONE;
     }
-    return any & LANES_NOT(*many);
+    if (!mask_any(here))
+        return here;
+    for (int q = SCENE_CONTACTS - 1; q >= 0; q--)
+        for (int a = 0; a < 2; a++) {
+            n[q][a] = lanes_of(0);
+            if (q == p)
+                n[q][a] = choose(here, null[a], lanes_of(0));
+            for (int k = q + 1; k <= p; k++)
+                if (touching >> q & touching >> k & 1 && a < contact_unknowns(q))
+                    n[q][a] = contact_row(contact_unknowns(k), f->push[q][k][a], n[k], n[q][a]);
+        }
+    return here;
 }
 
 /* How far r lies from the middle of what the laws admit along n: see lane_share. */
@@ -210,8 +209,8 @@ static inline lanes direct_middle(lanes friction, contact_set touching, const la
 {
     const lanes none = lanes_of(0);
     lanes low = lanes_of(-INFINITY), high = lanes_of(INFINITY);
-    for (int c = 0; c < SCENE_CONTACTS; c++)
-        for (int side = -1; side <= 1 && touching >> c & 1; side++) {
+    EACH_IN (c, touching)
+        for (int side = -1; side <= 1; side++) {
             lanes room = r[c][0], rate = n[c][0];
             if (side == 0 ? contact_is_point(c) : contact_unknowns(c) == 1)
                 continue;
@@ -227,49 +226,135 @@ static inline lanes direct_middle(lanes friction, contact_set touching, const la
     return choose(mask_less_equal(low, high) & mask_finite(middle), middle, none);
 }
 
-/* As lane_hold, in lanes, but where there are several redundancies: impulses with which all active
- * contacts stick, whatever the operator, and the lanes where they obey the laws. */
+/* Redundancies of a problem, in lanes: directions in which impulses change no velocity. */
+struct direct_freedom {
+    int count;
+    lanes along[2 * CONTACTS][CONTACTS][2]; /* zero where a lane has it not ... */
+    mask here[2 * CONTACTS];
+    mask several; /* lanes that have more than one: then an orthonormal family, see lane.h */
+};
+
+/* sum over the rows of a . b, each row in units of its own diagonal of D. */
+static inline lanes direct_dot(contact_set touching, const lanes (*D)[CONTACTS][2][2],
+                               const lanes (*a)[2], const lanes (*b)[2])
+{
+    lanes sum = lanes_of(0);
+    EACH_IN (c, touching)
+        for (int k = 0; k < contact_unknowns(c); k++)
+            sum = lanes_fma(a[c][k] * lanes_abs(D[c][c][k][k]), b[c][k], sum);
+    return sum;
+}
+
+/* x + by n where m holds. */
+static inline void direct_add(contact_set touching, mask m, lanes by, const lanes (*n)[2],
+                              lanes (*x)[2])
+{
+    EACH_IN (c, touching)
+        for (int a = 0; a < 2; a++)
+            x[c][a] = choose(m, lanes_fma(by, n[c][a], x[c][a]), x[c][a]);
+}
+
+static inline void direct_freedoms(contact_set touching, const lanes (*D)[CONTACTS][2][2],
+                                   const mask (*rows)[2], const lanes (*G)[CONTACTS][2][2],
+                                   const struct contact_factors *f, struct direct_freedom *free)
+{
+    mask any = MASK_NONE;
+    free->count = 0;
+    free->several = MASK_NONE;
+    EACH_IN (p, touching)
+        for (int second = 0; second < 2; second++) {
+            const int m = free->count;
+            free->here[m] = direct_null(touching, D, rows, G, f, p, second, free->along[m]);
+            if (!mask_any(free->here[m]))
+                continue;
+            free->several |= any & free->here[m];
+            any |= free->here[m];
+            free->count++;
+        }
+    for (int m = 0; m < free->count && mask_any(free->several); m++) {
+        lanes(*const own)[2] = free->along[m];
+        for (int l = 0; l < m; l++) {
+            const lanes(*const other)[2] = (const lanes(*)[2])free->along[l];
+            const lanes by = direct_dot(touching, D, (const lanes(*)[2])own, other);
+            direct_add(touching, free->several & free->here[l], -by, other, own);
+        }
+        const lanes size =
+            lanes_sqrt(direct_dot(touching, D, (const lanes(*)[2])own, (const lanes(*)[2])own));
+        const lanes by = 1 / choose(free->several & free->here[m], size, lanes_of(1));
+        EACH_IN (c, touching)
+            for (int a = 0; a < 2; a++)
+                own[c][a] = by * own[c][a];
+    }
+}
+
+/* Moves r by a multiple of n in the lanes of m where that changes no velocity. */
+static inline void direct_exchange(const lanes (*D)[CONTACTS][2][2], contact_set touching,
+                                   const mask (*rows)[2], lanes tolerance, mask m, lanes by,
+                                   const lanes (*n)[2], lanes (*r)[2])
+{
+    lanes none[CONTACTS][2], u[CONTACTS][2];
+    for (int c = 0; c < SCENE_CONTACTS; c++)
+        none[c][0] = none[c][1] = lanes_of(0);
+    direct_velocities(D, (const lanes(*)[2])none, touching, n, u);
+    EACH_IN (c, touching)
+        for (int a = 0; a < 2; a++)
+            m &= LANES_NOT(rows[c][a]) | mask_less_equal(lanes_abs(by * u[c][a]), 0.25 * tolerance);
+    direct_add(touching, m, by, n, r);
+}
+
+/* As lane_hold, in lanes: impulses with which all active contacts stick, whatever the operator, and
+ * the lanes where they obey the laws. `where`: lanes that matter; `stood`: those where the impulses
+ * of direct_stick are taken, if they do. */
 COLD mask direct_hold(lanes friction, lanes tolerance, const lanes (*D)[CONTACTS][2][2],
-                      const lanes (*uf)[2], contact_set touching, const mask *active, lanes (*r)[2])
+                      const lanes (*uf)[2], contact_set touching, const mask *active, mask where,
+                      mask stood, lanes (*r)[2])
 {
     const lanes none = lanes_of(0);
     struct contact_factors f;
-    mask rows[CONTACTS][2], many, good = LANES_ALL;
-    lanes M[CONTACTS][CONTACTS][2][2], n[CONTACTS][2], u[CONTACTS][2], x[CONTACTS][2];
+    struct direct_freedom free;
+    mask rows[CONTACTS][2], good = LANES_ALL;
+    lanes M[CONTACTS][CONTACTS][2][2], u[CONTACTS][2], x[CONTACTS][2], first[CONTACTS][2];
     direct_rows(active, rows);
     direct_factor(touching, CONTACT_CAREFUL, D, (const mask(*)[2])rows, NULL, 0, M, &f);
-    const mask shared = direct_redundant(touching, D, (const mask(*)[2])rows,
-                                         (const lanes(*)[CONTACTS][2][2])M, &f, n, &many);
+    for (int c = 0; c < SCENE_CONTACTS; c++)
+        first[c][0] = first[c][1] = none;
+    direct_back(touching, (const mask(*)[2])rows, &f, uf, first);
+    const mask sticks =
+        stood & f.regular & direct_obeys(friction, touching, (const lanes(*)[2])first);
+    if (!mask_any(where & LANES_NOT(sticks))) {
+        memcpy(r, first, sizeof first);
+        return sticks;
+    }
+    direct_freedoms(touching, D, (const mask(*)[2])rows, (const lanes(*)[CONTACTS][2][2])M, &f,
+                    &free);
+    /* Once more with what is left. */
+    direct_velocities(D, uf, touching, (const lanes(*)[2])first, u);
+    direct_back(touching, (const mask(*)[2])rows, &f, (const lanes(*)[2])u, x);
     for (int c = 0; c < SCENE_CONTACTS; c++)
         for (int a = 0; a < 2; a++)
-            r[c][a] = none;
-    for (int round = 0; round < 2; round++) { /* once more with what is left */
-        direct_velocities(D, uf, touching, (const lanes(*)[2])r, u);
-        direct_back(touching, (const mask(*)[2])rows, &f, (const lanes(*)[2])u, x);
-        for (int c = 0; c < SCENE_CONTACTS; c++)
-            for (int a = 0; a < 2; a++)
-                r[c][a] = r[c][a] + x[c][a];
+            r[c][a] = first[c][a] + x[c][a];
+    const bool several = mask_any(free.several);
+    for (int m = 0; m < free.count && several; m++) { /* least norm */
+        const lanes(*const n)[2] = (const lanes(*)[2])free.along[m];
+        direct_exchange(D, touching, (const mask(*)[2])rows, tolerance, free.several & free.here[m],
+                        -direct_dot(touching, D, n, (const lanes(*)[2])r), n, r);
     }
-    if (mask_any(shared)) {
-        const lanes by =
-            direct_middle(friction, touching, (const lanes(*)[2])n, (const lanes(*)[2])r);
-        mask moves = shared;
-        for (int c = 0; c < SCENE_CONTACTS; c++)
-            x[c][0] = x[c][1] = none;
-        direct_velocities(D, (const lanes(*)[2])x, touching, (const lanes(*)[2])n, u);
-        for (int c = 0; c < SCENE_CONTACTS; c++)
-            for (int a = 0; a < 2; a++)
-                moves &= LANES_NOT(rows[c][a]) |
-                         mask_less_equal(lanes_abs(by * u[c][a]), 0.25 * tolerance);
-        for (int c = 0; c < SCENE_CONTACTS; c++)
-            for (int a = 0; a < 2; a++)
-                r[c][a] = choose(moves, lanes_fma(by, n[c][a], r[c][a]), r[c][a]);
-    }
+    for (int sweep = 0; sweep < (several ? LANE_SWEEPS : 1); sweep++)
+        for (int m = 0; m < free.count; m++) {
+            const lanes(*const n)[2] = (const lanes(*)[2])free.along[m];
+            direct_exchange(D, touching, (const mask(*)[2])rows, tolerance,
+                            sweep > 0 ? free.several & free.here[m] : free.here[m],
+                            direct_middle(friction, touching, n, (const lanes(*)[2])r), n, r);
+        }
     direct_velocities(D, uf, touching, (const lanes(*)[2])r, u);
-    for (int c = 0; c < SCENE_CONTACTS; c++)
+    EACH_IN (c, touching)
         for (int a = 0; a < 2; a++)
             good &= LANES_NOT(rows[c][a]) | mask_less_equal(lanes_abs(u[c][a]), tolerance);
-    return good & LANES_NOT(many) & direct_obeys(friction, touching, (const lanes(*)[2])r);
+    good &= direct_obeys(friction, touching, (const lanes(*)[2])r);
+    for (int c = 0; c < SCENE_CONTACTS; c++)
+        for (int a = 0; a < 2; a++)
+            r[c][a] = choose(sticks, first[c][a], r[c][a]);
+    return good | sticks;
 }
 
 /* ---- one mode of all ------------------------------------------------------------------------- */
@@ -294,24 +379,24 @@ COLD mask direct_unique(lanes friction, const lanes (*D)[CONTACTS][2][2], contac
     for (int c = 0; c < SCENE_CONTACTS; c++)
         sum[c] = lanes_of(0);
     lanes largest = lanes_of(0);
-    for (int h = 0; h < SCENE_CONTACTS; h++) {
-        if (!(touching >> h & 1) || contact_unknowns(h) != 2)
+    EACH_IN (h, touching) {
+        if (contact_unknowns(h) != 2)
             continue;
         for (int c = 0; c < SCENE_CONTACTS; c++) {
             u[c][0] = lanes_of(contact_grip(c) == h ? -1 : 0);
             u[c][1] = lanes_of(0);
         }
         direct_back(touching, (const mask(*)[2])rows, &f, (const lanes(*)[2])u, x);
-        for (int g = 0; g < SCENE_CONTACTS; g++)
-            if (touching >> g & 1 && contact_unknowns(g) == 2)
+        EACH_IN (g, touching)
+            if (contact_unknowns(g) == 2)
                 sum[g] += lanes_abs(contact_load(g, (const lanes(*)[2])x));
     }
     for (int g = 0; g < SCENE_CONTACTS; g++) {
         lanes row = lanes_of(0);
         if (!(touching >> g & 1) || contact_unknowns(g) != 2)
             continue;
-        for (int h = 0; h < SCENE_CONTACTS; h++)
-            if (touching >> h & 1 && contact_unknowns(h) == 2)
+        EACH_IN (h, touching)
+            if (contact_unknowns(h) == 2)
                 row += choose(rows[g][1] & rows[h][1], lanes_abs(D[g][h][1][1]), lanes_of(0));
         largest = lanes_max(sum[g] * row, largest);
     }
@@ -325,9 +410,7 @@ HOT lanes direct_violation(const struct contact_rule *rule, const lanes (*D)[CON
 {
     const lanes none = lanes_of(0);
     lanes worst = none;
-    for (int c = 0; c < SCENE_CONTACTS; c++) {
-        if (!(touching >> c & 1))
-            continue;
+    EACH_IN (c, touching) {
         const lanes pushes = r[c][0] * lanes_abs(D[c][c][0][0]);
         lanes off = lanes_max(-u[c][0], -pushes);
         off = lanes_max(lanes_min(lanes_abs(u[c][0]), lanes_abs(pushes)), off);
@@ -354,11 +437,10 @@ HOT lanes direct_violation(const struct contact_rule *rule, const lanes (*D)[CON
 static inline void direct_take(lanes friction, contact_set touching, const lanes (*solution)[2],
                                mask m, lanes (*r)[2])
 {
-    for (int c = 0; c < SCENE_CONTACTS; c++)
-        if (touching >> c & 1)
-            r[c][0] = choose(m, lanes_max(solution[c][0], lanes_of(0)), r[c][0]);
-    for (int c = 0; c < SCENE_CONTACTS; c++) {
-        if (!(touching >> c & 1) || contact_unknowns(c) == 1)
+    EACH_IN (c, touching)
+        r[c][0] = choose(m, lanes_max(solution[c][0], lanes_of(0)), r[c][0]);
+    EACH_IN (c, touching) {
+        if (contact_unknowns(c) == 1)
             continue;
         const lanes bound = friction * contact_load(c, (const lanes(*)[2])r);
         const lanes asked = solution[c][1], size = lanes_abs(asked);
@@ -403,8 +485,8 @@ COLD mask direct_modes(const struct contact_rule *rule, const lanes (*D)[CONTACT
         contact_mode_rows(closed, sticks, rows);
         direct_factor(touching, CONTACT_CAREFUL, D, (const mask(*)[2])rows, edge, 0, M, &f);
         direct_back(touching, (const mask(*)[2])rows, &f, uf, candidate);
-        for (int c = 0; c < SCENE_CONTACTS; c++)
-            if (touching >> c & 1 && contact_unknowns(c) == 2)
+        EACH_IN (c, touching)
+            if (contact_unknowns(c) == 2)
                 candidate[c][1] = lanes_fma(edge[c], contact_load(c, (const lanes(*)[2])candidate),
                                             candidate[c][1]);
         direct_velocities(D, uf, touching, (const lanes(*)[2])candidate, u);
@@ -414,9 +496,7 @@ COLD mask direct_modes(const struct contact_rule *rule, const lanes (*D)[CONTACT
         found |= good;
         todo &= LANES_NOT(good);
         direct_take(friction, touching, (const lanes(*)[2])candidate, good, r);
-        for (int c = 0; c < SCENE_CONTACTS; c++) {
-            if (!(touching >> c & 1))
-                continue;
+        EACH_IN (c, touching) {
             const mask carries = closed[c] & mask_less(none, candidate[c][0]);
             closed[c] = carries | (active[c] & LANES_NOT(closed[c]) & mask_less(u[c][0], none));
             if (contact_unknowns(c) == 1)

@@ -79,9 +79,9 @@ COLD mask pair_enumerate(const struct contact_rule *rule, const lanes (*D)[CONTA
             never[c][BACKWARD] |= mask_less(none, slide);
         }
     }
-    const mask holds =
-        direct_hold(rule->friction, tolerance->most, D, uf, touching, active, candidate) &
-        LANES_NOT(never[first][STICK] | never[second][STICK]);
+    const mask holds = direct_hold(rule->friction, tolerance->most, D, uf, touching, active, todo,
+                                   MASK_NONE, candidate) &
+                       LANES_NOT(never[first][STICK] | never[second][STICK]);
     direct_velocities(D, uf, touching, (const lanes(*)[2])candidate, u);
     pair_offer(rule, uf, tolerance->most, touching, active, (const lanes(*)[2])candidate,
                (const lanes(*)[2])u, todo & holds, todo & holds, &best);
@@ -159,8 +159,8 @@ static inline mask pair_every(const struct contact_rule *rule, const lanes (*D)[
                 !contact_is_point(b))
                 continue;
             mask both = todo & active[a] & active[b], several;
-            for (int c = 0; c < SCENE_CONTACTS; c++)
-                if (c != a && c != b && touching >> c & 1)
+            EACH_IN (c, touching)
+                if (c != a && c != b)
                     both &= LANES_NOT(active[c]);
             if (!mask_any(both))
                 continue;

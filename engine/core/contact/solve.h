@@ -8,21 +8,23 @@
 
 #define SOLVE_ENUMERATED 4 /* elements: more are not enumerated */
 
-/* What is not decided in the hot loop, in the lanes of `unsure`. */
+/* What is not decided in the hot loop, in the lanes of `unsure`; `many`: those with more than a
+ * point. */
 COLD void solve_rest(const struct contact_rule *rule, const lanes (*D)[CONTACTS][2][2],
                      const lanes (*uf)[2], contact_set touching, const mask *active, mask unsure,
-                     lanes (*r)[2], struct contact_verdict *v)
+                     mask many, lanes (*r)[2], struct contact_verdict *v)
 {
     const lanes none = lanes_of(0);
     lanes stick[CONTACTS][2], largest = none;
-    for (int c = 0; c < SCENE_CONTACTS; c++)
-        for (int a = 0; a < contact_unknowns(c) && touching >> c & 1; a++)
+    EACH_IN (c, touching)
+        for (int a = 0; a < contact_unknowns(c); a++)
             largest = lanes_max(choose(active[c], lanes_abs(uf[c][a]), none), largest);
     const struct contact_tolerance tolerance = contact_tolerance(largest);
     const mask stood = unsure & direct_stood(rule, touching, active);
     mask done = MASK_NONE;
     if (mask_any(stood)) {
-        done = stood & direct_hold(rule->friction, tolerance.most, D, uf, touching, active, stick);
+        done = stood & direct_hold(rule->friction, tolerance.most, D, uf, touching, active, stood,
+                                   stood & many, stick);
         for (int c = 0; c < SCENE_CONTACTS; c++)
             for (int a = 0; a < 2; a++)
                 r[c][a] = choose(done, stick[c][a], r[c][a]);
@@ -42,8 +44,8 @@ COLD void solve_rest(const struct contact_rule *rule, const lanes (*D)[CONTACTS]
         struct lane_problem p;
         struct lane_choice best;
         contact_set here = 0;
-        for (int c = 0; c < SCENE_CONTACTS; c++)
-            here |= touching >> c & 1 && mask_get(active[c], lane) ? 1u << c : 0;
+        EACH_IN (c, touching)
+            here |= mask_get(active[c], lane) ? 1u << c : 0;
         lane_gather(rule, D, uf, here, lane, &p);
         lane_choose_none(&best);
         if ((mask_get(stood, lane) || (p.elements > SOLVE_ENUMERATED && lane_stick_is_least(&p))) &&
@@ -76,10 +78,9 @@ HOT void solve_contacts(const struct contact_rule *rule, const lanes (*D)[CONTAC
     const lanes none = lanes_of(0);
     mask any = MASK_NONE, many = MASK_NONE, unsure = MASK_NONE;
     v->ambiguous = v->unsolved = v->unranked = MASK_NONE;
-    EACH (c, 0, SCENE_CONTACTS) {
+    EACH_CONTACT (c, 0)
         r[c][0] = r[c][1] = none;
-        if (!(touching >> c & 1))
-            continue;
+    EACH_IN (c, touching) {
         many |= active[c] & any;
         if (!contact_is_point(c))
             many |= active[c];
@@ -88,8 +89,8 @@ HOT void solve_contacts(const struct contact_rule *rule, const lanes (*D)[CONTAC
     const mask one = any & LANES_NOT(many); /* one point */
     const contact_set points = touching;
     if (points && (points & (points - 1)) == 0 && !mask_any(many)) { /* no stop */
-        EACH (c, 0, SCENE_CONTACTS) {
-            if (!(touching >> c & 1) || !contact_is_point(c))
+        EACH_IN (c, touching) {
+            if (!contact_is_point(c))
                 continue;
             lanes alone[2];
             unsure = one & LANES_NOT(direct_one(D[c][c], uf[c], rule->friction,
@@ -102,8 +103,8 @@ HOT void solve_contacts(const struct contact_rule *rule, const lanes (*D)[CONTAC
             lanes D1[2][2], uf1[2], sliding1 = none, alone[2];
             EACH (a, 0, 2)
                 uf1[a] = D1[a][0] = D1[a][1] = none;
-            EACH (c, 0, SCENE_CONTACTS) {
-                if (!(touching >> c & 1) || !contact_is_point(c))
+            EACH_IN (c, touching) {
+                if (!contact_is_point(c))
                     continue;
                 if (rule->sliding)
                     sliding1 = choose(active[c], rule->sliding[c], sliding1);
@@ -115,33 +116,43 @@ HOT void solve_contacts(const struct contact_rule *rule, const lanes (*D)[CONTAC
             }
             unsure |= one & LANES_NOT(direct_one((const lanes(*)[2])D1, uf1, rule->friction,
                                                  rule->sliding ? &sliding1 : NULL, alone));
-            EACH (c, 0, SCENE_CONTACTS)
+            EACH_IN (c, touching)
                 EACH (a, 0, 2)
-                    if (a < 2 && (contact_is_point(c) && touching >> c & 1))
+                    if (contact_is_point(c))
                         r[c][a] = choose(one & active[c], alone[a], r[c][a]);
         }
+#ifdef CONTACT_LISTS
+        unsure |= many; /* solve_rest holds them the same way */
+#else
         if (mask_any(many)) {
             lanes all[CONTACTS][2];
             const mask stays = many & direct_stick(rule, D, uf, touching, active, all) &
                                direct_stood(rule, touching, active);
             unsure |= many & LANES_NOT(stays);
-            EACH (c, 0, SCENE_CONTACTS)
+            EACH_IN (c, touching)
                 EACH (a, 0, 2)
-                    if (a < contact_unknowns(c) && (touching >> c & 1))
+                    if (a < contact_unknowns(c))
                         r[c][a] = choose(stays, all[c][a], r[c][a]);
         }
+#endif
     }
     unsure &= where;
     if (!mask_any(unsure))
         return;
+#ifdef CONTACT_LISTS
+    solve_rest(rule, D, uf, touching, active, unsure, many, r, v);
+#else
     /* Copies, because what is passed by address has to stay in memory. */
     struct contact_rule own = *rule;
     lanes D1[CONTACTS][CONTACTS][2][2], uf1[CONTACTS][2], r1[CONTACTS][2];
     lanes sliding[CONTACTS], shift[CONTACTS][2], before[CONTACTS][2], last[CONTACTS][2];
     mask part[CONTACTS];
     struct contact_verdict verdict = *v;
-    EACH (c, 0, SCENE_CONTACTS) {
-        part[c] = touching >> c & 1 ? active[c] : MASK_NONE;
+    EACH_CONTACT (c, 0)
+        part[c] = MASK_NONE;
+    EACH_IN (c, touching)
+        part[c] = active[c];
+    EACH_CONTACT (c, 0) {
         sliding[c] = rule->sliding ? rule->sliding[c] : none;
         EACH (a, 0, 2) {
             r1[c][a] = r[c][a];
@@ -149,24 +160,24 @@ HOT void solve_contacts(const struct contact_rule *rule, const lanes (*D)[CONTAC
             before[c][a] = rule->before ? rule->before[c][a] : none;
             last[c][a] = rule->last ? rule->last[c][a] : none;
         }
-        if (!(touching >> c & 1))
-            continue;
+    }
+    EACH_IN (c, touching) {
         EACH (a, 0, 2)
             uf1[c][a] = uf[c][a];
-        EACH (k, 0, SCENE_CONTACTS)
-            if (touching >> k & 1)
-                memcpy(D1[c][k], D[c][k], sizeof D1[c][k]);
+        EACH_IN (k, touching)
+            memcpy(D1[c][k], D[c][k], sizeof D1[c][k]);
     }
     own.sliding = rule->sliding ? sliding : NULL;
     own.shift = rule->shift ? (const lanes(*)[2])shift : NULL;
     own.before = rule->before ? (const lanes(*)[2])before : NULL;
     own.last = rule->last ? (const lanes(*)[2])last : NULL;
     solve_rest(&own, (const lanes(*)[CONTACTS][2][2])D1, (const lanes(*)[2])uf1, touching, part,
-               unsure, r1, &verdict);
-    EACH (c, 0, SCENE_CONTACTS)
+               unsure, many, r1, &verdict);
+    EACH_CONTACT (c, 0)
         EACH (a, 0, 2)
             r[c][a] = r1[c][a];
     *v = verdict;
+#endif
 }
 
 #endif

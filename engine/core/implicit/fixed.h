@@ -118,9 +118,8 @@ HOT bool advance_ordinary(struct advance *a, const struct setting *set, const la
 {
     struct iterate it;
     mask apart = MASK_NONE;
-    EACH (c, 0, SCENE_CONTACTS)
-        if (touching >> c & 1)
-            apart |= live & LANES_NOT(ordinary_active(set, now, c));
+    EACH_IN (c, touching)
+        apart |= live & LANES_NOT(ordinary_active(set, now, c));
     if (mask_any(apart))
         return false;
     const mask good =

@@ -74,7 +74,7 @@ static inline void iterate_place(const struct setting *set, const struct motion 
         scene_trigonometry(middle, &it->middle);
         scene_contact_trigonometry(it->s1, &it->end); /* the rest when the step is done */
     }
-    EACH (c, 0, SCENE_CONTACTS)
+    EACH_CONTACT (c, 0)
         it->gap[c] = scene_gap(&set->body, it->s1, &it->end, c);
 }
 
@@ -85,32 +85,30 @@ HOT void iterate_contacts(const struct setting *set, const struct motion *from, 
                           const scene_trig *direction, lanes lever, lanes *dw, struct iterate *it)
 {
     lanes response[CONTACTS][2][SCENE_COORDINATES], rebound[CONTACTS][2];
-    EACH (c, 0, SCENE_CONTACTS) {
+    EACH_CONTACT (c, 0) {
         rebound[c][0] = rebound[c][1] = lanes_of(0);
         EACH (i, 0, SCENE_COORDINATES)
             response[c][0][i] = response[c][1][i] = lanes_of(0);
     }
     lanes D[CONTACTS][CONTACTS][2][2], uf[CONTACTS][2]; /* of those in `touching` */
-    EACH (c, 0, SCENE_CONTACTS)
-        if (touching >> c & 1)
-            scene_contact_response(&set->body, J, coupled, direction, c, response[c]);
-    EACH (c, 0, SCENE_CONTACTS) {
+    EACH_IN (c, touching)
+        scene_contact_response(&set->body, J, coupled, direction, c, response[c]);
+    EACH_IN (c, touching) {
         lanes now[2], moved[2];
-        if (!(touching >> c & 1))
-            continue;
         scene_contact_velocity(&set->body, &it->end, c, it->w, now);
-        scene_contact_velocity_change(&set->body, &it->end, c, it->w, lever, dw, moved);
+        scene_rows rows;
+        scene_contact_rows(&set->body, &it->end, c, it->w, lever, &rows);
+        scene_rows_velocity(&set->body, c, &rows, dw, moved);
         rebound[c][0] = set->restitution[c] * lanes_min(from->approach[c], lanes_of(0));
         uf[c][0] = now[0] + moved[0] + rebound[c][0];
         uf[c][1] = now[1] + moved[1];
         if (it->along)
             rebound[c][1] = it->along[c], uf[c][1] += it->along[c];
-        EACH (k, 0, SCENE_CONTACTS)
+        EACH_IN (k, touching)
             EACH (b, 0, 2) {
-                if (b >= contact_unknowns(k) || !(touching >> k & 1))
+                if (b >= contact_unknowns(k))
                     continue;
-                scene_contact_velocity_change(&set->body, &it->end, c, it->w, lever, response[k][b],
-                                              moved);
+                scene_rows_velocity(&set->body, c, &rows, response[k][b], moved);
                 D[c][k][0][b] = moved[0];
                 D[c][k][1][b] = moved[1];
             }
@@ -126,9 +124,7 @@ HOT void iterate_contacts(const struct setting *set, const struct motion *from, 
     solve_contacts(&rule, (const lanes(*)[CONTACTS][2][2])D, (const lanes(*)[2])uf, touching,
                    running, it->active, r, &now);
     it->verdict = all ? now : contact_verdicts(running, &now, &it->verdict);
-    EACH (c, 0, SCENE_CONTACTS) {
-        if (!(touching >> c & 1))
-            continue;
+    EACH_IN (c, touching) {
         const int n = contact_unknowns(c);
         const mask part = contact_part(c, it->active);
         EACH (i, 0, SCENE_COORDINATES) {

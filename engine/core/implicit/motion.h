@@ -37,7 +37,7 @@ struct motion {
 static inline contact_set step_touching(const struct setting *set, const lanes *gap, mask m)
 {
     contact_set touching = 0;
-    EACH (c, 0, SCENE_CONTACTS)
+    EACH_CONTACT (c, 0)
         if (mask_any(m & mask_less(lanes_of(0), set->may_touch[c]) &
                      mask_less_equal(gap[c], lanes_of(STEP_CLOSED))))
             touching |= contact_with(c);

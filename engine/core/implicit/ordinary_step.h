@@ -207,7 +207,7 @@ HOT mask ordinary_newton(const struct ordinary *q, const struct setting *set,
 HOT mask ordinary_arrivals(const struct setting *set, const struct iterate *it)
 {
     mask there = MASK_NONE;
-    EACH (c, 0, SCENE_CONTACTS)
+    EACH_CONTACT (c, 0)
         there |= mask_less(lanes_of(0), set->may_touch[c]) & LANES_NOT(it->active[c]) &
                  LANES_NOT(mask_less(lanes_of(STEP_CLOSED), it->gap[c]));
     return there;
@@ -235,12 +235,11 @@ HOT mask ordinary_reach(const struct ordinary *q, const struct setting *set,
     it->keeps = MASK_NONE;
     EACH (i, 0, SCENE_ACTUATORS)
         it->torque[i] = torque[i];
-    EACH (c, 0, SCENE_CONTACTS) {
-        const bool here = touching >> c & 1;
+    EACH_CONTACT (c, 0) {
         it->active[c] = MASK_NONE;
         it->r[c][0] = it->r[c][1] = lanes_of(0);
-        if (!here)
-            continue;
+    }
+    EACH_IN (c, touching) {
         it->active[c] = full ? LANES_ALL : ordinary_active(set, from, c);
         good &= LANES_NOT(it->active[c] & mask_less(from->approach[c], lanes_of(-STEP_APPROACH)));
         EACH (a, 0, 2)
@@ -259,7 +258,7 @@ HOT mask ordinary_try(const struct ordinary *q, const struct setting *set,
     lanes iterations;
     mask good =
         ordinary_reach(q, set, from, torque, h, coupled, run, touching, full, it, &iterations);
-    EACH (c, 0, SCENE_CONTACTS)
+    EACH_CONTACT (c, 0)
         it->gap[c] = scene_gap(&set->body, it->s1, &it->end, c);
     good &= LANES_NOT(ordinary_arrivals(set, it));
     good = step_finish(set, from, h, touching, full ? STEP_FULL : STEP_ORDINARY, MASK_NONE, good,

@@ -20,13 +20,10 @@
 COLD void project_lift(contact_set touching, const mask *idle, const lanes (*G)[CONTACTS],
                        const lanes *error, lanes *multiplier)
 {
-    EACH (c, 0, SCENE_CONTACTS) {
-        if (!(touching >> c & 1))
-            continue;
+    EACH_IN (c, touching) {
         lanes left = error[c];
-        EACH (k, 0, SCENE_CONTACTS)
-            if (touching >> k & 1)
-                left = lanes_fnma(G[c][k], multiplier[k], left);
+        EACH_IN (k, touching)
+            left = lanes_fnma(G[c][k], multiplier[k], left);
         multiplier[c] = choose(idle[c] & mask_less(lanes_of(0), left),
                                lanes_fma(left, 1 / G[c][c], multiplier[c]), multiplier[c]);
     }
@@ -44,20 +41,16 @@ HOT void project_multipliers(const struct setting *set, const scene_trig *trig,
 {
     lanes G[CONTACTS][CONTACTS], U[CONTACTS][CONTACTS], reciprocal[CONTACTS];
     mask idle[CONTACTS], any = MASK_NONE;
-    EACH (c, 0, SCENE_CONTACTS)
-        multiplier[c] = lanes_of(0);
-    EACH (c, 0, SCENE_CONTACTS)
-        EACH (k, 0, SCENE_CONTACTS) {
+    EACH_IN (c, touching) {
+        scene_rows rows;
+        scene_contact_rows(&set->body, trig, c, NULL, lanes_of(0), &rows);
+        EACH_IN (k, touching) {
             lanes u[2];
-            G[c][k] = U[c][k] = lanes_of(c == k);
-            if (!(touching >> c & touching >> k & 1))
-                continue;
-            scene_contact_velocity(&set->body, trig, c, lift[k], u);
+            scene_rows_velocity(&set->body, c, &rows, lift[k], u);
             G[c][k] = U[c][k] = choose(held[c] & held[k], u[0], lanes_of(c == k));
         }
-    EACH (p, 0, SCENE_CONTACTS) {
-        if (!(touching >> p & 1))
-            continue;
+    }
+    EACH_IN (p, touching) {
         idle[p] = MASK_NONE;
         reciprocal[p] = 1 / U[p][p];
         if (touching & ((1u << p) - 1)) { /* not the first */
@@ -70,21 +63,17 @@ HOT void project_multipliers(const struct setting *set, const scene_trig *trig,
         for (int k = 0; k < p; k++)
             if (touching >> k & 1)
                 multiplier[p] = lanes_fnma(U[p][k], multiplier[k], multiplier[p]);
-        EACH (i, p + 1, SCENE_CONTACTS) {
-            if (!(touching >> i & 1))
-                continue;
+        EACH_IN_FROM (i, p + 1, touching) {
             U[i][p] = U[i][p] * reciprocal[p];
-            EACH (k, p + 1, SCENE_CONTACTS)
-                if (touching >> k & 1)
-                    U[i][k] = lanes_fnma(U[i][p], U[p][k], U[i][k]);
+            EACH_IN_FROM (k, p + 1, touching)
+                U[i][k] = lanes_fnma(U[i][p], U[p][k], U[i][k]);
         }
     }
     for (int p = SCENE_CONTACTS - 1; p >= 0; p--) {
         if (!(touching >> p & 1))
             continue;
-        EACH (k, p + 1, SCENE_CONTACTS)
-            if (touching >> k & 1)
-                multiplier[p] = lanes_fnma(U[p][k], multiplier[k], multiplier[p]);
+        EACH_IN_FROM (k, p + 1, touching)
+            multiplier[p] = lanes_fnma(U[p][k], multiplier[k], multiplier[p]);
         multiplier[p] = lanes_fma(multiplier[p], reciprocal[p], lanes_of(0));
     }
     if (mask_any(any))
@@ -133,25 +122,24 @@ HOT void project_move(const struct setting *set, const struct iterate *it, conta
 {
     lanes multiplier[CONTACTS], rest[CONTACTS], more[CONTACTS];
     const lanes *lift[CONTACTS];
-    EACH (c, 0, SCENE_CONTACTS) {
+    EACH_IN (c, touching) {
         multiplier[c] = lanes_of(0);
         lift[c] = it->response[c][0];
     }
     for (int round = 0; round < 2; round++) {
-        EACH (c, 0, SCENE_CONTACTS) {
+        EACH_IN (c, touching) {
             rest[c] = error[c];
             if (round > 0)
                 rest[c] -= scene_gap_change(&set->body, &it->end, c, d);
             rest[c] = choose(held[c], rest[c], lanes_of(0));
         }
         project_multipliers(set, &it->end, touching, lift, held, rest, more);
-        EACH (c, 0, SCENE_CONTACTS)
+        EACH_IN (c, touching)
             multiplier[c] = multiplier[c] + more[c];
         EACH (i, 0, SCENE_COORDINATES) {
             d[i] = lanes_of(0);
-            EACH (c, 0, SCENE_CONTACTS)
-                if (touching >> c & 1)
-                    d[i] = choose(held[c], lanes_fma(lift[c][i], multiplier[c], d[i]), d[i]);
+            EACH_IN (c, touching)
+                d[i] = choose(held[c], lanes_fma(lift[c][i], multiplier[c], d[i]), d[i]);
         }
     }
 }
@@ -165,7 +153,7 @@ HOT mask project_position(const struct setting *set, const struct motion *from, 
 {
     lanes wanted[CONTACTS], error[CONTACTS];
     mask held[CONTACTS], somewhere = MASK_NONE;
-    EACH (c, 0, SCENE_CONTACTS) {
+    EACH_IN (c, touching) {
         somewhere |= it->active[c];
         /* A rebound has used part of the step to arrive: it leaves e times what it overshot. */
         const lanes overshoot = -lanes_fma(h, from->approach[c], from->gap[c]);
@@ -176,10 +164,7 @@ HOT mask project_position(const struct setting *set, const struct motion *from, 
     mask todo = run;
     for (int round = 0; round < 12; round++) {
         todo = MASK_NONE;
-        EACH (c, 0, SCENE_CONTACTS) {
-            error[c] = lanes_of(0);
-            if (!(touching >> c & 1))
-                continue;
+        EACH_IN (c, touching) {
             mask near = run & it->active[c];
             if (impacts)
                 near = run & mask_less(lanes_of(0), set->may_touch[c]) & somewhere;
@@ -204,7 +189,7 @@ HOT mask project_position(const struct setting *set, const struct motion *from, 
                 turned += lanes_abs(d[i]);
         }
         *energy += lanes_abs(scene_energy_change(&set->body, it->s1, &it->end, it->w, d));
-        EACH (c, 0, SCENE_CONTACTS) {
+        EACH_CONTACT (c, 0) {
             it->gap[c] =
                 choose(todo, it->gap[c] + scene_gap_change(&set->body, &it->end, c, d), it->gap[c]);
             far = lanes_max(scene_gap_change_error(&set->body, &it->end, c, d), far);
@@ -216,7 +201,7 @@ HOT mask project_position(const struct setting *set, const struct motion *from, 
         if (mask_any(moved)) { /* too far for the expansions: anew */
             scene_trig trig = it->end;
             scene_trigonometry(it->s1, &trig);
-            EACH (c, 0, SCENE_CONTACTS)
+            EACH_CONTACT (c, 0)
                 it->gap[c] = choose(moved, scene_gap(&set->body, it->s1, &trig, c), it->gap[c]);
             EACH (a, 0, SCENE_ANGLES) {
                 it->end.sine[a] = choose(moved, trig.sine[a], it->end.sine[a]);
@@ -239,16 +224,16 @@ HOT void grip_factor(const struct setting *set, const scene_trig *trig, contact_
                      const lanes (*response)[2][SCENE_COORDINATES], struct grip *g)
 {
     lanes D[CONTACTS][CONTACTS][2][2], M[CONTACTS][CONTACTS][2][2];
-    EACH (c, 0, SCENE_CONTACTS) {
-        if (!(touching >> c & 1))
-            continue;
-        EACH (k, 0, SCENE_CONTACTS)
+    EACH_IN (c, touching) {
+        scene_rows rows;
+        scene_contact_rows(&set->body, trig, c, NULL, lanes_of(0), &rows);
+        EACH_IN (k, touching)
             EACH (b, 0, 2) {
                 D[c][k][0][b] = D[c][k][1][b] = lanes_of(0);
-                if (b >= contact_unknowns(k) || !(touching >> k & 1))
+                if (b >= contact_unknowns(k))
                     continue;
                 lanes moved[2];
-                scene_contact_velocity(&set->body, trig, c, response[k][b], moved);
+                scene_rows_velocity(&set->body, c, &rows, response[k][b], moved);
                 D[c][k][0][b] = moved[0], D[c][k][1][b] = moved[1];
             }
     }
@@ -264,10 +249,8 @@ HOT mask project_wrong(const lanes (*rebound)[2], contact_set touching, const st
 {
     const lanes none = lanes_of(0);
     mask off = MASK_NONE;
-    EACH (c, 0, SCENE_CONTACTS) {
+    EACH_IN (c, touching) {
         wrong[c][0] = wrong[c][1] = none;
-        if (!(touching >> c & 1))
-            continue;
         lanes normal = u[c][0], along = u[c][1];
         if (rebound)
             normal = normal + rebound[c][0], along = along + rebound[c][1];
@@ -290,15 +273,13 @@ HOT lanes project_move_velocity(const struct setting *set, const scene_trig *tri
 {
     lanes x[CONTACTS][2], energy = lanes_of(0);
     contact_back(touching, &g->factors, wrong, x);
-    EACH (c, 0, SCENE_CONTACTS)
+    EACH_IN (c, touching)
         EACH (a, 0, 2)
-            if (a < contact_unknowns(c) && (touching >> c & 1))
+            if (a < contact_unknowns(c))
                 EACH (i, 0, SCENE_COORDINATES)
                     w[i] = choose(g->rows[c][a] & where,
                                   lanes_fma(response[c][a][i], x[c][a], w[i]), w[i]);
-    EACH (c, 0, SCENE_CONTACTS) {
-        if (!(touching >> c & 1))
-            continue;
+    EACH_IN (c, touching) {
         const lanes before[2] = {u[c][0], u[c][1]};
         scene_contact_velocity(&set->body, trig, c, w, u[c]);
         EACH (a, 0, 2)
@@ -334,9 +315,8 @@ HOT void project_along(const struct setting *set, const lanes (*rebound)[2], con
                        struct iterate *it, lanes (*u)[2], lanes *energy)
 {
     lanes wrong[CONTACTS][2];
-    EACH (c, 0, SCENE_CONTACTS)
-        if (touching >> c & 1)
-            scene_contact_velocity(&set->body, &it->end, c, it->w, u[c]);
+    EACH_IN (c, touching)
+        scene_contact_velocity(&set->body, &it->end, c, it->w, u[c]);
     project_wrong(rebound, touching, g, (const lanes(*)[2])u, wrong);
     *energy += project_move_velocity(set, &it->end, touching, g, LANES_ALL, response,
                                      (const lanes(*)[2])wrong, it->w, u);
@@ -373,9 +353,10 @@ static inline void project_inertia(const struct setting *set, mask impact, const
 
 /* The rows of a step that has arrived, in the lanes of `run`: contacts that carry have the normal
  * velocity that the laws ask for, those that stick no other. */
-HOT void project_rows(const struct setting *set, mask run, const struct iterate *it, struct grip *g)
+HOT void project_rows(const struct setting *set, contact_set touching, mask run,
+                      const struct iterate *it, struct grip *g)
 {
-    EACH (c, 0, SCENE_CONTACTS) {
+    EACH_IN (c, touching) {
         g->rows[c][0] = run & it->active[c] & mask_less(lanes_of(0), it->r[c][0]);
         const lanes load = contact_load(c, (const lanes(*)[2])it->r);
         g->rows[c][1] = MASK_NONE;
@@ -390,8 +371,8 @@ HOT void project_rows(const struct setting *set, mask run, const struct iterate 
 static inline void project_slides(const struct setting *set, const struct iterate *it,
                                   contact_set touching, struct grip *g)
 {
-    EACH (c, 0, SCENE_CONTACTS) {
-        if (contact_unknowns(c) == 1 || !(touching >> c & 1))
+    EACH_IN (c, touching) {
+        if (contact_unknowns(c) == 1)
             continue;
         lanes u[2], moved[2];
         scene_contact_velocity(&set->body, &it->end, c, it->w, u);
@@ -415,7 +396,7 @@ HOT mask project_falls(const struct setting *set, mask run, const struct grip *g
 HOT mask project_loaded(const struct grip *g, int c)
 {
     mask loaded = g->rows[c][0];
-    EACH (k, c + 1, SCENE_CONTACTS)
+    EACH_CONTACT (k, c + 1)
         if (contact_grip(k) == c)
             loaded |= g->rows[k][0];
     return loaded;
@@ -440,7 +421,7 @@ static inline mask project_far(const struct setting *set, const struct motion *f
         rebound[c][0] = set->restitution[c] * lanes_min(from->approach[c], lanes_of(0));
         rebound[c][1] = it->along ? it->along[c] : lanes_of(0);
     }
-    project_rows(set, run, it, &g);
+    project_rows(set, touching, run, it, &g);
     project_slides(set, it, touching, &g);
     const mask near = project_position(set, from, h, touching, true, run, it, energy);
     project_inertia(set, impact, it, response);
@@ -477,15 +458,14 @@ HOT mask project_near(const struct setting *set, const struct motion *from, lane
 {
     struct grip g;
     mask good = run, slides = MASK_NONE;
-    project_rows(set, run, it, &g);
-    EACH (c, 0, SCENE_CONTACTS)
-        if (touching >> c & 1)
-            slides |= run & LANES_NOT(g.rows[c][0] & g.rows[c][contact_unknowns(c) - 1]);
+    project_rows(set, touching, run, it, &g);
+    EACH_IN (c, touching)
+        slides |= run & LANES_NOT(g.rows[c][0] & g.rows[c][contact_unknowns(c) - 1]);
     const bool stands = full && !mask_any(slides);
     /* The factors do not wait for the position: where they are a little off a second round helps.
      */
     if (stands) {
-        EACH (c, 0, SCENE_CONTACTS)
+        EACH_IN (c, touching)
             g.rows[c][0] = g.rows[c][1] = LANES_ALL;
         grip_factor(set, &it->end, touching, it->response, &g);
         good &= project_position(set, from, h, touching, false, run, it, energy);
@@ -496,9 +476,7 @@ HOT mask project_near(const struct setting *set, const struct motion *from, lane
     good &= project_position(set, from, h, touching, false, run, it, energy);
     project_along(set, NULL, touching, &g, it->response, it, u, energy);
     /* Of contacts that are active: others may be in `touching` for a neighbour's sake. */
-    EACH (c, 0, SCENE_CONTACTS) {
-        if (!(touching >> c & 1))
-            continue;
+    EACH_IN (c, touching) {
         good &= LANES_NOT(project_falls(set, run & it->active[c], &g, c, it, u[c]));
         if (contact_unknowns(c) == 2)
             good &= LANES_NOT(project_turns(&g, c, it, u[c]));

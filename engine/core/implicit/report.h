@@ -63,7 +63,7 @@ static inline void report_clear_answers(struct step_report *report)
 static inline void report_clear(struct step_report *report)
 {
     memset(report, 0, sizeof *report);
-    EACH (c, 0, SCENE_CONTACTS)
+    EACH_CONTACT (c, 0)
         report->least[c] = lanes_of(INFINITY);
 }
 /* The same in one lane. */
@@ -72,7 +72,7 @@ static inline void report_clear_lane(struct step_report *report, int lane)
     lanes *const all = (lanes *)report;
     for (size_t i = 0; i < sizeof *report / sizeof(lanes); i++)
         lane_set(&all[i], lane, 0);
-    EACH (c, 0, SCENE_CONTACTS)
+    EACH_CONTACT (c, 0)
         lane_set(&report->least[c], lane, INFINITY);
 }
 /* Torques that are applied at some instant. */
@@ -98,7 +98,7 @@ static inline void report_forces(struct step_report *report, const mask *part,
                                  const lanes force[CONTACTS][2])
 {
     const lanes none = lanes_of(0);
-    EACH (c, 0, SCENE_CONTACTS) {
+    EACH_CONTACT (c, 0) {
         const mask carries = part[c] & mask_less(none, force[c][0]);
         report->least[c] = lanes_min(choose(carries, force[c][0], none), report->least[c]);
         report_friction(report, c, part, force);
@@ -108,7 +108,7 @@ static inline void report_forces(struct step_report *report, const mask *part,
 /* Adds a part of a step to the whole. */
 static inline void report_add(struct step_report *sum, const struct step_report *part)
 {
-    EACH (c, 0, SCENE_CONTACTS) {
+    EACH_CONTACT (c, 0) {
         sum->slip[c] += part->slip[c];
         EACH (a, 0, 2)
             sum->impulse[c][a] += part->impulse[c][a];
@@ -120,7 +120,7 @@ static inline void report_add(struct step_report *sum, const struct step_report 
     sum->fell_by = choose(upright, part->fell_by, sum->fell_by);
     sum->landed = lanes_max(part->landed, sum->landed);
     sum->work += part->work;
-    EACH (c, 0, SCENE_CONTACTS)
+    EACH_CONTACT (c, 0)
         sum->least[c] = lanes_min(part->least[c], sum->least[c]);
 #define ADD_SUM(name) sum->name += part->name;
 #define ADD_MAX(name) sum->name = lanes_max(part->name, sum->name);

@@ -55,7 +55,7 @@ static inline lanes impact_energy(const struct setting *set, const struct iterat
     lanes x[SCENE_COORDINATES], work = lanes_of(0);
     EACH (i, 0, SCENE_COORDINATES)
         x[i] = lanes_of(0);
-    EACH (c, 0, SCENE_CONTACTS) {
+    EACH_CONTACT (c, 0) {
         lanes response[2][SCENE_COORDINATES], u[2];
         const bool grips = contact_unknowns(c) == 2;
         scene_contact_response(&set->body, &A, false, &it->end, c, response);
@@ -73,7 +73,7 @@ static inline mask step_gains(const struct setting *set, const struct motion *fr
                               const struct motion *to, const struct step_report *report)
 {
     mask rebounds = MASK_NONE;
-    EACH (c, 0, SCENE_CONTACTS)
+    EACH_CONTACT (c, 0)
         rebounds |= mask_less(lanes_of(0), set->restitution[c]);
     return rebounds &
            mask_less(IMPACT_ROUNDING * (from->kinetic + to->kinetic), report->impact_energy);
@@ -95,7 +95,7 @@ static inline mask step_obeys(const struct setting *set, const struct motion *fr
 {
     struct step_report laws;
     report_clear(&laws);
-    EACH (c, 0, SCENE_CONTACTS) {
+    EACH_CONTACT (c, 0) {
         lanes u[2];
         scene_contact_velocity(&set->body, &it->end, c, it->w, u);
         u[0] = lanes_fma(set->restitution[c], lanes_min(from->approach[c], lanes_of(0)), u[0]);
@@ -137,9 +137,7 @@ HOT mask step_rebounds(const struct setting *set, const struct motion *from,
  * have left the ground in a rebound (`left`) are of the impact, before positions were mended. */
 HOT void step_hold(bool left, contact_set touching, const lanes (*end)[2], struct iterate *it)
 {
-    EACH (c, 0, SCENE_CONTACTS) {
-        if (!(touching >> c & 1))
-            continue;
+    EACH_IN (c, touching) {
         const mask off = mask_less(lanes_of(STEP_CLOSED), it->gap[c]);
         EACH (a, 0, 2)
             it->u[c][a] = left ? choose(off, it->u[c][a], end[c][a]) : end[c][a];
@@ -159,7 +157,7 @@ HOT void report_contact(const struct setting *set, const struct motion *from, la
         lanes_fma(set->restitution[c], lanes_min(from->approach[c], none), it->u[c][0]),
         iterate_slip(it, c, it->u[c])};
     lanes carried[CONTACTS][2];
-    EACH (k, 0, SCENE_CONTACTS) { /* of its grip */
+    EACH_IN (k, contact_with(c) | contact_ends(c)) {
         carried[k][0] = choose(mask_less(1e-6 * load, r[k][0]), r[k][0], none);
         carried[k][1] = choose(mask_less(1e-6 * load, contact_load(k, r)), r[k][1], none);
     }
@@ -184,11 +182,10 @@ HOT void report_contact(const struct setting *set, const struct motion *from, la
 HOT mask step_lands(const struct motion *from, contact_set touching, const struct iterate *it)
 {
     mask lands = MASK_NONE;
-    EACH (c, 0, SCENE_CONTACTS)
-        if (touching >> c & 1)
-            lands |= it->active[c] & mask_less(lanes_of(0), it->r[c][0]) &
-                     (mask_less(lanes_of(STEP_CLOSED), from->gap[c]) |
-                      mask_less(from->approach[c], lanes_of(-STEP_APPROACH)));
+    EACH_IN (c, touching)
+        lands |= it->active[c] & mask_less(lanes_of(0), it->r[c][0]) &
+                 (mask_less(lanes_of(STEP_CLOSED), from->gap[c]) |
+                  mask_less(from->approach[c], lanes_of(-STEP_APPROACH)));
     return lands;
 }
 
@@ -227,12 +224,10 @@ HOT mask step_finish(const struct setting *set, const struct motion *from, lanes
     EACH (i, 0, SCENE_ACTUATORS)
         report->torque[i] = it->torque[i];
     report_torques(report, it->torque);
-    EACH (c, 0, SCENE_CONTACTS)
-        if (touching >> c & 1)
-            load += lanes_max(it->r[c][0], none);
-    EACH (c, 0, SCENE_CONTACTS)
-        if (touching >> c & 1)
-            somewhere |= it->active[c] & converged;
+    EACH_IN (c, touching)
+        load += lanes_max(it->r[c][0], none);
+    EACH_IN (c, touching)
+        somewhere |= it->active[c] & converged;
     if (impacts && mask_any(somewhere & impact))
         report->impact_energy = choose(somewhere & impact, impact_energy(set, it), none);
     if (frozen)
@@ -241,8 +236,8 @@ HOT mask step_finish(const struct setting *set, const struct motion *from, lanes
     mask part[CONTACTS], lands = MASK_NONE, rebounds = MASK_NONE;
     if (impacts)
         lands = step_lands(from, touching, it);
-    EACH (c, 0, SCENE_CONTACTS)
-        if (impacts && touching >> c & 1)
+    EACH_IN (c, touching)
+        if (impacts)
             scene_contact_velocity(&set->body, &it->end, c, it->w, it->u[c]);
     if (touching) {
         const mask right = impacts ? project_far(set, from, h, touching, lands, somewhere, it, u,
@@ -252,23 +247,22 @@ HOT mask step_finish(const struct setting *set, const struct motion *from, lanes
         converged &= right | LANES_NOT(somewhere);
         step_hold(impacts, touching, (const lanes(*)[2])u, it);
     }
-    EACH (c, 0, SCENE_CONTACTS) {
+    EACH_CONTACT (c, 0) {
         /* One that has left the ground may move back towards it. */
         part[c] =
             it->active[c] & converged &
             (mask_less(none, it->r[c][0]) | mask_less_equal(it->gap[c], lanes_of(STEP_CLOSED)));
         rebounds |= mask_less(none, set->restitution[c]);
     }
-    EACH (c, 0, SCENE_CONTACTS) {
+    EACH_CONTACT (c, 0) {
         report->slip[c] = report->impulse[c][0] = report->impulse[c][1] = none;
         report->least[c] = none;
-        const bool here = touching >> c & 1;
-        if (!here)
+        if (!(touching >> c & 1))
             scene_contact_velocity(&set->body, &it->end, c, it->w, u[c]);
         it->approach[c] = u[c][0];
-        if (here)
-            report_contact(set, from, h, part, load, c, u[c], it, report);
     }
+    EACH_IN (c, touching)
+        report_contact(set, from, h, part, load, c, u[c], it, report);
     it->kinetic = scene_kinetic(&set->body, &it->end, it->w);
     it->energy = it->kinetic + scene_potential(&set->body, it->s1, &it->end);
     rebounds &= somewhere;
@@ -289,7 +283,7 @@ HOT void step_commit(lanes t, const struct iterate *it, bool all, mask done, mas
         to->s[i] = choose_unless(all, done, it->s1[i], to->s[i]);
         to->w[i] = choose_unless(all, done, it->w[i], to->w[i]);
     }
-    EACH (c, 0, SCENE_CONTACTS) {
+    EACH_CONTACT (c, 0) {
         to->gap[c] = choose_unless(all, done, it->gap[c], to->gap[c]);
         to->approach[c] = choose_unless(all, done, it->approach[c], to->approach[c]);
         EACH (a, 0, 2)
@@ -348,7 +342,7 @@ COLD mask step_once(const int *corner, const struct setting *set, const struct m
         it.w[i] = from->w[i];
     EACH (i, 0, SCENE_ACTUATORS)
         it.torque[i] = torque[i];
-    EACH (c, 0, SCENE_CONTACTS) {
+    EACH_CONTACT (c, 0) {
         closed[c] = mask_less(lanes_of(0), set->may_touch[c]) &
                     mask_less_equal(from->gap[c], lanes_of(STEP_CLOSED));
         it.active[c] = closed[c] | brought[c];
@@ -370,7 +364,7 @@ COLD mask step_once(const int *corner, const struct setting *set, const struct m
         it.keeps = k < STEP_KEEPS_AFTER ? MASK_NONE : running;
         /* All or none: position errors may have to be removed at a contact that is not active. */
         mask somewhere = MASK_NONE;
-        EACH (c, 0, SCENE_CONTACTS)
+        EACH_CONTACT (c, 0)
             somewhere |= it.active[c] & running;
         const contact_set touching = mask_any(somewhere) ? CONTACT_ALL : 0;
         for (int c = 0; c < SCENE_CONTACTS && moreau; c++)
@@ -380,7 +374,7 @@ COLD mask step_once(const int *corner, const struct setting *set, const struct m
         iterations += choose(running, lanes_of(1), lanes_of(0));
         iterate_place(set, from, h, k >= freeze_after, &it);
         mask news = MASK_NONE;
-        EACH (c, 0, SCENE_CONTACTS) {
+        EACH_CONTACT (c, 0) {
             const mask hit = running & LANES_NOT(it.active[c]) &
                              mask_less(lanes_of(0), set->may_touch[c]) &
                              mask_less_equal(it.gap[c], lanes_of(STEP_CLOSED));
@@ -409,7 +403,7 @@ COLD mask step_once(const int *corner, const struct setting *set, const struct m
                             freeze_after < STEP_MAX_ITERATIONS, &it, report);
     report->iterations = report->evaluations = iterations;
     step_commit(from->t + h, &it, false, converged, mask_less(lanes_of(0), report->landed), to);
-    EACH (c, 0, SCENE_CONTACTS)
+    EACH_CONTACT (c, 0)
         brought[c] |= converged & it.brought[c];
     return converged;
 }
@@ -423,7 +417,7 @@ COLD mask step_solve(const int *corner, const struct setting *set, const struct 
     mask todo = run, good = MASK_NONE, brought[CONTACTS], known[CONTACTS];
     lanes cost = lanes_of(0);
     report_clear(report); /* in lanes that do not run nothing was done */
-    EACH (c, 0, SCENE_CONTACTS)
+    EACH_CONTACT (c, 0)
         brought[c] = MASK_NONE;
     for (int round = 0; round <= OWN_CONTACTS && mask_any(todo); round++) {
         struct step_report part;
@@ -434,7 +428,7 @@ COLD mask step_solve(const int *corner, const struct setting *set, const struct 
         choose_all(round == 0 ? todo : there, &part, report, sizeof part);
         good |= there;
         todo = MASK_NONE;
-        EACH (c, 0, SCENE_CONTACTS)
+        EACH_CONTACT (c, 0)
             todo |= there & brought[c] & LANES_NOT(known[c]);
     }
     report->iterations = report->evaluations = choose(run, cost, report->iterations);
@@ -455,7 +449,7 @@ COLD mask step_limit(const int *corner, const struct setting *set, const struct 
         const lanes tried = impact_share_next(&share);
         struct motion next = *from;
         struct step_report part;
-        EACH (c, 0, SCENE_CONTACTS)
+        EACH_CONTACT (c, 0)
             law.restitution[c] = tried * set->restitution[c];
         const mask good =
             step_solve(corner, &law, from, torque, h, open, coupled, freeze_after, &next, &part);

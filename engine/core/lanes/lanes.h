@@ -56,9 +56,8 @@ enum { LANES = STANCE_LANES };
 #endif
 
 /* for (int i = from; i < to; i++), unrolled so early that arrays of the bodies live in registers,
- * and that what is structure folds. Not where there are very many contacts, nor where the structure
- * is read at run time. */
-#if defined(TREE_RUNTIME) || (defined(TREE_CONTACTS) && TREE_CONTACTS > 6)
+ * and that what is structure folds. Not where the structure is read at run time. */
+#ifdef TREE_RUNTIME
 #define EACH(i, from, to) for (int i = (from); i < (to); i++)
 #else
 #define EACH(i, from, to) _Pragma("GCC unroll 16") for (int i = (from); i < (to); i++)

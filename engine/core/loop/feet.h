@@ -23,7 +23,7 @@ static inline mask feet_down(const struct bundle *b, int c)
 /* At the beginning of the cases in `fresh`. */
 COLD void feet_begin(struct bundle *b, mask fresh)
 {
-    EACH (c, 0, SCENE_CONTACTS) {
+    EACH_CONTACT (c, 0) {
         const mask under = fresh & mask_less(lanes_of(0), b->ahead[c]) &
                            mask_less(b->now.gap[c], lanes_of(-FEET_DEEPEST));
         b->set.may_touch[c] = choose(under, lanes_of(0), b->set.may_touch[c]);
@@ -37,14 +37,14 @@ HOT void feet_choose(struct bundle *b, mask live)
         return;
     lanes along[CONTACTS];
     mask down[CONTACTS];
-    EACH (c, 0, SCENE_CONTACTS) {
+    EACH_CONTACT (c, 0) {
         down[c] = contact_grip(c) < 0 ? MASK_NONE : feet_down(b, c);
         along[c] = contact_grip(c) < 0 ? lanes_of(0)
                                        : scene_along(&b->set.body, b->now.s, &b->now.trig, c);
     }
-    EACH (c, 0, SCENE_CONTACTS) {
+    EACH_CONTACT (c, 0) {
         mask behind = MASK_NONE;
-        EACH (k, 0, SCENE_CONTACTS)
+        EACH_CONTACT (k, 0)
             if (contact_grip(k) != contact_grip(c))
                 behind |= down[k] & mask_less_equal(along[c], along[k]);
         const mask lands = mask_less(lanes_of(STEP_CLOSED), b->now.gap[c]) & LANES_NOT(behind);
@@ -57,7 +57,7 @@ HOT void feet_choose(struct bundle *b, mask live)
 /* Counts the feet that have come to the ground since `before`, what feet_down said then. */
 COLD void feet_count(struct bundle *b, mask live, const mask *before)
 {
-    EACH (c, 0, SCENE_CONTACTS) {
+    EACH_CONTACT (c, 0) {
         const int foot = contact_grip(c);
         if (foot < 0)
             continue;

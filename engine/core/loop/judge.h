@@ -34,14 +34,13 @@ HOT void account_contacts(struct bundle *b, bool all, mask ok, contact_set touch
     const lanes none = lanes_of(0);
     if (touching)
         account_told(b, all, ok, TOLD_touching, report);
-    EACH (c, 0, SCENE_CONTACTS) {
-        const bool here = touching >> c & 1;
+    EACH_CONTACT (c, 0) {
         const mask support = ok & mask_less(none, b->mine[c]);
-        b->answer.least_normal_force =
-            choose(support, lanes_min(here ? report->least[c] : none, b->answer.least_normal_force),
-                   b->answer.least_normal_force);
-        if (!here)
-            continue;
+        const lanes least = touching >> c & 1 ? report->least[c] : none;
+        b->answer.least_normal_force = choose(
+            support, lanes_min(least, b->answer.least_normal_force), b->answer.least_normal_force);
+    }
+    EACH_IN (c, touching) {
         account_largest(false, ok & mask_less(none, b->set.may_touch[c]), -b->now.gap[c],
                         &b->answer.max_penetration);
         account_sum(all, ok, report->slip[c], &b->answer.slip_distance);
@@ -56,9 +55,8 @@ HOT void account_drift(struct bundle *b, bool all, mask ok, contact_set touching
                        const struct step_report *report, lanes excess)
 {
     mask free = ok;
-    EACH (c, 0, SCENE_CONTACTS)
-        if (touching >> c & 1)
-            free &= mask_less_equal(report->impulse[c][0], lanes_of(0));
+    EACH_IN (c, touching)
+        free &= mask_less_equal(report->impulse[c][0], lanes_of(0));
     if (!touching || mask_any(free)) {
         b->drift = choose_unless(all && !touching, free, b->drift + (excess - b->excess), b->drift);
         account_largest(all, ok, lanes_abs(b->drift), &b->answer.energy_drift);
@@ -119,7 +117,7 @@ struct verdict {
 HOT mask bundle_in_place(const struct bundle *b)
 {
     mask in = LANES_ALL;
-    EACH (c, 0, SCENE_CONTACTS) {
+    EACH_CONTACT (c, 0) {
         if (contact_grip(c) < 0)
             continue;
         const lanes moved = scene_along(&b->set.body, b->now.s, &b->now.trig, c) - b->began[c];
@@ -136,7 +134,7 @@ HOT struct verdict bundle_judge(struct bundle *b, mask live, contact_set touchin
 {
     const lanes none = lanes_of(0), one = lanes_of(1);
     lanes posture[POSTURES], rate[POSTURES], angle = none, speed = none;
-    EACH (c, 0, SCENE_CONTACTS)
+    EACH_CONTACT (c, 0)
         account_largest(false, live & mask_less(none, b->left_out[c]), -b->now.gap[c],
                         &b->answer.through_ground);
     scene_posture(b->now.s, posture);
@@ -155,7 +153,7 @@ HOT struct verdict bundle_judge(struct bundle *b, mask live, contact_set touchin
     angle = angle * b->angle_scale;
     speed = speed * b->rate_scale;
     mask alone = mask_less(none, b->has_target);
-    EACH (c, 0, SCENE_CONTACTS) {
+    EACH_CONTACT (c, 0) {
         const mask mine = mask_less(none, b->mine[c]);
         if (contact_grip(c) < 0) /* no ground */
             continue;

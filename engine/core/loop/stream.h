@@ -49,7 +49,7 @@ COLD void bundle_start(struct bundle *b, mask fresh, bool coupled)
     feet_begin(b, fresh);
     feet_choose(b, fresh);
     mask loaded[CONTACTS];
-    EACH (c, 0, SCENE_CONTACTS)
+    EACH_CONTACT (c, 0)
         loaded[c] = mask_less(lanes_of(0), b->set.may_touch[c]) &
                     mask_less_equal(b->now.gap[c], lanes_of(STEP_CLOSED));
     const struct verdict v = bundle_judge(b, fresh, CONTACT_ALL, loaded, MASK_NONE);
@@ -82,7 +82,7 @@ HOT void stream_follow(struct bundle *b, bool all, mask ok, mask failed, bool or
     bundle_account(b, all, ok, ordinary, touching, report);
     feet_choose(b, ok);
     mask loaded[CONTACTS];
-    EACH (c, 0, SCENE_CONTACTS) {
+    EACH_CONTACT (c, 0) {
         loaded[c] = MASK_NONE;
         if (touching >> c & 1)
             loaded[c] = mask_less(lanes_of(0), report->impulse[c][0]);
@@ -159,7 +159,7 @@ COLD void stream_any(struct bundle *b, bool coupled)
 {
     struct step_report report;
     mask failed, down[CONTACTS];
-    EACH (c, 0, SCENE_CONTACTS)
+    EACH_CONTACT (c, 0)
         down[c] = feet_down(b, c);
     lanes h = b->h;
 #ifdef ADVANCE_PIECES

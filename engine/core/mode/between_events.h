@@ -312,7 +312,7 @@ static inline void between_project_position(const struct setting *set, const mas
         project_multipliers(set, &e->trig, CONTACT_ALL, along, held, error, multiplier);
         for (int i = 0; i < SCENE_COORDINATES; i++) {
             lanes sum = none;
-            for (int c = 0; c < SCENE_CONTACTS; c++)
+            EACH_IN (c, CONTACT_ALL)
                 sum += lift[c][i] * multiplier[c];
             d[i] = choose(todo, sum, none);
             s[i] = choose(todo, s[i] + d[i], s[i]);

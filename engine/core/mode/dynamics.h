@@ -61,19 +61,21 @@ HOT void dynamics_place(const struct setting *set, contact_set touching, bool pu
 #else
     (void)pushes;
 #endif
-    EACH (c, 0, SCENE_CONTACTS)
-        if (touching >> c & 1)
-            scene_contact_response(&set->body, A, false, &e->trig, c, e->response[c]);
-    EACH (c, 0, SCENE_CONTACTS)
-        EACH (k, 0, SCENE_CONTACTS)
+    EACH_IN (c, touching)
+        scene_contact_response(&set->body, A, false, &e->trig, c, e->response[c]);
+    EACH_IN (c, touching) {
+        scene_rows rows;
+        scene_contact_rows(&set->body, &e->trig, c, NULL, lanes_of(0), &rows);
+        EACH_IN (k, touching)
             EACH (b, 0, 2) {
                 lanes u[2];
-                if (!(touching >> c & touching >> k & 1) || b >= contact_unknowns(k))
+                if (b >= contact_unknowns(k))
                     continue;
-                scene_contact_velocity(&set->body, &e->trig, c, e->response[k][b], u);
+                scene_rows_velocity(&set->body, c, &rows, e->response[k][b], u);
                 e->D[c][k][0][b] = u[0];
                 e->D[c][k][1][b] = u[1];
             }
+    }
 }
 
 /* What follows from velocities and torques there; contact terms but u of the contacts in `touching`
@@ -87,7 +89,7 @@ HOT void dynamics_motion(const struct setting *set, lanes t, const lanes *s, con
         e->torque[i] = torque[i];
     scene_forces(&set->body, t, s, &e->trig, w, e->torque, load);
     scene_solve(A, false, load, e->acceleration);
-    EACH (c, 0, SCENE_CONTACTS) {
+    EACH_CONTACT (c, 0) {
         lanes curvature[2], forced[2];
         scene_contact_velocity(&set->body, &e->trig, c, w, e->u[c]);
         if (!(touching >> c & 1))

@@ -47,7 +47,7 @@ HOT mask standing_factor(contact_set touching, const struct dynamics *e, struct 
 {
     lanes M[CONTACTS][CONTACTS][2][2];
     mask rows[CONTACTS][2];
-    EACH (c, 0, SCENE_CONTACTS)
+    EACH_CONTACT (c, 0)
         rows[c][0] = rows[c][1] = LANES_ALL;
     contact_matrix(touching, (const lanes(*)[CONTACTS][2][2])e->D, (const mask(*)[2])rows, NULL, M);
     contact_factor(touching, CONTACT_PLAIN, M, f);
@@ -58,9 +58,9 @@ HOT mask standing_factor(contact_set touching, const struct dynamics *e, struct 
 HOT void standing_hold(contact_set touching, const struct contact_factors *f, struct dynamics *e)
 {
     contact_back(touching, f, (const lanes(*)[2])e->free, e->force);
-    EACH (c, 0, SCENE_CONTACTS)
+    EACH_IN (c, touching)
         EACH (a, 0, 2)
-            if (touching >> c & 1 && a < contact_unknowns(c))
+            if (a < contact_unknowns(c))
                 EACH (i, 0, SCENE_COORDINATES)
                     e->acceleration[i] =
                         lanes_fma(e->response[c][a][i], e->force[c][a], e->acceleration[i]);
@@ -70,9 +70,9 @@ HOT void standing_hold(contact_set touching, const struct contact_factors *f, st
 HOT mask standing_rests(contact_set touching, const lanes (*u)[2])
 {
     lanes fastest = lanes_of(0);
-    EACH (c, 0, SCENE_CONTACTS)
+    EACH_IN (c, touching)
         EACH (a, 0, 2)
-            if (touching >> c & 1 && a < contact_unknowns(c))
+            if (a < contact_unknowns(c))
                 fastest = lanes_max(lanes_abs(u[c][a]), fastest);
     return mask_less_equal(fastest, lanes_of(BETWEEN_REST));
 }
@@ -139,9 +139,7 @@ HOT mask standing_forces(contact_set touching, const struct setting *set,
 {
     const lanes none = lanes_of(0);
     mask stands = LANES_ALL;
-    EACH (c, 0, SCENE_CONTACTS) {
-        if (!(touching >> c & 1))
-            continue;
+    EACH_IN (c, touching) {
         const struct standing_course normal =
             standing_course(force[0][c][0], force[1][c][0], force[2][c][0]);
         const lanes least = lanes_min(normal.b[0], normal.b[2]);
@@ -188,7 +186,7 @@ HOT mask standing_project(contact_set touching, const struct setting *set, const
     lanes d[SCENE_COORDINATES];
     const lanes *along[CONTACTS];
     mask held[CONTACTS];
-    EACH (c, 0, SCENE_CONTACTS) {
+    EACH_CONTACT (c, 0) {
         held[c] = LANES_ALL;
         along[c] = e->response[c][0];
         error[c] = none;
@@ -200,27 +198,24 @@ HOT mask standing_project(contact_set touching, const struct setting *set, const
     project_multipliers(set, &e->trig, touching, along, held, error, multiplier);
     EACH (i, 0, SCENE_COORDINATES) {
         d[i] = none;
-        EACH (c, 0, SCENE_CONTACTS)
-            if (touching >> c & 1)
-                d[i] = lanes_fma(e->response[c][0][i], multiplier[c], d[i]);
+        EACH_IN (c, touching)
+            d[i] = lanes_fma(e->response[c][0][i], multiplier[c], d[i]);
         end->s[i] += d[i];
     }
     trig_turn(&end->trig, LANES_ALL, d);
-    EACH (c, 0, SCENE_CONTACTS) {
+    EACH_CONTACT (c, 0) {
         u[c][0] = u[c][1] = none;
         if (touching >> c & 1)
             scene_contact_velocity(&set->body, &end->trig, c, end->w, u[c]);
     }
     contact_back(touching, f, (const lanes(*)[2])u, r);
-    EACH (c, 0, SCENE_CONTACTS)
+    EACH_IN (c, touching)
         EACH (a, 0, 2)
-            if (touching >> c & 1 && a < contact_unknowns(c))
+            if (a < contact_unknowns(c))
                 EACH (i, 0, SCENE_COORDINATES)
                     end->w[i] = lanes_fma(e->response[c][a][i], r[c][a], end->w[i]);
     mask there = mask_less(far, lanes_of(STANDING_DRIFT));
-    EACH (c, 0, SCENE_CONTACTS) {
-        if (!(touching >> c & 1))
-            continue;
+    EACH_IN (c, touching) {
         end->gap[c] = scene_gap(&set->body, end->s, &end->trig, c);
         scene_contact_velocity(&set->body, &end->trig, c, end->w, u[c]);
         end->approach[c] = u[c][0];
@@ -238,7 +233,7 @@ HOT mask standing_clear(contact_set touching, const struct setting *set, lanes h
                         const struct motion *from, const struct motion *end)
 {
     mask clear = LANES_ALL;
-    EACH (c, 0, SCENE_CONTACTS)
+    EACH_CONTACT (c, 0)
         if (!(touching >> c & 1))
             clear &= LANES_NOT(mask_less(lanes_of(0), set->may_touch[c])) |
                      (mask_less(h * lanes_abs(from->approach[c]), from->gap[c]) &
@@ -270,7 +265,7 @@ COLD mask standing_decouple(contact_set touching, const struct setting *set, lan
 {
     const mask decouples = mask_less(lanes_of(0), set->law.decouples);
     struct contact_state stands;
-    EACH (c, 0, SCENE_CONTACTS) {
+    EACH_CONTACT (c, 0) {
         stands.closed[c] = touching >> c & 1 ? LANES_ALL : MASK_NONE;
         stands.slide[c] = lanes_of(0);
     }
@@ -304,7 +299,7 @@ HOT mask standing_take(contact_set touching, const struct setting *set, const st
     mask good = run;
     report_clear_answers(report);
     report->work = report->failure = report->landed = lanes_of(0);
-    EACH (c, 0, SCENE_CONTACTS) {
+    EACH_CONTACT (c, 0) {
         report->impulse[c][0] = report->impulse[c][1] = report->slip[c] = lanes_of(0);
         report->least[c] = lanes_of(0);
     }
@@ -347,7 +342,7 @@ HOT mask standing_take(contact_set touching, const struct setting *set, const st
             EACH (i, 0, SCENE_ACTUATORS)
                 if (coupled)
                     driven[k][i] = again ? (lanes)(driven[k][i] + e.torque[i]) : e.torque[i];
-            EACH (c, 0, SCENE_CONTACTS)
+            EACH_CONTACT (c, 0)
                 EACH (b, 0, 2) {
                     if (!(touching >> c & 1) || b >= contact_unknowns(c)) {
                         force[k][c][b] = lanes_of(0);
@@ -395,7 +390,7 @@ HOT mask standing_take(contact_set touching, const struct setting *set, const st
     }
     if (touching)
         good &= standing_project(touching, set, &e, &factors, end, report);
-    EACH (c, 0, SCENE_CONTACTS) {
+    EACH_CONTACT (c, 0) {
         EACH (b, 0, 2)
             end->impulse[c][b] = from->impulse[c][b];
         if (touching >> c & 1)
