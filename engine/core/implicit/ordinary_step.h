@@ -149,7 +149,7 @@ HOT mask ordinary_iterate(const struct ordinary *q, const struct setting *set,
     ordinary_place(q, from, h, all, m, it);
     EACH (i, 0, SCENE_COORDINATES)
         old[i] = choose_unless(all, m, it->w[i], old[i]);
-    iterate_newton(set, from, h, all, m, false, MASK_NONE, coupled, false, touching, it);
+    iterate_newton(set, from, h, all, m, false, MASK_NONE, coupled, false, touching, touching, it);
     const lanes left = (h * scene_curvature(&set->body) * it->size) * (it->size + it->shift);
     mask small = mask_less_equal(left, lanes_of(ORDINARY_ERROR));
     if (mask_any(m & LANES_NOT(small)))
@@ -246,7 +246,7 @@ HOT mask ordinary_reach(const struct ordinary *q, const struct setting *set,
             it->r[c][a] = choose(it->active[c], from->impulse[c][a], lanes_of(0));
     }
     good &= ordinary_newton(q, set, from, h, coupled, good, touching, full, it, iterations);
-    return good & LANES_NOT(it->verdict.unsolved | it->verdict.ambiguous | it->verdict.unranked);
+    return good & LANES_NOT(it->verdict.unsolved | it->verdict.ambiguous);
 }
 
 /* Tries one ordinary step, arguments as above. Returns the lanes where it was one. */
