@@ -236,6 +236,8 @@ static inline lanes direct_middle(lanes friction, contact_set touching, const la
                 room = lanes_fma(friction, contact_load(c, r), side * r[c][1]);
                 rate = lanes_fma(friction, contact_load(c, n), side * n[c][1]);
             }
+            if (!mask_any(mask_less(none, lanes_abs(rate)))) /* nor does it change anything below */
+                continue;
             const lanes edge = -room / rate;
             low = choose(mask_less(none, rate), lanes_max(edge, low), low);
             high = choose(mask_less(rate, none), lanes_min(edge, high), high);
