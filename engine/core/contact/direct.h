@@ -15,8 +15,9 @@
  * symmetric; the minimum is that of its symmetric part, to O(h).)
  *
  * A mode of all contacts that obeys the laws is the solution where there is but one
- * (direct_unique). The mode of the last iterate is tried, then that which each contact's impulse
- * and velocity point to.
+ * (direct_unique); of more elements than are enumerated it is taken for one, and that is said
+ * (unranked). The mode of the last iterate is tried, then that which each contact's impulse and
+ * velocity point to.
  */
 #ifndef STANCE_CORE_CONTACT_DIRECT_H
 #define STANCE_CORE_CONTACT_DIRECT_H
@@ -88,6 +89,24 @@ HOT mask direct_stood(const struct contact_rule *rule, contact_set touching, con
                 contact_stands(rule->friction, contact_load(c, rule->before), rule->before[c][1]);
     }
     return stood;
+}
+
+/* Lanes where the least energy is wanted, and nothing is in the way of all sticking: then that is
+ * the solution, if it obeys the laws. */
+static inline mask direct_stick_is_least(const struct contact_rule *rule, contact_set touching,
+                                         const mask *active)
+{
+    const lanes none = lanes_of(0);
+    mask least = rule->indefinite ? MASK_NONE : mask_less(none, rule->prefer);
+    EACH_IN (c, touching)
+        for (int a = 0; a < contact_unknowns(c); a++) {
+            const mask here = a == 0 ? active[c] : contact_part(c, active);
+            if (rule->shift)
+                least &= LANES_NOT(here & mask_less(none, lanes_abs(rule->shift[c][a])));
+            if (rule->sliding && a == 1)
+                least &= LANES_NOT(here & mask_less(none, lanes_abs(rule->sliding[c])));
+        }
+    return least;
 }
 
 /* Lanes where impulses r of active contacts are in the cones. */
@@ -218,6 +237,8 @@ static inline lanes direct_middle(lanes friction, contact_set touching, const la
                 room = lanes_fma(friction, contact_load(c, r), side * r[c][1]);
                 rate = lanes_fma(friction, contact_load(c, n), side * n[c][1]);
             }
+            if (!mask_any(mask_less(none, lanes_abs(rate)))) /* nor does it change anything below */
+                continue;
             const lanes edge = -room / rate;
             low = choose(mask_less(none, rate), lanes_max(edge, low), low);
             high = choose(mask_less(rate, none), lanes_min(edge, high), high);
@@ -230,6 +251,7 @@ static inline lanes direct_middle(lanes friction, contact_set touching, const la
 struct direct_freedom {
     int count;
     lanes along[2 * CONTACTS][CONTACTS][2]; /* zero where a lane has it not ... */
+    lanes moves[2 * CONTACTS];              /* what of velocities it changes, by rounding */
     mask here[2 * CONTACTS];
     mask several; /* lanes that have more than one: then an orthonormal family, see lane.h */
 };
@@ -252,6 +274,22 @@ static inline void direct_add(contact_set touching, mask m, lanes by, const lane
     EACH_IN (c, touching)
         for (int a = 0; a < 2; a++)
             x[c][a] = choose(m, lanes_fma(by, n[c][a], x[c][a]), x[c][a]);
+}
+
+/* The largest velocity that a unit of n leaves in `rows`. */
+static inline lanes direct_moves(const lanes (*D)[CONTACTS][2][2], contact_set touching,
+                                 const mask (*rows)[2], const lanes (*n)[2])
+{
+    lanes none[CONTACTS][2], u[CONTACTS][2], most = lanes_of(0);
+    for (int c = 0; c < SCENE_CONTACTS; c++)
+        none[c][0] = none[c][1] = lanes_of(0);
+    direct_velocities(D, (const lanes(*)[2])none, touching, n, u);
+    EACH_IN (c, touching)
+        for (int a = 0; a < 2; a++) {
+            const lanes size = choose(mask_finite(u[c][a]), lanes_abs(u[c][a]), lanes_of(INFINITY));
+            most = lanes_max(choose(rows[c][a], size, lanes_of(0)), most);
+        }
+    return most;
 }
 
 static inline void direct_freedoms(contact_set touching, const lanes (*D)[CONTACTS][2][2],
@@ -285,21 +323,16 @@ static inline void direct_freedoms(contact_set touching, const lanes (*D)[CONTAC
             for (int a = 0; a < 2; a++)
                 own[c][a] = by * own[c][a];
     }
+    for (int m = 0; m < free->count; m++)
+        free->moves[m] = direct_moves(D, touching, rows, (const lanes(*)[2])free->along[m]);
 }
 
-/* Moves r by a multiple of n in the lanes of m where that changes no velocity. */
-static inline void direct_exchange(const lanes (*D)[CONTACTS][2][2], contact_set touching,
-                                   const mask (*rows)[2], lanes tolerance, mask m, lanes by,
-                                   const lanes (*n)[2], lanes (*r)[2])
+/* Moves r by a multiple of the redundancy k in the lanes of m where that changes no velocity. */
+static inline void direct_exchange(const struct direct_freedom *free, int k, contact_set touching,
+                                   lanes tolerance, mask m, lanes by, lanes (*r)[2])
 {
-    lanes none[CONTACTS][2], u[CONTACTS][2];
-    for (int c = 0; c < SCENE_CONTACTS; c++)
-        none[c][0] = none[c][1] = lanes_of(0);
-    direct_velocities(D, (const lanes(*)[2])none, touching, n, u);
-    EACH_IN (c, touching)
-        for (int a = 0; a < 2; a++)
-            m &= LANES_NOT(rows[c][a]) | mask_less_equal(lanes_abs(by * u[c][a]), 0.25 * tolerance);
-    direct_add(touching, m, by, n, r);
+    m &= mask_less_equal(lanes_abs(by) * free->moves[k], 0.25 * tolerance);
+    direct_add(touching, m, by, (const lanes(*)[2])free->along[k], r);
 }
 
 /* As lane_hold, in lanes: impulses with which all active contacts stick, whatever the operator, and
@@ -336,15 +369,15 @@ COLD mask direct_hold(lanes friction, lanes tolerance, const lanes (*D)[CONTACTS
     const bool several = mask_any(free.several);
     for (int m = 0; m < free.count && several; m++) { /* least norm */
         const lanes(*const n)[2] = (const lanes(*)[2])free.along[m];
-        direct_exchange(D, touching, (const mask(*)[2])rows, tolerance, free.several & free.here[m],
-                        -direct_dot(touching, D, n, (const lanes(*)[2])r), n, r);
+        direct_exchange(&free, m, touching, tolerance, free.several & free.here[m],
+                        -direct_dot(touching, D, n, (const lanes(*)[2])r), r);
     }
     for (int sweep = 0; sweep < (several ? LANE_SWEEPS : 1); sweep++)
         for (int m = 0; m < free.count; m++) {
             const lanes(*const n)[2] = (const lanes(*)[2])free.along[m];
-            direct_exchange(D, touching, (const mask(*)[2])rows, tolerance,
+            direct_exchange(&free, m, touching, tolerance,
                             sweep > 0 ? free.several & free.here[m] : free.here[m],
-                            direct_middle(friction, touching, n, (const lanes(*)[2])r), n, r);
+                            direct_middle(friction, touching, n, (const lanes(*)[2])r), r);
         }
     direct_velocities(D, uf, touching, (const lanes(*)[2])r, u);
     EACH_IN (c, touching)

@@ -416,16 +416,6 @@ static bool lane_hold(const struct lane_problem *p, double *r)
     return good;
 }
 
-/* Is the least energy wanted, and nothing in the way of all sticking? Then that is the solution,
- * if it obeys the laws. */
-static bool lane_stick_is_least(const struct lane_problem *p)
-{
-    bool may = !p->indefinite && p->prefer > 0;
-    for (int i = 0; i < p->rows; i++)
-        may &= p->shift[i] == 0 && p->element[p->of[i]].slide == 0;
-    return may;
-}
-
 /* ---- all modes ------------------------------------------------------------------------------- */
 
 /* r_T by the sum of r_N in a mode of a grip. */

@@ -1,5 +1,6 @@
 /* solve.h - contact problems of all lanes: directly where that is certain to be right, two points
- * by every mode in lanes, the rest lane by lane.
+ * by every mode in lanes; of more than four elements what the mode before, or those that its
+ * impulses and velocities point to, solve; the rest lane by lane.
  */
 #ifndef STANCE_CORE_CONTACT_SOLVE_H
 #define STANCE_CORE_CONTACT_SOLVE_H
@@ -7,6 +8,16 @@
 #include "pair.h"
 
 #define SOLVE_ENUMERATED 4 /* elements: more are not enumerated */
+
+/* Lanes with more elements than are enumerated. */
+static inline mask solve_crowded(contact_set touching, const mask *active)
+{
+    lanes elements = lanes_of(0);
+    EACH_IN (c, touching)
+        if (contact_grip(c) == c || contact_grip(c) < 0)
+            elements += choose(contact_part(c, active), lanes_of(1), lanes_of(0));
+    return mask_less(lanes_of(SOLVE_ENUMERATED), elements);
+}
 
 /* What is not decided in the hot loop, in the lanes of `unsure`; `many`: those with more than a
  * point. */
@@ -21,19 +32,25 @@ COLD void solve_rest(const struct contact_rule *rule, const lanes (*D)[CONTACTS]
             largest = lanes_max(choose(active[c], lanes_abs(uf[c][a]), none), largest);
     const struct contact_tolerance tolerance = contact_tolerance(largest);
     const mask stood = unsure & direct_stood(rule, touching, active);
+    const mask crowded = unsure & solve_crowded(touching, active);
+    const mask holds = stood | (crowded & direct_stick_is_least(rule, touching, active));
     mask done = MASK_NONE;
-    if (mask_any(stood)) {
-        done = stood & direct_hold(rule->friction, tolerance.most, D, uf, touching, active, stood,
+    if (mask_any(holds)) {
+        done = holds & direct_hold(rule->friction, tolerance.most, D, uf, touching, active, holds,
                                    stood & many, stick);
         for (int c = 0; c < SCENE_CONTACTS; c++)
             for (int a = 0; a < 2; a++)
                 r[c][a] = choose(done, stick[c][a], r[c][a]);
     }
     if (!rule->indefinite && mask_any(unsure & LANES_NOT(done))) {
-        const mask todo =
-            unsure & LANES_NOT(done) & direct_unique(rule->friction, D, touching, active);
+        const mask open = unsure & LANES_NOT(done);
+        const mask unique = direct_unique(rule->friction, D, touching, active);
+        const mask todo = open & (unique | crowded);
+        mask found = MASK_NONE;
         if (mask_any(todo))
-            done |= direct_modes(rule, D, uf, touching, active, tolerance.exact, todo, r);
+            found = direct_modes(rule, D, uf, touching, active, tolerance.exact, todo, r);
+        v->unranked |= found & LANES_NOT(unique);
+        done |= found;
     }
     mask left = unsure & LANES_NOT(done);
     left &= LANES_NOT(pair_every(rule, D, uf, touching, active, &tolerance,
@@ -48,10 +65,7 @@ COLD void solve_rest(const struct contact_rule *rule, const lanes (*D)[CONTACTS]
             here |= mask_get(active[c], lane) ? 1u << c : 0;
         lane_gather(rule, D, uf, here, lane, &p);
         lane_choose_none(&best);
-        if ((mask_get(stood, lane) || (p.elements > SOLVE_ENUMERATED && lane_stick_is_least(&p))) &&
-            lane_hold(&p, best.r)) {
-            best.violation = 0;
-        } else if (p.elements <= SOLVE_ENUMERATED) {
+        if (p.elements <= SOLVE_ENUMERATED) {
             lane_enumerate(&p, &best);
             if (mask_get(rule->keeps, lane))
                 crowd_keep(&p, &best);

@@ -78,11 +78,13 @@ static inline void iterate_place(const struct setting *set, const struct motion 
         it->gap[c] = scene_gap(&set->body, it->s1, &it->end, c);
 }
 
-/* Contact impulses of an iterate in the lanes of `running`: adds what they do to the correction dw
- * of the velocity; `all`: whatever becomes of the others. */
+/* Contact impulses of an iterate in the lanes of `running`, of contacts in `touching`: adds what
+ * they do to the correction dw of the velocity; `all`: whatever becomes of the others. Keeps
+ * responses to impulses at contacts in `near`, a larger set. */
 HOT void iterate_contacts(const struct setting *set, const struct motion *from, bool all,
-                          mask running, bool coupled, contact_set touching, const scene_matrix *J,
-                          const scene_trig *direction, lanes lever, lanes *dw, struct iterate *it)
+                          mask running, bool coupled, contact_set touching, contact_set near,
+                          const scene_matrix *J, const scene_trig *direction, lanes lever,
+                          lanes *dw, struct iterate *it)
 {
     lanes response[CONTACTS][2][SCENE_COORDINATES], rebound[CONTACTS][2];
     EACH_CONTACT (c, 0) {
@@ -91,8 +93,13 @@ HOT void iterate_contacts(const struct setting *set, const struct motion *from, 
             response[c][0][i] = response[c][1][i] = lanes_of(0);
     }
     lanes D[CONTACTS][CONTACTS][2][2], uf[CONTACTS][2]; /* of those in `touching` */
-    EACH_IN (c, touching)
+    EACH_IN (c, near)
         scene_contact_response(&set->body, J, coupled, direction, c, response[c]);
+    EACH_IN (c, near)
+        EACH (i, 0, SCENE_COORDINATES)
+            for (int a = 0; a < contact_unknowns(c); a++)
+                it->response[c][a][i] =
+                    choose_unless(all, running, response[c][a][i], it->response[c][a][i]);
     EACH_IN (c, touching) {
         lanes now[2], moved[2];
         scene_contact_velocity(&set->body, &it->end, c, it->w, now);
@@ -134,9 +141,6 @@ HOT void iterate_contacts(const struct setting *set, const struct motion *from, 
                 pushed = lanes_fma(response[c][1][i], r[c][1], pushed);
             pushed = lanes_fma(response[c][0][i], r[c][0], pushed);
             dw[i] = choose(part, pushed, dw[i]);
-            for (int a = 0; a < n; a++)
-                it->response[c][a][i] =
-                    choose_unless(all, running, response[c][a][i], it->response[c][a][i]);
         }
         for (int a = 0; a < n; a++) {
             const lanes moves =
@@ -151,7 +155,7 @@ HOT void iterate_contacts(const struct setting *set, const struct motion *from, 
  * geometry frozen the derivatives by it are left out too, so that the operator is constant. */
 HOT void iterate_newton(const struct setting *set, const struct motion *from, lanes h, bool all,
                         mask running, bool impacts, mask impact, bool coupled, bool frozen,
-                        contact_set touching, struct iterate *it)
+                        contact_set touching, contact_set near, struct iterate *it)
 {
     const double moves = frozen ? 0 : METHOD_THETA;
     const lanes lever = h * (METHOD_THETA * moves), end_lever = h * moves;
@@ -191,8 +195,8 @@ HOT void iterate_newton(const struct setting *set, const struct motion *from, la
 
     it->shift = lanes_of(0);
     if (touching)
-        iterate_contacts(set, from, all, running, coupled, touching, &J, direction, end_lever, dw,
-                         it);
+        iterate_contacts(set, from, all, running, coupled, touching, near, &J, direction, end_lever,
+                         dw, it);
     it->size = lanes_of(0);
     EACH (i, 0, SCENE_COORDINATES) {
         it->w[i] = choose_unless(all, running, it->w[i] + dw[i], it->w[i]);

@@ -18,8 +18,8 @@
  * - Position errors are mended along the directions of the last iteration: they may be off by
  *   1e-4 of what is mended, a billionth of the speed at 5 ms.
  *
- * A lane in which anything is not ordinary - an impact, a touchdown, a contact problem that is not
- * certainly unique, a long way to converge, energy from nowhere - is left to step.h, whatever its
+ * A lane in which anything is not ordinary - an impact, a touchdown, a contact problem with several
+ * solutions, a long way to converge, energy from nowhere - is left to step.h, whatever its
  * neighbours do: which lanes share a bundle changes no bit.
  */
 #ifndef STANCE_CORE_IMPLICIT_ORDINARY_STEP_H
@@ -149,7 +149,7 @@ HOT mask ordinary_iterate(const struct ordinary *q, const struct setting *set,
     ordinary_place(q, from, h, all, m, it);
     EACH (i, 0, SCENE_COORDINATES)
         old[i] = choose_unless(all, m, it->w[i], old[i]);
-    iterate_newton(set, from, h, all, m, false, MASK_NONE, coupled, false, touching, it);
+    iterate_newton(set, from, h, all, m, false, MASK_NONE, coupled, false, touching, touching, it);
     const lanes left = (h * scene_curvature(&set->body) * it->size) * (it->size + it->shift);
     mask small = mask_less_equal(left, lanes_of(ORDINARY_ERROR));
     if (mask_any(m & LANES_NOT(small)))
@@ -246,7 +246,7 @@ HOT mask ordinary_reach(const struct ordinary *q, const struct setting *set,
             it->r[c][a] = choose(it->active[c], from->impulse[c][a], lanes_of(0));
     }
     good &= ordinary_newton(q, set, from, h, coupled, good, touching, full, it, iterations);
-    return good & LANES_NOT(it->verdict.unsolved | it->verdict.ambiguous | it->verdict.unranked);
+    return good & LANES_NOT(it->verdict.unsolved | it->verdict.ambiguous);
 }
 
 /* Tries one ordinary step, arguments as above. Returns the lanes where it was one. */

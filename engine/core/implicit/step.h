@@ -362,15 +362,14 @@ COLD mask step_once(const int *corner, const struct setting *set, const struct m
     lanes iterations = lanes_of(0);
     for (int k = 0; k < STEP_MAX_ITERATIONS && mask_any(running); k++) {
         it.keeps = k < STEP_KEEPS_AFTER ? MASK_NONE : running;
-        /* All or none: position errors may have to be removed at a contact that is not active. */
-        mask somewhere = MASK_NONE;
+        contact_set touching = 0;
         EACH_CONTACT (c, 0)
-            somewhere |= it.active[c] & running;
-        const contact_set touching = mask_any(somewhere) ? CONTACT_ALL : 0;
+            touching |= mask_any(it.active[c] & running) ? contact_with(c) : 0;
+        /* Responses of all or none: position errors may have to be removed at any. */
         for (int c = 0; c < SCENE_CONTACTS && moreau; c++)
             along[c] = choose(impact, tangential[c], lanes_of(0));
         iterate_newton(set, from, h, false, running, true, impact, coupled, k > freeze_after,
-                       touching, &it);
+                       touching, touching ? CONTACT_ALL : 0, &it);
         iterations += choose(running, lanes_of(1), lanes_of(0));
         iterate_place(set, from, h, k >= freeze_after, &it);
         mask news = MASK_NONE;
