@@ -507,13 +507,13 @@ lint: packages-test
 
 # The kernels of one lane by clang, which ends them at what depends on memory that nothing was written to.
 MEMORY = -O1 -g -fsanitize=memory
-golden-memory:
+golden-memory: packages-test
 	+@$(MAKE) BUILD=$(BUILD)/memory CC=clang ISAS=scalar SCALAR_METHODS= LIBRARY_CFLAGS= GOLDEN_LIBS=-lm WARNINGS=-w \
 	    CFLAGS='$(MEMORY)' TEST_CFLAGS='$(MEMORY)' KERNEL_CFLAGS='$(MEMORY)' golden
 	$(BUILD)/memory/tests/golden 10
 
 # Full debugging information of instrumented kernels takes gcc minutes each.
-sanitize: packages-test golden-memory
+sanitize: golden-memory
 	+STANCE_SLOW=1 $(MAKE) BUILD=build/sanitize PROGRAM=build/sanitize/bin/stance CFLAGS='-O1 -g' KERNEL_CFLAGS='-O1 -g1' \
 	    SANITIZE='-fsanitize=address,undefined -fno-sanitize-recover=undefined' FUZZ_CC=none check
 

@@ -5,7 +5,9 @@
 #define STANCE_LANES 1
 #include "engine/core/lanes/lanes.h"
 
-/* Six points, two soles of two ends each, two stops; each problem has some of them. */
+/* Six points, two soles of two ends each, two stops; each problem has some of them. As many are
+ * lists: contact.h. */
+#define TREE_CONTACTS 12
 enum {
     SCENE_COORDINATES = 8,
     SCENE_CONTACTS = 12,
