@@ -91,11 +91,13 @@ const stance_kernel *stance_kernel_find(const stance_scene *scene, const stance_
     bool runs = !isa;
     for (int i = 0; i < ISAS; i++)
         runs = runs || (strcmp(isa, isas[i]) == 0 && isa_runs(isa));
-    for (int ahead = 1; ahead >= 0 && runs; ahead--)
+    enum { OF_STRUCTURE, OF_ANY, OF_ANY_ISA, KINDS };
+    for (int kind = 0; kind < KINDS && runs; kind++)
         for (int i = KERNELS - 1; i >= 0; i--) {
             const stance_kernel *const k = kernels[i];
-            if (k->method == method && stance_kernel_ahead(k) == ahead && isa_runs(k->isa) &&
-                (!isa || !ahead || strcmp(isa, k->isa) == 0) && stance_kernel_fits(k, scene))
+            if (k->method == method && stance_kernel_ahead(k) == (kind == OF_STRUCTURE) &&
+                isa_runs(k->isa) && (!isa || kind == OF_ANY_ISA || strcmp(isa, k->isa) == 0) &&
+                stance_kernel_fits(k, scene))
                 return k;
         }
     for (int i = 0; scalar_kernels[i]; i++) /* those that are compiled for a structure first */

@@ -581,8 +581,9 @@ const stance_method *const *stance_methods(void);
 const stance_method *stance_method_find(const char *name);
 /* The kernel for a scene and a method; isa NULL: the fastest that this processor runs. A method
  * that takes one case at a time has a scalar kernel only, which runs on every processor, and gives
- * it for every isa; so does the one that reads structures at run time, for what is not compiled
- * ahead. NULL when there is none, as for an isa that this processor does not run. */
+ * it for every isa. For what is not compiled ahead it is one that reads structures at run time, of
+ * another isa where there is none of this one. NULL when there is none, as for an isa that this
+ * processor does not run. */
 const stance_kernel *stance_kernel_find(const stance_scene *scene, const stance_method *method,
                                         const char *isa);
 /* Whether a kernel computes cases of a scene. */

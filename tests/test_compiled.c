@@ -105,7 +105,7 @@ static long compare_mechanism(int tree, const char *method, const char *isa, int
     stance_tree_text(scene->tree, false, tables);
     const struct objects_request request = {
         .tables = tables, .scene = scene, .wanted = &wanted, .count = 1, .quiet = true};
-    if (objects_take(&alone, &request, &object, &message) != EXIT_DONE)
+    if (objects_take(&alone, &request, &object, NULL, &message) != EXIT_DONE)
         fail_msg("mechanism %d, %s, %s: %s", tree, method, isa, message.text);
     const long differ = compare(scene, &object, count);
     if (differ > 0)

@@ -38,7 +38,8 @@ static void ask(struct asked *asked, const char *scene, char *methods, const cha
                                               .scene = stance_scene_find(scene),
                                               .wanted = asked->wanted,
                                               .check = asked->check,
-                                              .checks = CHECKS};
+                                              .checks = CHECKS,
+                                              .patience = 1};
     stance_tree_text(asked->request.scene->tree, true, asked->tables);
     for (int i = 0; i < CHECKS; i++) {
         if (strcmp(scene, "biped") == 0)
@@ -68,7 +69,7 @@ static int job(char **word)
     struct parallel ranks = parallel_start();
     ask(&asked, word[0], word[1], word[2], word[3] && strcmp(word[3], "alone") == 0);
     const double begin = clock_seconds();
-    const enum exit_code code = objects_take(&ranks, &asked.request, object, &message);
+    const enum exit_code code = objects_take(&ranks, &asked.request, object, NULL, &message);
     const double taken = clock_seconds() - begin;
     if (code != EXIT_DONE && ranks.rank == 0)
         fprintf(stderr, "%s\n", message.text);
@@ -109,9 +110,9 @@ static void one_after_the_other(void **state)
             char method[] = "lagrange";
             ask(&asked, scene[k], method, "scalar", false);
             asked.request.quiet = true;
-            assert_int_equal(objects_take(&alone, &asked.request, &object[k], &message), EXIT_DONE);
+            assert_int_equal(objects_take(&alone, &asked.request, &object[k], NULL, &message), EXIT_DONE);
             assert_int_equal(object[k].origin, turn == 0 ? OBJECT_COMPILED : OBJECT_KEPT);
-            assert_int_equal(objects_take(&alone, &asked.request, &again, &message), EXIT_DONE);
+            assert_int_equal(objects_take(&alone, &asked.request, &again, NULL, &message), EXIT_DONE);
             assert_string_equal(again.key, object[k].key);
             objects_release(&again, 1);
         }

@@ -239,15 +239,51 @@ is "... is computed without" test -z "$(others "$STANCE_CACHE")"
 expect "... stance build compiles all the same" 0 "$stance" build "$pole"
 expect "... what is kept then computes" 0 "$stance" run --quiet -o kept.h5 "$pole" "${few[@]}"
 isas() { "$python" -c 'import h5py, sys; print(*(h5py.File(f).attrs["instruction_set"].decode() for f in sys.argv[1:]))' "$@"; }
-is "... each file names what computed" test "$(isas built_in.h5 kept.h5)" = "scalar $fastest"
+is "... each file names what computed" test "$(isas built_in.h5 kept.h5)" = "$fastest $fastest"
 is "... the same bits, beside cases at the other stop, too" cmp <("$stance" table built_in.h5) <("$stance" table kept.h5)
 
 CC=./failing expect "... whose compiler fails exits 3" 3 "$stance" build "$pole" --isa scalar --method implicit
 says "... and says why" 'failing does not compile implicit for scalar'
-says "... and what computes" 'implicit *scalar *none: the one built in computes'
+says "... and what computes" "implicit *$fastest *none: the one built in computes"
 STANCE_CACHE=/sys/stance expect "... whose object cannot be kept exits 3" 3 "$stance" build "$pole"
 says "... and says so" 'for this run alone'
 says "... and what computes" 'midpoint .* compiled, but not kept'
+
+# ---- in the middle of a run -----------------------------------------------------------------------
+# A compiler that waits until rows are in the file, which kernels that are built in have computed.
+compiler waiting 'until [ -e '"$scratch"'/go ]; do sleep 0.1; done; exec cc "$@"'
+rm -rf "$STANCE_CACHE"
+many=(--set 'sweep.grid[0].count=201' --set 'sweep.grid[1].count=201')
+rows() { timeout "$patience" "$stance" status --json "$1" 2>/dev/null | "$python" -c 'import json, sys; print(json.load(sys.stdin)["done"])' 2>/dev/null || echo 0; }
+comes() { # name, compiler, what starts the run ...: while it runs, the compiler ends
+    local own
+    rm -rf "$STANCE_CACHE" go
+    CC=$scratch/$2 timeout "$patience" "${@:3}" "$stance" run --quiet --force -o comes.h5 "$pole" "${many[@]}" >log 2>&1 &
+    own=$!
+    until [ -e comes.h5 ] && (($(rows comes.h5) > 0)) || ! kill -0 $own 2>/dev/null; do sleep 0.1; done
+    is "$1: rows are there before it is compiled" test -z "$(others "$STANCE_CACHE" | grep -v part)"
+    touch go
+    until [ -n "$(others "$STANCE_CACHE" | grep -v part)" ] || ! kill -0 $own 2>/dev/null; do sleep 0.1; done
+    is "... which ends before the run does" kill -0 $own
+    wait $own
+    result $? "... that goes on"
+    result $(($(grep -vc '^stance: compiling' log) != 0)) "... and has nothing to say of it"
+}
+comes "a compiled kernel that comes later" waiting
+mv comes.h5 first.h5
+expect "... a run that has it from the beginning" 0 "$stance" run --quiet --force -o all.h5 "$pole" "${many[@]}"
+is "... the same bits" "$stance" compare all.h5 first.h5
+comes "of two ranks" waiting mpirun -n 2
+is "... the same bits" "$stance" compare all.h5 comes.h5
+later() { # name, what is said, what the run is started with ...: none comes
+    rm -rf "$STANCE_CACHE"
+    expect "$1" 0 env "${@:3}" "$stance" run --quiet --force -o comes.h5 "$pole" "${many[@]}"
+    says "... is said" "$2.*kernels that are built in compute on, more slowly"
+    is "... the same bits" "$stance" compare all.h5 comes.h5
+}
+later "a compiler that fails while kernels that are built in compute" 'failing does not compile' CC=./failing
+later "... or fuses" 'computes another [a-z_]* in check [0-9]*: refused' CC=./fusing
+is "... remembered" test -n "$(others "$STANCE_CACHE" | grep 'refused$')"
 
 # ---- signals, and kills ---------------------------------------------------------------------------
 # A compiler that starts others and does not end.
@@ -265,10 +301,10 @@ stopped() { # name, exit code, whom to tell, command ...
     is "... and its directory" test -z "$(ls -d "$TMPDIR"/stance-* "$STANCE_CACHE"/* 2>/dev/null)"
 }
 rm -rf "$STANCE_CACHE"
-many=(--set 'sweep.grid[0].count=401' --set 'sweep.grid[1].count=401')
+many=(--set 'sweep.grid[0].count=401' --set 'sweep.grid[1].count=401' --force)
 stopped "a run that is told to stop while it compiles" 4 '$(pgrep -P $own)' "$stance" run --quiet -o stopped.h5 "$pole" "${many[@]}"
-says "... says how to go on" 'stopped while kernels were compiled: nothing is stored; go on with'
-stopped "stance build that is told to stop" 143 '$(pgrep -P $own)' "$stance" build "$pole"
+says "... says how to go on" 'stopped .* go on with'
+stopped "stance build that is told to stop" 143 '$(pgrep -P $own)' "$stance" build "$pole" "${many[@]:0:4}"
 for rank in 1 2; do
     stopped "of two ranks rank $((rank - 1)) that is told to stop" 4 '$(pgrep -P $(pgrep -P $own) stance | sed -n ${rank}p)' \
         mpirun -n 2 "$stance" run --quiet -o stopped.h5 "$pole" "${many[@]}"

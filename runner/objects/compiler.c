@@ -280,7 +280,7 @@ static void end(const struct compiler *compiler, int directory, struct running r
         close(object);
 }
 
-static size_t cores(void)
+size_t compiler_cores(void)
 {
     cpu_set_t set;
     return sched_getaffinity(0, sizeof set, &set) == 0 ? (size_t)CPU_COUNT(&set) : 1;
@@ -291,7 +291,7 @@ static void run_all(const struct compiler *compiler, int directory, struct compi
 {
     enum { MANY = 64 };
     struct running running[MANY] = {{.child = -1}};
-    const size_t most = cores() < MANY ? cores() : MANY;
+    const size_t most = compiler_cores() < MANY ? compiler_cores() : MANY;
     for (size_t begun = 0, ended = 0; ended < (watch->stopped ? begun : count);) {
         if (begun < count && begun - ended < most && !watch->stopped) {
             running[begun % MANY] = begin(compiler, directory, &wanted[begun]);

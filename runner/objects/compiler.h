@@ -40,7 +40,10 @@ struct compilation {
 /* The header of tables that each of them is compiled with, see objects.h. */
 #define COMPILER_TABLES "tables.h"
 
-/* Compiles in a directory of its own, below $TMPDIR or /tmp; as many at a time as this process has
+/* How many cores this process has. */
+size_t compiler_cores(void);
+
+/* Compiles in a directory of its own, below $TMPDIR or /tmp; as many at a time as there are
  * cores. Where it is to stop, all that were started are ended, with what they have started
  * themselves. */
 void compiler_run(const struct compiler *compiler, const char *tables, struct compilation *wanted,

@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
+#include <time.h>
 #include <unistd.h>
 
 /* No file has to be there on every machine, and nobody can change what is loaded. The descriptor
@@ -72,28 +73,44 @@ static const char *difference(const stance_result *a, const stance_result *b, in
     return NULL;
 }
 
-bool load_check(const struct object *object, const stance_kernel *reference,
-                const struct objects_request *request, stance_message *message)
+enum { TOGETHER = 16 }; /* checks: of kernels with lanes some cost little more than one */
+
+static double thread_seconds(void)
 {
-    const size_t n = reference ? request->checks : 0;
-    stance_result *const expected = calloc(n + 1, sizeof *expected);
-    stance_result *const got = calloc(n + 1, sizeof *got);
-    bool good = expected && got;
-    if (!good)
-        no_memory(message);
-    if (good && n > 0) {
-        reference->run(request->check, expected, n);
-        object->kernel.run(request->check, got, n);
+    struct timespec now;
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+bool load_check(const struct object *object, const stance_kernel *reference,
+                const struct objects_request *request, double seconds, stance_message *message)
+{
+    struct together {
+        stance_case input[TOGETHER];
+        stance_result expected[TOGETHER], got[TOGETHER];
+    } *const t = malloc(sizeof *t);
+    const size_t n = reference ? request->checks : 0, turns = (n + TOGETHER - 1) / TOGETHER;
+    const double begin = thread_seconds();
+    bool good = t || no_memory(message);
+    for (size_t turn = 0; good && turn < turns; turn++) {
+        size_t count = 0;
+        if (turn > 0 && thread_seconds() - begin > seconds)
+            break;
+        for (size_t i = turn; i < n; i += turns) /* of each kind some */
+            t->input[count++] = request->check[i];
+        reference->run(t->input, t->expected, count);
+        object->kernel.run(t->input, t->got, count);
+        for (size_t i = 0; good && i < count; i++) {
+            const char *const what =
+                difference(&t->expected[i], &t->got[i], request->scene->coordinates);
+            good = !what ||
+                   complain(message,
+                            "%s for %s, compiled by %.60s, computes another %s in check %zu: "
+                            "refused; another compiler may be named by CC",
+                            object->kernel.method->name, object->kernel.isa, object->compiler, what,
+                            turn + i * turns);
+        }
     }
-    for (size_t i = 0; good && i < n; i++) {
-        const char *const what = difference(&expected[i], &got[i], request->scene->coordinates);
-        good = !what ||
-               complain(message,
-                        "%s for %s, compiled by %.60s, computes another %s in check %zu: "
-                        "refused; another compiler may be named by CC",
-                        object->kernel.method->name, object->kernel.isa, object->compiler, what, i);
-    }
-    free(expected);
-    free(got);
+    free(t);
     return good;
 }

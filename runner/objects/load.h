@@ -9,9 +9,9 @@
  * is filled in. */
 bool load_object(const struct image *image, struct object *object, stance_message *message);
 
-/* Whether an object computes what the reference does, in every bit. true where there is nothing to
- * compare with. */
+/* Whether an object computes what the reference does, in every bit, in as many checks as take so
+ * long, spread over all. true where there is nothing to compare with. */
 bool load_check(const struct object *object, const stance_kernel *reference,
-                const struct objects_request *request, stance_message *message);
+                const struct objects_request *request, double seconds, stance_message *message);
 
 #endif

@@ -39,12 +39,14 @@ struct objects_request {
     size_t count;
     const stance_case *check; /* [checks]; no trajectories */
     size_t checks;
+    double patience; /* s of processor time that the checks of an object from the cache may take */
     bool quiet; /* say nothing where all goes well */
     /* On rank 0: so little is to be computed that compiling would take longer. What is not kept is
      * then computed by the references. */
     bool brief;
     bool again; /* on rank 0: what was refused before is compiled again */
     bool looks; /* on rank 0: nothing is compiled, and the cache stays as it is, too */
+    bool later; /* references compute while rank 0 compiles: see objects_later */
     /* Told several times a second while rank 0 compiles, on every rank: true, to stop. NULL:
      * signals alone end it, and with it the process. */
     bool (*stop)(void *context);
@@ -52,13 +54,14 @@ struct objects_request {
 };
 
 /* Where a kernel comes from: the cache; a compiler, and is in the cache now, or could not be kept
- * there; or it is the reference, as there is none of this method, or none now, or none that
- * computes the same. */
+ * there; or it is the reference, as there is none of this method, or it is being compiled, or there
+ * is none now, or none that computes the same. */
 enum object_origin {
     OBJECT_KEPT,
     OBJECT_COMPILED,
     OBJECT_UNKEPT,
     OBJECT_REFERENCE,
+    OBJECT_COMING,
     OBJECT_MISSING,
     OBJECT_REFUSED
 };
@@ -76,13 +79,29 @@ struct object {
  * the last. */
 const char *objects_isa(size_t index);
 
+/* What comes later. It has what it needs of the request, but for its scene. */
+struct objects_later;
+
 /* Collective: the kernels of a request, object[count]. All ranks give the same tables; what they
- * want of them may differ. A method that is not compiled on demand is its reference.
+ * want of them may differ. A method that is not compiled on demand is its reference. *later is set
+ * (else NULL) where the request allows it and there is a reference for each: rank 0 goes on to
+ * compile what is COMING, of which the object is the reference until objects_later_take.
  * EXIT_DONE: all there. EXIT_USAGE: there is no reference either, and no compiler or one that
  * fails. EXIT_IO: the cache is refused, no memory. EXIT_INTERRUPTED: told to stop. Then `message`
  * is the same on every rank, and there is nothing to be released. */
 enum exit_code objects_take(const struct parallel *ranks, const struct objects_request *request,
-                            struct object *object, stance_message *message);
+                            struct object *object, struct objects_later **later,
+                            stance_message *message);
+
+/* Whether a rank does better to wait: the compilers need its core. */
+bool objects_later_wait(const struct objects_later *later, const struct parallel *ranks);
+/* On rank 0: whether the compilers have ended. */
+bool objects_later_ended(const struct objects_later *later);
+/* Each rank for itself, after that: object[] as objects_take would have left it. What is missing is
+ * said. */
+void objects_later_take(struct objects_later *later, struct object *object);
+/* Ends the compilers that are still at work. */
+void objects_later_free(struct objects_later *later);
 
 /* Their kernels are gone. */
 void objects_release(struct object *object, size_t count);

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { FEW_CHECKS = 8, OWN_CHECKS = 64, CHECKS = 256, CHECK_STEPS = 50 };
+enum { OWN_CHECKS = 64, CHECKS = 256, CHECK_STEPS = 50 };
 
 /* Steps that kernels which are built in compute in less time than it takes to compile others. */
 static const double brief_steps = 2e6;
@@ -195,6 +195,7 @@ enum exit_code kernels_take(struct kernels *kernels, const struct plan *plan,
     double steps;
     kernels->count = 0;
     kernels->brief = true;
+    kernels->later = NULL;
     if (!choice->again && all_ahead(plan))
         return EXIT_DONE;
     stance_case *const check = calloc(CHECKS, sizeof *check);
@@ -212,18 +213,17 @@ enum exit_code kernels_take(struct kernels *kernels, const struct plan *plan,
         .quiet = choice->quiet,
         .again = choice->again,
         .looks = choice->looks,
+        .later = choice->later && parallel_on_one_host(parallel), /* the cache is everybody's */
         .stop = plan->stop,
         .context = plan->stop_context,
     };
     request.brief = !choice->always && steps <= brief_steps;
     for (size_t k = 0; k < request.count; k++)
         request.brief &= wanted[k].reference != NULL;
-    if (request.brief || request.looks) { /* a small part of the work */
-        const double few = fmax(FEW_CHECKS, request.looks ? 0 : steps / (16 * CHECK_STEPS));
-        request.checks = (size_t)fmin((double)request.checks, few);
-    }
+    request.patience = request.looks ? 0 : request.brief ? 0.01 : 0.1;
     kernels->brief = request.brief;
-    const enum exit_code code = objects_take(parallel, &request, kernels->object, message);
+    const enum exit_code code =
+        objects_take(parallel, &request, kernels->object, &kernels->later, message);
     free(check);
     if (code != EXIT_DONE)
         return code;
@@ -234,28 +234,26 @@ enum exit_code kernels_take(struct kernels *kernels, const struct plan *plan,
     return code;
 }
 
-/* ---- what run would do ---------------------------------------------------------------------- */
-
-/* About how long a compiler takes, from a few mechanisms on one machine; s. */
-static double compiling_takes(const stance_scene *scene, const stance_method *method)
+void kernels_change(struct kernels *kernels)
 {
-    const double size = scene->coordinates + scene->contacts;
-    return (1 + 0.3 * size * size) * (strcmp(method->name, "capturing") == 0 ? 1 : 0.6);
+    objects_later_take(kernels->later, kernels->object);
+    objects_later_free(kernels->later);
+    kernels->later = NULL;
 }
 
-/* What a compiled kernel takes of the time of the one that reads the structure: cart-pole, acrobot
- * and hopper took 0.025 to 0.047 by avx512, 0.07 by scalar. */
-static double compiled_share(const char *isa)
+/* ---- what run would do ---------------------------------------------------------------------- */
+
+/* About how long a compiler takes, s, and what compiled kernels take of the time of those that are
+ * built in: by acrobot, cart-pole, rolling disc, compass, hopper, RABBIT, flat feet and walker2d on
+ * one machine, by midpoint and capturing. */
+static double compiling_takes(const stance_scene *scene)
 {
-    static const struct {
-        const char *isa;
-        double share;
-    } known[] = {
-        {"scalar", 0.08}, {"sse2", 0.1}, {"neon", 0.07}, {"avx2", 0.045}, {"avx512", 0.03}};
-    for (size_t i = 0; i < sizeof known / sizeof known[0]; i++)
-        if (strcmp(isa, known[i].isa) == 0)
-            return known[i].share;
-    return 0.08;
+    return 3 + 0.25 * scene->coordinates * scene->coordinates + 1.3 * scene->contacts;
+}
+
+static double compiled_share(const stance_scene *scene)
+{
+    return 0.03 + 0.01 * (scene->coordinates + scene->contacts);
 }
 
 struct kernels_outlook kernels_look(struct kernels *kernels, const struct plan *plan)
@@ -268,9 +266,8 @@ struct kernels_outlook kernels_look(struct kernels *kernels, const struct plan *
     outlook.brief = kernels->brief;
     for (size_t i = 0; code == EXIT_DONE && i < kernels->count; i++)
         if (kernels->object[i].origin == OBJECT_MISSING) {
-            outlook.compiling +=
-                compiling_takes(plan->scenario->scene, kernels->object[i].kernel.method);
-            outlook.share = compiled_share(instruction_set());
+            outlook.compiling += compiling_takes(plan->scenario->scene);
+            outlook.share = compiled_share(plan->scenario->scene);
         }
     return outlook;
 }
@@ -278,6 +275,8 @@ struct kernels_outlook kernels_look(struct kernels *kernels, const struct plan *
 void kernels_give_back(struct kernels *kernels)
 {
     instruction_set_prefer(NULL, NULL, 0);
+    objects_later_free(kernels->later);
+    kernels->later = NULL;
     objects_release(kernels->object, kernels->count);
     kernels->count = 0;
 }

@@ -13,6 +13,7 @@ struct kernels {
     const stance_kernel *kernel[OBJECTS_MOST];
     size_t count;
     bool brief; /* so little is to be computed that nothing is compiled for it */
+    struct objects_later *later; /* NULL: all are there */
 };
 
 /* All 0: the plan's methods for the instruction set in use, compiled where the plan's cases take
@@ -24,6 +25,7 @@ struct kernels_choice {
     bool again;  /* compiles what was refused before, and what is built in */
     bool quiet;  /* says nothing where all goes well */
     bool looks;  /* compiles nothing, and leaves the cache as it is */
+    bool later;  /* those that are built in compute while others are compiled */
 };
 
 /* Collective: takes what is chosen; from then on instruction_set_kernel gives them. Built-in scenes
@@ -41,6 +43,9 @@ struct kernels_outlook {
     bool brief;
 };
 struct kernels_outlook kernels_look(struct kernels *kernels, const struct plan *plan);
+/* Each rank for itself and between two streams, when objects_later_ended on rank 0: takes what has come
+ * later. */
+void kernels_change(struct kernels *kernels);
 /* "avx2", "avx512, scalar": what the plan's methods compute with. */
 void kernels_instruction_sets(const struct plan *plan, char text[INSTRUCTION_SETS_SIZE]);
 void kernels_give_back(struct kernels *kernels);

@@ -18,7 +18,7 @@ enum {
     MPI_UINT8_T
 };
 enum { MPI_SUM, MPI_MAX, MPI_MIN, MPI_REPLACE, MPI_NO_OP };
-enum { MPI_IN_PLACE, MPI_INFO_NULL, MPI_STATUS_IGNORE, MPI_MAX_LIBRARY_VERSION_STRING = 64 };
+enum { MPI_THREAD_FUNNELED, MPI_IN_PLACE, MPI_INFO_NULL, MPI_STATUS_IGNORE, MPI_MAX_LIBRARY_VERSION_STRING = 64 };
 
 static inline void never_called(int ignored, ...)
 {
@@ -26,7 +26,7 @@ static inline void never_called(int ignored, ...)
     abort();
 }
 
-#define MPI_Init(argc, argv) never_called(0)
+#define MPI_Init_thread(argc, argv, required, provided) never_called(required, provided)
 #define MPI_Comm_rank(...) never_called(0, __VA_ARGS__)
 #define MPI_Comm_size(...) never_called(0, __VA_ARGS__)
 #define MPI_Comm_split_type(...) never_called(0, __VA_ARGS__)

@@ -116,7 +116,8 @@ struct parallel parallel_start(void)
     if (was_launched()) {
         choose_networks();
         deadline_launch(true);
-        MPI_Init(NULL, NULL);
+        int provided; /* MPI is called by one thread; another compiles */
+        MPI_Init_thread(NULL, NULL, MPI_THREAD_FUNNELED, &provided);
         deadline_launch(false);
         MPI_Comm_rank(MPI_COMM_WORLD, &parallel.rank);
         MPI_Comm_size(MPI_COMM_WORLD, &parallel.size);

@@ -12,7 +12,14 @@
 #include <stdint.h>
 
 /* Numbers that all ranks share while cases are computed; they live on rank 0. */
-enum parallel_counter { COUNTER_CHUNK, COUNTER_STOP, COUNTER_DONE, COUNTER_KEPT, COUNTERS };
+enum parallel_counter {
+    COUNTER_CHUNK,
+    COUNTER_STOP,
+    COUNTER_DONE,
+    COUNTER_KEPT,
+    COUNTER_KERNELS,
+    COUNTERS
+};
 
 struct parallel_shared; /* the counters' memory, private to parallel.c */
 

@@ -22,7 +22,7 @@ struct estimate {
     uint64_t size;
     double seconds; /* on one rank; negative: no case can be tried, NAN: these take too long */
     bool bound;
-    double compiling; /* s that run needs first, for kernels that it compiles; 0: it does not */
+    double compiling; /* s that a compiler takes while others compute; 0: none does */
     double searching; /* s on one rank that a search takes, as `seconds` */
     uint64_t coarse;  /* points of the coarse lattice; 0: the map is not refined */
     double probes;    /* expected number beyond these */
@@ -231,7 +231,7 @@ static void report_cost(const struct estimate *e)
     else
         printf("cost        %s %s on %d rank%s%s\n", e->bound ? "at most about" : "about", text,
                e->ranks, e->ranks == 1 ? "" : "s",
-               e->compiling > 0 ? ", with the kernel that run compiles for this robot first" : "");
+               e->compiling > 0 ? ", with the kernel that run compiles for this robot" : "");
 }
 
 static void report_text(const struct estimate *e)
@@ -268,7 +268,9 @@ static void report_text(const struct estimate *e)
     if (e->compiling > 0) {
         const double unit = pow(10, floor(log10(e->compiling))); /* more is not known */
         text_of_seconds(text, sizeof text, round(e->compiling / unit) * unit);
-        printf("compiling   about %s first, once for robots of this structure\n", text);
+        printf("compiling   about %s, once for robots of this structure; till then kernels that "
+               "are built in compute\n",
+               text);
     }
     report_cost(e);
     if (!s->search.given)

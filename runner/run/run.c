@@ -279,7 +279,7 @@ static void stage_kernels(struct run *run)
         return;
     if (run->resume && !run->store) /* later: they are tried on cases, whose designs are there */
         return;
-    const struct kernels_choice choice = {.quiet = run->options.quiet};
+    const struct kernels_choice choice = {.quiet = run->options.quiet, .later = true};
     const enum exit_code code =
         kernels_take(&run->kernels, &run->plan, &choice, &run->parallel, &message);
     if (code == EXIT_INTERRUPTED)
@@ -381,6 +381,7 @@ static void stage_compute(struct run *run)
     run->work = (struct work){
         .plan = &run->plan,
         .parallel = &run->parallel,
+        .kernels = &run->kernels,
         .heartbeat = run->parallel.rank == 0 ? &run->heartbeat : NULL,
         .beats = run->work.beats,
         .store = run->store,

@@ -8,13 +8,13 @@
  *
  * A kernel is of one method. Where methods are swept, streams follow each other: each takes the
  * rows of its method from the chunk in hand and, once none but its own are left of that, from the
- * next one. So lanes run empty once a chunk.
+ * next one. So lanes run empty once a chunk, and once more where a compiled kernel comes in the
+ * middle: all have the same bits, so that it does not matter which has computed a row.
  */
 #include "work.h"
 
 #include "runner/base/message.h"
 #include "runner/base/units.h"
-#include "runner/plan/instruction_set.h"
 #include "runner/ranks/crash.h"
 #include "runner/ranks/deadline.h"
 
@@ -30,6 +30,9 @@ enum {
     MAX_METHODS = 32,
     BLOCKS_OF_METHODS = 16, /* open at once where methods are swept */
 };
+
+/* s: the first rows are computed at once, whoever needs the core. */
+static const double at_once = 1;
 
 static volatile sig_atomic_t stop_asked;
 
@@ -100,7 +103,10 @@ struct job {
     struct task *tasks, *idle_task; /* all; those that are in no lane */
     uint64_t ended, kept;           /* not yet told to the counters */
     double look_at;                 /* when next */
-    double checking;                /* s spent on what the file already holds */
+    double checking, waiting;       /* s spent on what the file already holds, and for kernels */
+    bool later;                     /* there are kernels that come later ... */
+    bool all_drawn;                 /* ... and no rows that no rank has drawn */
+    bool came;                      /* kernels that were to come later */
     bool leaving;                   /* no more cases: told to stop, or broken */
     bool broken;                    /* nothing can be written; *message says why */
     bool told;                      /* ... and the others know that we are to stop */
@@ -420,9 +426,18 @@ static bool find_row(struct job *job, struct block **block, size_t *slot)
     }
 }
 
+/* Whether this rank leaves its core to the compilers; not with the last rows in hand. */
+static bool gives_way(const struct job *job)
+{
+    return job->later && !job->all_drawn && clock_seconds() - job->start > at_once &&
+           objects_later_wait(job->work->kernels->later, job->work->parallel);
+}
+
 static bool next_case(void *context, const stance_case **input, stance_result **result)
 {
     struct job *job = context;
+    if (job->came || gives_way(job))
+        return false;
     struct block *block;
     size_t slot;
     int method;
@@ -520,6 +535,20 @@ bool work_told_to_stop(const struct work *work)
     return parallel_add(work->parallel, COUNTER_STOP, asked) != 0 || asked;
 }
 
+/* Rank 0 tells the others that the compilers have ended, also while it waits for them. */
+static void look_for_kernels(struct job *job)
+{
+    const struct work *const work = job->work;
+    uint64_t first, count;
+    if (!job->later || job->came)
+        return;
+    const uint64_t chunk = (uint64_t)parallel_add(work->parallel, COUNTER_CHUNK, 0);
+    job->all_drawn =
+        !schedule_chunk(job->schedule.rows.count, work->parallel->size, chunk, &first, &count);
+    const bool ended = work->parallel->rank == 0 && objects_later_ended(work->kernels->later);
+    job->came = parallel_add(work->parallel, COUNTER_KERNELS, ended) != 0 || ended;
+}
+
 /* Called about every millisecond: what must not wait for the end of a case. true: leave. On rank 0
  * it always looks at the counters, which live there, so that others get at them. */
 static bool attend(void *context)
@@ -542,6 +571,7 @@ static bool attend(void *context)
         report(job);
         parallel_beat(work->parallel, ++job->work->beats);
         job->leaving |= parallel_add(work->parallel, COUNTER_STOP, 0) != 0;
+        look_for_kernels(job);
         job->look_at = now + schedule_look_interval(ranks);
     } else if (work->parallel->rank == 0) {
         job->leaving |= parallel_add(work->parallel, COUNTER_STOP, 0) != 0;
@@ -562,6 +592,7 @@ static void wait_for_others(void *context)
         fprintf(stderr, "stance run: rank %d has said nothing for %d s: stops without it\n", lost,
                 (int)DEADLINE_LOST);
     bool stop = lost > 0 || asked_to_stop(job->work, now);
+    look_for_kernels(job);
     if (!job->told && (stop || now >= job->look_at)) {
         job->look_at = now + schedule_look_interval(job->work->parallel->size);
         stop |= parallel_add(job->work->parallel, COUNTER_STOP, stop) != 0;
@@ -604,6 +635,30 @@ static bool find_method(struct job *job)
     return false;
 }
 
+static void take_kernels(struct job *job)
+{
+    for (int m = 0; m < MAX_METHODS && stance_methods()[m]; m++)
+        job->kernel[m] =
+            instruction_set_kernel(job->plan->scenario->scene, stance_methods()[m]);
+}
+
+/* Before a stream: kernels that have come are taken, and those that are to come waited for if they
+ * come sooner then. false: leave. */
+static bool await_kernels(struct job *job)
+{
+    const double start = clock_seconds();
+    const bool waits = gives_way(job);
+    while (waits && !job->came && !job->all_drawn && !attend(job))
+        usleep(1000);
+    job->waiting += waits ? clock_seconds() - start : 0;
+    if (job->came) {
+        kernels_change(job->work->kernels);
+        take_kernels(job);
+        job->later = job->came = false;
+    }
+    return !job->leaving;
+}
+
 static void job_free(struct job *job)
 {
     free_blocks(job->oldest);
@@ -627,17 +682,17 @@ bool work_run(struct work *work, const struct rows *only, uint8_t *label, stance
         .message = message,
         .capacity = schedule_block_rows(work->store ? store_row_size(work->store) : 1),
         .start = start,
+        .later = work->kernels && work->kernels->later,
     };
     uint64_t first, largest;
     if (schedule_chunk(job.schedule.rows.count, work->parallel->size, 0, &first, &largest))
         job.capacity = job.capacity < largest ? job.capacity : (size_t)largest;
     if (work->progress.from <= 0)
         work->progress = progress_begin(work->quiet);
-    for (int m = 0; m < MAX_METHODS && stance_methods()[m]; m++)
-        job.kernel[m] = instruction_set_kernel(work->plan->scenario->scene, stance_methods()[m]);
+    take_kernels(&job);
     deadline_rescue(write_open, &job);
     const stance_feed feed = {&job, next_case, case_done, attend};
-    while (find_method(&job)) {
+    while (find_method(&job) && await_kernels(&job)) {
         for (struct block *block = job.oldest; block; block = block->next)
             block->cursor = 0;
         job.at = job.oldest;
@@ -648,7 +703,7 @@ bool work_run(struct work *work, const struct rows *only, uint8_t *label, stance
     if (job.leaving)
         deadline_begin();
     report(&job);
-    work->seconds += clock_seconds() - start - job.checking;
+    work->seconds += clock_seconds() - start - job.checking - job.waiting;
     meet(&job);
     progress_end(&work->progress);
     job_free(&job);

@@ -11,6 +11,7 @@
 
 #include "runner/base/progress.h"
 #include "runner/base/units.h"
+#include "runner/plan/kernels.h"
 #include "runner/plan/plan.h"
 #include "runner/plan/schedule.h"
 #include "runner/store/store.h"
@@ -21,6 +22,7 @@ struct work {
     const struct plan *plan;
     struct store *store;
     const struct parallel *parallel; /* with shared counters */
+    struct kernels *kernels;         /* of which some come later; may be NULL */
     bool resume;                     /* rows that the file holds whole are kept */
     bool quiet;                      /* no progress */
     double start;                    /* clock_seconds() when the program began */
