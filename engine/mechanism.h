@@ -14,9 +14,9 @@
 #include "stance.h"
 
 enum {
-    STANCE_NAME = 32,         /* bytes of a name, with its end */
-    STANCE_MAX_BODIES = 16,   /* fixed ones included */
-    STANCE_MAX_ELEMENTS = 6,  /* points, discs, soles */
+    STANCE_NAME = 64,         /* bytes of a name, with its end */
+    STANCE_MAX_BODIES = 31,   /* fixed ones included */
+    STANCE_MAX_ELEMENTS = 24, /* points, discs, soles */
     STANCE_MAX_BRANCHES = 64, /* equilibria */
 };
 

@@ -13,13 +13,13 @@
 #include <stdint.h>
 
 enum {
-    STANCE_MAX_COORDINATES = 9,
-    STANCE_MAX_CONTACTS = 12,
-    STANCE_MAX_ACTUATORS = 6,
-    STANCE_MAX_POSTURE = 8, /* coordinates that a posture law acts on */
-    STANCE_MAX_ROBOT = 97,  /* parameters of a scene's body; the last three are others: */
-    STANCE_MAX_ANGLES = 7,  /* joints of a mechanism; a rail is none, a free root one */
-    STANCE_MAX_NAMED = 8,   /* points of a mechanism that have a name */
+    STANCE_MAX_COORDINATES = 13,
+    STANCE_MAX_CONTACTS = 30, /* points, discs, ends of soles and stops */
+    STANCE_MAX_ACTUATORS = 8,
+    STANCE_MAX_POSTURE = 12, /* coordinates that a posture law acts on */
+    STANCE_MAX_ROBOT = 257,  /* parameters of a scene's body; the last three are others: */
+    STANCE_MAX_ANGLES = 11,  /* joints of a mechanism; a rail is none, a free root one */
+    STANCE_MAX_NAMED = 8,    /* points of a mechanism that have a name */
     STANCE_MAX_PUSHES = 4,
     STANCE_MAX_DELAY = 16,                           /* samples */
     STANCE_MAX_WORDS = 32,                           /* that an answer may be, if it is a code */
@@ -27,7 +27,7 @@ enum {
                                                       * hip fallen, in leg lengths */
     STANCE_ROBOT_GRAVITY,                            /* m/s^2 */
     STANCE_ROBOT_SLOPE,      /* rad, of the ground; positive: +x is downhill */
-    STANCE_MAX_POINTS = 192, /* points of a stick figure */
+    STANCE_MAX_POINTS = 512, /* points of a stick figure */
 };
 
 #define STANCE_GRAVITY 9.81    /* m/s^2 */
@@ -173,8 +173,8 @@ struct stance_scene {
 /* The choices of as many coordinates as there are actuators, which can control them, in order: with
  * two (0, 1), (0, 2), ... coordinate[actuators]. False: there is no such selection. */
 bool stance_selection(const stance_scene *scene, int index, int *coordinate);
-enum { STANCE_MAX_SELECTIONS = 126 }; /* of 9 coordinates 4 or 5 */
-_Static_assert(STANCE_MAX_COORDINATES <= 9, "room for all selections");
+enum { STANCE_MAX_SELECTIONS = 1716 }; /* of 13 coordinates 6 or 7 */
+_Static_assert(STANCE_MAX_COORDINATES <= 13, "room for all selections");
 
 /* The robot that a scene has by default, with the numbers that are not the body's.
  * robot[STANCE_MAX_ROBOT]. */

@@ -198,9 +198,9 @@
     {"    rotor:", "    vtrunk:",
      "10:5: robot.bodies.vtrunk: the rate of the body in line 5 is called so, too: choose another "
      "name"},
-    {"    rotor:", "    a_body_with_a_name_of_32_letters_:",
-     "10:5: robot.bodies: 'a_body_with_a_name_of_32_letters_' is no name: a name has at most 31 "
-     "letters"},
+    {"    rotor:", "    a_body_with_a_name_of_64_letters_xxxxxxxxxxxxxxxxxxxxxxxxxxxxxxx:",
+     "10:5: robot.bodies: 'a_body_with_a_name_of_64_letters_xxxxxxxxxxxxxxxxxxxxxxxxxxxxxxx' "
+     "is no name: a name has at most 63 letters"},
     {"    foot1:", "    trunk:",
      "12:5: robot.contacts.trunk: the part in line 5 is called so, too: choose another name"},
     {"    foot1:", "    foot2_toe:",
@@ -210,38 +210,59 @@
      "15:5: robot.points.foot1: the part in line 12 is called so, too: choose another name"},
     {"    hip1:", "    knee1:", "18:5: duplicate key 'knee1' (first in line 17)"},
     {"    rotor: {joint: fixed",
-     "    a: {joint: hinge, parent: trunk, mass: 1, centre: [0, 1]}\n    b: {joint: hinge, parent: "
-     "trunk, mass: 1, centre: [0, 1]}\n    c: {joint: hinge, parent: trunk, mass: 1, centre: [0, "
-     "1]}\n    rotor: {joint: fixed",
-     "5:5: robot.bodies: 8 of them turn or slide against their parents; at most 7"},
+     "    a0: {joint: hinge, parent: trunk, mass: 1, centre: [0, 1]}\n    a1: {joint: hinge, p"
+     "arent: trunk, mass: 1, centre: [0, 1]}\n    a2: {joint: hinge, parent: trunk, mass: 1, c"
+     "entre: [0, 1]}\n    a3: {joint: hinge, parent: trunk, mass: 1, centre: [0, 1]}\n    a4: "
+     "{joint: hinge, parent: trunk, mass: 1, centre: [0, 1]}\n    a5: {joint: hinge, parent: t"
+     "runk, mass: 1, centre: [0, 1]}\n    a6: {joint: hinge, parent: trunk, mass: 1, centre: ["
+     "0, 1]}\n    rotor: {joint: fixed",
+     "5:5: robot.bodies: 12 of them turn or slide against their parents; at most 11"},
     {"    rotor: {joint: fixed",
-     "    a: {joint: slide, parent: trunk, mass: 1}\n    b: {joint: slide, parent: a, mass: 1}\n   "
-     " "
-     "c: {joint: slide, parent: b, mass: 1}\n    rotor: {joint: fixed",
-     "5:5: robot.bodies: 8 of them turn or slide against their parents; at most 7"},
+     "    a0: {joint: slide, parent: trunk, mass: 1}\n    a1: {joint: slide, parent: a0, mass:"
+     " 1}\n    a2: {joint: slide, parent: a1, mass: 1}\n    a3: {joint: slide, parent: a2, mas"
+     "s: 1}\n    a4: {joint: slide, parent: a3, mass: 1}\n    a5: {joint: slide, parent: a4, m"
+     "ass: 1}\n    a6: {joint: slide, parent: a5, mass: 1}\n    rotor: {joint: fixed",
+     "5:5: robot.bodies: 12 of them turn or slide against their parents; at most 11"},
     {"    rotor: {joint: fixed",
-     "    b0: {joint: fixed, parent: trunk}\n    b1: {joint: fixed, parent: trunk}\n    b2: "
-     "{joint: fixed, parent: trunk}\n    b3: {joint: fixed, parent: trunk}\n    b4: {joint: fixed, "
-     "parent: trunk}\n    b5: {joint: fixed, parent: trunk}\n    b6: {joint: fixed, parent: "
-     "trunk}\n    b7: {joint: fixed, parent: trunk}\n    b8: {joint: fixed, parent: trunk}\n    "
-     "b9: {joint: fixed, parent: trunk}\n    b10: {joint: fixed, parent: trunk}\n    b11: {joint: "
-     "fixed, parent: trunk}\n    rotor: {joint: fixed",
-     "5:5: robot.bodies: 18 of them; at most 16"},
+     "    b0: {joint: fixed, parent: trunk}\n    b1: {joint: fixed, parent: trunk}\n    b2: {j"
+     "oint: fixed, parent: trunk}\n    b3: {joint: fixed, parent: trunk}\n    b4: {joint: fixe"
+     "d, parent: trunk}\n    b5: {joint: fixed, parent: trunk}\n    b6: {joint: fixed, parent:"
+     " trunk}\n    b7: {joint: fixed, parent: trunk}\n    b8: {joint: fixed, parent: trunk}\n "
+     "   b9: {joint: fixed, parent: trunk}\n    b10: {joint: fixed, parent: trunk}\n    b11: {"
+     "joint: fixed, parent: trunk}\n    b12: {joint: fixed, parent: trunk}\n    b13: {joint: f"
+     "ixed, parent: trunk}\n    b14: {joint: fixed, parent: trunk}\n    b15: {joint: fixed, pa"
+     "rent: trunk}\n    b16: {joint: fixed, parent: trunk}\n    b17: {joint: fixed, parent: tr"
+     "unk}\n    b18: {joint: fixed, parent: trunk}\n    b19: {joint: fixed, parent: trunk}\n  "
+     "  b20: {joint: fixed, parent: trunk}\n    b21: {joint: fixed, parent: trunk}\n    b22: {"
+     "joint: fixed, parent: trunk}\n    b23: {joint: fixed, parent: trunk}\n    b24: {joint: f"
+     "ixed, parent: trunk}\n    b25: {joint: fixed, parent: trunk}\n    rotor: {joint: fixed",
+     "5:5: robot.bodies: 32 of them; at most 31"},
     {"    head:",
      "    p0: {body: trunk}\n    p1: {body: trunk}\n    p2: {body: trunk}\n    p3: {body: trunk}\n "
      "   p4: {body: trunk}\n    p5: {body: trunk}\n    p6: {body: trunk}\n    p7: {body: trunk}\n  "
      "  head:",
      "15:5: robot.points: 9 of them; at most 8"},
     {"    foot1:",
-     "    c0: {body: trunk, at: [0, 0]}\n    c1: {body: trunk, at: [0, 0]}\n    c2: {body: trunk, "
-     "at: [0, 0]}\n    c3: {body: trunk, at: [0, 0]}\n    c4: {body: trunk, at: [0, 0]}\n    "
-     "foot1:",
-     "12:5: robot.contacts: 7 of them; at most 6"},
+     "    c0: {body: trunk, at: [0, 0]}\n    c1: {body: trunk, at: [0, 0]}\n    c2: {body: tru"
+     "nk, at: [0, 0]}\n    c3: {body: trunk, at: [0, 0]}\n    c4: {body: trunk, at: [0, 0]}\n "
+     "   c5: {body: trunk, at: [0, 0]}\n    c6: {body: trunk, at: [0, 0]}\n    c7: {body: trun"
+     "k, at: [0, 0]}\n    c8: {body: trunk, at: [0, 0]}\n    c9: {body: trunk, at: [0, 0]}\n  "
+     "  c10: {body: trunk, at: [0, 0]}\n    c11: {body: trunk, at: [0, 0]}\n    c12: {body: tr"
+     "unk, at: [0, 0]}\n    c13: {body: trunk, at: [0, 0]}\n    c14: {body: trunk, at: [0, 0]}"
+     "\n    c15: {body: trunk, at: [0, 0]}\n    c16: {body: trunk, at: [0, 0]}\n    c17: {body"
+     ": trunk, at: [0, 0]}\n    c18: {body: trunk, at: [0, 0]}\n    c19: {body: trunk, at: [0,"
+     " 0]}\n    c20: {body: trunk, at: [0, 0]}\n    c21: {body: trunk, at: [0, 0]}\n    c22: {"
+     "body: trunk, at: [0, 0]}\n    foot1:",
+     "12:5: robot.contacts: 25 of them; at most 24"},
     {"    foot1:",
-     "    c0: {body: trunk, from: [0, 0], to: [1, 0]}\n    c1: {body: trunk, from: [0, 0], to: [1, "
-     "0]}\n    c2: {body: trunk, from: [0, 0], to: [1, 0]}\n    c3: {body: trunk, from: [0, 0], "
-     "to: [1, 0]}\n    foot1:",
-     "4:3: robot: 15 contacts, counting both ends of soles and stops: at most 12 fit"},
+     "    c0: {body: trunk, from: [0, 0], to: [1, 0]}\n    c1: {body: trunk, from: [0, 0], to:"
+     " [1, 0]}\n    c2: {body: trunk, from: [0, 0], to: [1, 0]}\n    c3: {body: trunk, from: ["
+     "0, 0], to: [1, 0]}\n    c4: {body: trunk, from: [0, 0], to: [1, 0]}\n    c5: {body: trun"
+     "k, from: [0, 0], to: [1, 0]}\n    c6: {body: trunk, from: [0, 0], to: [1, 0]}\n    c7: {"
+     "body: trunk, from: [0, 0], to: [1, 0]}\n    c8: {body: trunk, from: [0, 0], to: [1, 0]}"
+     "\n    c9: {body: trunk, from: [0, 0], to: [1, 0]}\n    c10: {body: trunk, from: [0, 0], "
+     "to: [1, 0]}\n    c11: {body: trunk, from: [0, 0], to: [1, 0]}\n    foot1:",
+     "4:3: robot: 31 contacts, counting both ends of soles and stops: at most 30 fit"},
     {"robot:\n  bodies:\n    cart: {joint: slide, axis: [1, 0], mass: 1, limits: [-2, 2]}\n    "
      "pole: {joint: hinge, parent: cart, mass: 0.1, centre: [0, 0.5]}\n  actuators:\n    push: "
      "{body: cart, limit: 20}\n",

@@ -123,7 +123,9 @@ static inline stance_scene *random_scene(int tree, double slides)
     stance_scene *scene = NULL;
     dice = 1000003u * (uint64_t)tree + 11;
     do {
-        random_mechanism(&m, whole(1, STANCE_MAX_ANGLES), slides, STANCE_MAX_ELEMENTS);
+        const bool large = sometimes(0.2); /* as far as the limits go */
+        random_mechanism(&m, whole(1, large ? STANCE_MAX_ANGLES : 7), slides,
+                         large ? STANCE_MAX_ELEMENTS : 6);
         for (int p = 0; p < m.points; p++) {
             stance_point_numbers *const n = &m.value.point[p];
             m.point[p].pushed = sometimes(0.5) ? STANCE_FORCE : STANCE_IMPULSE;

@@ -201,14 +201,17 @@ check "--version tells the instruction sets" test ${#sets[@]} -ge 1
 names_set() { "$python" -c "
 import sys, h5py
 assert h5py.File(sys.argv[1]).attrs['instruction_set'] in (sys.argv[2], sys.argv[2].encode())" "$1" "$2"; }
+fastest=$("$stance" --version | sed -n 's/.*in use: //p')
 for set in "${sets[@]}"; do
+    built=$set # with lanes: `make ISAS=all` has all, else what is not compiled for the scene has the most
+    ((${#sets[@]} > 2)) || built=$fastest
     check "$set: --version" sh -c "STANCE_ISA=$set '$stance' --version | grep -q 'in use: $set\$'"
     for name in drop basin_both_feet walk_attempt; do
         reduce=()
         [ $name = basin_both_feet ] && reduce=(--set 'sweep.grid[0].count=24' --set 'sweep.grid[1].count=24')
         check "$set: run $name" env STANCE_ISA="$set" "$stance" run scenarios/$name.yaml "${reduce[@]}" --quiet \
             -o "$work/$name-$set.h5"
-        check "$set: the file says so" names_set "$work/$name-$set.h5" "$set"
+        check "$set: the file says so" names_set "$work/$name-$set.h5" "$built"
         check "$set: compare says identical" "$stance" compare "$work/$name.h5" "$work/$name-$set.h5"
     done
 done

@@ -53,7 +53,7 @@ result $? "... warns once, whatever the ranks"
 
 export STANCE_CACHE=$scratch/cache
 expect "the cost of a robot of one's own" 0 "$stance" check "$shipped/mechanisms/cart_pole.yaml"
-says "... is with the kernel that is compiled" "^cost *.*about .* that run compiles for this robot first"
+says "... is with the kernel that is compiled" "^cost *.*about .* that run compiles for this robot$"
 says "... which takes its own time" "^compiling *about .*, once for robots of this structure"
 [ ! -e "$STANCE_CACHE" ]
 result $? "... and nothing is made"

@@ -93,13 +93,13 @@ static void advance_load(struct advance *a, int lane, const stance_case *c)
     lane_set(&a->ordinary, lane, 0);
     lane_set(&a->wait, lane, 0);
     lane_set(&a->turns, lane, 0);
-    for (int i = 0; i < SCENE_CONTACTS; i++)
+    for (int i = 0; i < OWN_CONTACTS; i++)
         lane_set(&a->stood[i], lane, 0);
     report_clear_lane(&a->sum, lane);
 }
 static void advance_forget(struct advance *a, mask m)
 {
-    for (int i = 0; i < SCENE_CONTACTS; i++)
+    for (int i = 0; i < OWN_CONTACTS; i++)
         a->stood[i] = choose(m, lanes_of(0), a->stood[i]);
     a->near = choose(m, lanes_of(1), a->near);
 }
@@ -129,7 +129,7 @@ static inline mask capture_rebounds(const struct setting *set, const struct moti
 {
     const lanes slow = 2 * lanes_max(acceleration, lanes_of(STANCE_GRAVITY)) * BETWEEN_LOWEST;
     mask fast = MASK_NONE;
-    for (int c = 0; c < SCENE_CONTACTS; c++) {
+    for (int c = 0; c < OWN_CONTACTS; c++) {
         const mask near =
             mask_less_equal(now->gap[c], lanes_of(1e-9) + 2 * h * lanes_abs(now->approach[c]));
         fast |= near & mask_less(lanes_of(0), set->may_touch[c]) &
@@ -144,7 +144,7 @@ static inline mask capture_strikes(const struct setting *set, const struct motio
                                    const struct step_report *report)
 {
     mask lost = MASK_NONE;
-    for (int c = 0; c < SCENE_CONTACTS; c++)
+    for (int c = 0; c < OWN_CONTACTS; c++)
         lost |= mask_less(lanes_of(0), set->may_touch[c]) &
                 mask_less_equal(now->gap[c], lanes_of(STEP_CLOSED)) &
                 mask_less(now->approach[c], lanes_of(-BETWEEN_REST)) &
@@ -161,7 +161,7 @@ static inline mask capture_implicit(const struct setting *set, const struct moti
 {
     struct motion here = *now;
     motion_energy(set, &here);
-    for (int c = 0; c < SCENE_CONTACTS; c++) { /* any impulse of a contact that stands, or none */
+    for (int c = 0; c < OWN_CONTACTS; c++) { /* any impulse of a contact that stands, or none */
         here.impulse[c][0] = stood[c];
         here.impulse[c][1] = lanes_of(0);
     }
@@ -169,7 +169,7 @@ static inline mask capture_implicit(const struct setting *set, const struct moti
     struct step_report whole, half;
     struct setting law = *set;
     const mask rebounds = capture_rebounds(set, now, h, acceleration);
-    for (int c = 0; c < SCENE_CONTACTS; c++)
+    for (int c = 0; c < OWN_CONTACTS; c++)
         law.restitution[c] = choose(rebounds, set->restitution[c], lanes_of(0));
     report_clear(report);
     *next = *now;
@@ -444,7 +444,7 @@ static inline mask capture_attempt(struct advance *a, const struct setting *set,
     capture_inside(set, now, &step.end, length, good, &step.report);
     choose_all(good, &step.end, now, sizeof step.end);
     capture_add(a, good, live, &step.report);
-    for (int c = 0; c < SCENE_CONTACTS; c++)
+    for (int c = 0; c < OWN_CONTACTS; c++)
         a->stood[c] = choose(crossed, none, choose(good, stood[c], a->stood[c]));
     a->done = choose(crossed, a->done + interval, choose(good, a->done + length, a->done));
 

@@ -78,7 +78,7 @@ static int event_rates(realtype tau, N_Vector y, N_Vector rate, void *data)
         to[SCENE_COORDINATES + i] = e.acceleration[i];
         sum += e.acceleration[i] + w[i];
     }
-    for (int c = 0; c < SCENE_CONTACTS; c++) {
+    for (int c = 0; c < OWN_CONTACTS; c++) {
         to[EVENT_IMPULSE + 2 * c] = e.force[c][0];
         to[EVENT_IMPULSE + 2 * c + 1] = e.force[c][1];
         to[EVENT_SLIDE + c] =
@@ -86,7 +86,7 @@ static int event_rates(realtype tau, N_Vector y, N_Vector rate, void *data)
                 ? fabs(e.u[c][1])
                 : 0;
     }
-    for (int i = 0; i < SCENE_ACTUATORS; i++)
+    for (int i = 0; i < OWN_ACTUATORS; i++)
         to[EVENT_INTEGRAL + i] = e.integral_rate[i];
     to[EVENT_WORK] =
         motion_work(&a->problem.set->body, 1, a->problem.begin + tau, &e.trig, e.torque, w, w);
@@ -166,7 +166,7 @@ static bool event_create(struct advance *a, double longest)
 {
     if (a->arkode)
         return true;
-    int falling[EVENT_MARGINS];
+    int falling[EVENT_ROOM];
     for (int k = 0; k < EVENT_MARGINS; k++)
         falling[k] = -1;
     ARKodeButcherTable table = event_table();
@@ -181,8 +181,9 @@ static bool event_create(struct advance *a, double longest)
     good = good && a->arkode && ERKStepSetErrHandlerFn(a->arkode, event_silent, NULL) == 0 &&
            ERKStepSetUserData(a->arkode, a) == 0 && ERKStepSetTable(a->arkode, table) == 0 &&
            ERKStepWFtolerances(a->arkode, event_weights) == 0 &&
-           ERKStepRootInit(a->arkode, EVENT_MARGINS, event_roots) == 0 &&
-           ERKStepSetRootDirection(a->arkode, falling) == 0 &&
+           (EVENT_MARGINS == 0 ||
+            (ERKStepRootInit(a->arkode, EVENT_MARGINS, event_roots) == 0 &&
+             ERKStepSetRootDirection(a->arkode, falling) == 0)) &&
            ERKStepSetInterpolantDegree(a->arkode, 3) == 0 &&
            ERKStepSetMaxStep(a->arkode, longest) == 0 &&
            ERKStepSetMaxFirstGrowth(a->arkode, 20) == 0; /* restarts are frequent */
@@ -199,7 +200,7 @@ static void advance_load(struct advance *a, int lane, const stance_case *c)
     advance_free(a);
     a->tolerance = c->tolerance;
     a->next = EVENT_LONGEST;
-    for (int i = 0; i < SCENE_CONTACTS; i++)
+    for (int i = 0; i < OWN_CONTACTS; i++)
         a->stood[i] = 0;
 }
 
@@ -213,7 +214,7 @@ static void advance_forget(struct advance *a, mask m)
 static bool event_restart(struct advance *a, const struct event_point *from, double target,
                           double length)
 {
-    memcpy(NV_DATA_S(a->y), from->y, sizeof from->y);
+    memcpy(NV_DATA_S(a->y), from->y, EVENT_SIZE * sizeof(double));
     return ERKStepReset(a->arkode, from->tau, a->y) == 0 &&
            ERKStepSetInitStep(a->arkode, fmin(length, target - from->tau)) == 0 &&
            ERKStepSetStopTime(a->arkode, target) == 0;
@@ -234,7 +235,7 @@ static enum event_result event_step(struct advance *a, double target, struct eve
     if (flag == ARK_ROOT_RETURN && (ERKStepGetCurrentTime(a->arkode, &to->tau) != 0 ||
                                     ERKStepGetDky(a->arkode, to->tau, 0, a->y) != 0))
         return EVENT_FAILED;
-    memcpy(to->y, NV_DATA_S(a->y), sizeof to->y);
+    memcpy(to->y, NV_DATA_S(a->y), EVENT_SIZE * sizeof(double));
     event_look(&a->problem, to);
     if (flag == ARK_ROOT_RETURN)
         return EVENT_FOUND;
@@ -269,7 +270,7 @@ static void event_pass(struct advance *a, const struct event_point *to, struct e
     struct inside_values values = {.parabola = true};
     struct inside_peaks peaks;
     struct dynamics e;
-    double y[EVENT_SIZE] = {0};
+    double y[EVENT_SIZE_ROOM] = {0};
     inside_watch(&way, true, a->report);
     event_tell(a, &to->e);
     peaks.count = 0;
@@ -402,11 +403,11 @@ static void event_enter(const struct advance *a, const struct event_point *p, st
         now->s[i] = p->y[i];
         now->w[i] = p->y[SCENE_COORDINATES + i];
     }
-    for (int c = 0; c < SCENE_CONTACTS; c++) {
+    for (int c = 0; c < OWN_CONTACTS; c++) {
         now->gap[c] = p->e.gap[c];
         now->approach[c] = p->e.u[c][0];
     }
-    for (int i = 0; i < SCENE_ACTUATORS; i++)
+    for (int i = 0; i < OWN_ACTUATORS; i++)
         now->integral[i] = p->y[EVENT_INTEGRAL + i];
     now->trig = p->e.trig;
     now->t = a->problem.begin + p->tau;
@@ -429,7 +430,7 @@ static stance_failure event_begin(struct advance *a, struct event_point *p, stru
                          &drive, touching, &p->e);
         between_mode(a->problem.set, &p->e, touching, a->stood, &m->contact, &trouble);
         a->problem.evaluations++;
-        for (int c = 0; c < SCENE_CONTACTS; c++)
+        for (int c = 0; c < OWN_CONTACTS; c++)
             below |= a->problem.set->may_touch[c] > 0 && p->e.gap[c] < -STEP_CLOSED;
         if (trouble.impact || below) {
             if (!between_impact(a->problem.set, true, now, report))
@@ -447,10 +448,10 @@ static stance_failure event_begin(struct advance *a, struct event_point *p, stru
         between_stands(&m->contact, a->stood);
         double command[ACTUATORS];
         law_torque(law, s, w, command);
-        for (int i = 0; i < SCENE_ACTUATORS; i++)
+        for (int i = 0; i < OWN_ACTUATORS; i++)
             m->clipped[i] = command[i] > law->limit[i] ? 1 : command[i] < -law->limit[i] ? -1 : 0;
         m->touches = 0;
-        for (int c = 0; c < SCENE_CONTACTS; c++)
+        for (int c = 0; c < OWN_CONTACTS; c++)
             m->touches |= m->contact.closed[c] ? contact_with(c) : 0;
         if (m->touches) /* a slip that has ended leaves what counts as zero */
             between_project(a->problem.set, &m->contact, true, p->y, p->y + SCENE_COORDINATES,
@@ -478,14 +479,14 @@ static void event_finish(struct advance *a, struct event_point *p, struct motion
 static void event_report(const struct advance *a, const struct event_point *p,
                          struct step_report *report)
 {
-    for (int c = 0; c < SCENE_CONTACTS; c++) {
+    for (int c = 0; c < OWN_CONTACTS; c++) {
         report->impulse[c][0] += p->y[EVENT_IMPULSE + 2 * c];
         report->impulse[c][1] += p->y[EVENT_IMPULSE + 2 * c + 1];
         report->slip[c] = p->y[EVENT_SLIDE + c];
         report_residuals(report, c, a->problem.mode.contact.closed, a->problem.set->friction,
                          (const double(*)[2])p->e.force, p->e.u[c]);
     }
-    for (int i = 0; i < SCENE_ACTUATORS; i++)
+    for (int i = 0; i < OWN_ACTUATORS; i++)
         report->torque[i] = p->e.torque[i];
     report->work = p->y[EVENT_WORK];
 }
@@ -507,7 +508,7 @@ static inline mask advance(struct advance *a, const struct setting *set, const l
     memset(&here, 0, sizeof here);
     memcpy(here.y, now->s, sizeof now->s);
     memcpy(here.y + SCENE_COORDINATES, now->w, sizeof now->w);
-    for (int i = 0; i < SCENE_ACTUATORS; i++)
+    for (int i = 0; i < OWN_ACTUATORS; i++)
         here.y[EVENT_INTEGRAL + i] = now->integral[i];
     a->problem.set = set;
     a->problem.torque = torque;

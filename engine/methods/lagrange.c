@@ -53,13 +53,13 @@ static void advance_load(struct advance *a, int lane, const stance_case *c)
     lane_set(&a->done, lane, 0);
     lane_set(&a->part, lane, INFINITY);
     lane_set(&a->events, lane, 0);
-    for (int i = 0; i < SCENE_CONTACTS; i++)
+    for (int i = 0; i < OWN_CONTACTS; i++)
         lane_set(&a->stood[i], lane, 0);
     report_clear_lane(&a->sum, lane);
 }
 static void advance_forget(struct advance *a, mask m)
 {
-    for (int i = 0; i < SCENE_CONTACTS; i++)
+    for (int i = 0; i < OWN_CONTACTS; i++)
         a->stood[i] = choose(m, lanes_of(0), a->stood[i]);
 }
 static void advance_free(struct advance *a)
@@ -101,7 +101,7 @@ static inline mask advance(struct advance *a, const struct setting *set, const l
     step.report.dissipation_residual = choose(found, none, step.report.dissipation_residual);
     lanes stands[CONTACTS];
     between_stands(&mode, stands);
-    for (int c = 0; c < SCENE_CONTACTS; c++)
+    for (int c = 0; c < OWN_CONTACTS; c++)
         a->stood[c] = choose(switched, none, choose(take, stands[c], a->stood[c]));
     step.report.ambiguous_steps = choose(trouble.chosen, one, step.report.ambiguous_steps);
     step.report.unranked_steps = choose(trouble.unranked, one, none);
@@ -119,7 +119,7 @@ static inline mask advance(struct advance *a, const struct setting *set, const l
 
     /* A step may be so long that no projection brings a foot back onto the ground. */
     mask deep = MASK_NONE;
-    for (int c = 0; c < SCENE_CONTACTS; c++)
+    for (int c = 0; c < OWN_CONTACTS; c++)
         deep |= (take | switched) & mask_less(none, set->may_touch[c]) &
                 mask_less(now->gap[c], lanes_of(-LAGRANGE_DEEPEST));
 

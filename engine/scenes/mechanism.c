@@ -11,7 +11,7 @@
 #define FAR 1e6   /* m */
 #define TURNS 1e3 /* rad */
 
-enum { LABEL = 64, TEXT = 128 };
+enum { LABEL = 2 * STANCE_NAME, TEXT = 128 };
 
 /* What stance_scene_free gives back at once. */
 struct described {

@@ -4,7 +4,7 @@
 #ifndef STANCE_SCENES_ROWS_H
 #define STANCE_SCENES_ROWS_H
 
-enum { STANCE_ROWS_STRIDE = 72 };
+enum { STANCE_ROWS_STRIDE = 128 };
 
 /* Turns the rows of a[rows][STANCE_ROWS_STRIDE] until their first n columns are orthogonal; the
  * others, up to width, turn along. Rows shorter than 1e-9 of the longest become 0 there. Returns

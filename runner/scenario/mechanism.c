@@ -35,7 +35,7 @@ static const char *name_fault(enum part part, const char *name)
     if (!word)
         return "a name is a letter, then letters, digits or _";
     if (strlen(name) >= STANCE_NAME)
-        return "a name has at most 31 letters";
+        return "a name has at most 63 letters";
     if (listed(truths, name))
         return "some readers of YAML take it for true, false or nothing";
     if (part != PART_ACTUATOR && listed(coordinates, name))

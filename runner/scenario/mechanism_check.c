@@ -113,7 +113,7 @@ static int culprit(const stance_scene *scene, const double *motion)
 /* In postures spread evenly: multiples of roots of primes, modulo a turn. */
 static bool inertia_fault(const stance_scene *scene, const double *robot, struct fault *f)
 {
-    static const double prime[] = {2, 3, 5, 7, 11, 13, 17, 19, 23};
+    static const double prime[] = {2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41};
     _Static_assert(sizeof prime / sizeof *prime >= STANCE_MAX_COORDINATES, "one for each");
     const int n = scene->coordinates;
     double position[STANCE_MAX_COORDINATES], motion[STANCE_MAX_COORDINATES] = {0};

@@ -52,13 +52,13 @@ HOT int contact_next(contact_set set, int from)
  * list, so that neither time nor code is that of contacts which are open. */
 #if TREE_CONTACTS > 4
 #define CONTACT_LISTS
-#define EACH_CONTACT(c, from) for (int c = (from); c < SCENE_CONTACTS; c++)
+#define EACH_CONTACT(c, from) for (int c = (from); c < OWN_CONTACTS; c++)
 #define EACH_IN_FROM(c, from, set)                                                                 \
-    for (int c = contact_next(set, from); c < SCENE_CONTACTS; c = contact_next(set, c + 1))
+    for (int c = contact_next(set, from); c < OWN_CONTACTS; c = contact_next(set, c + 1))
 #else
-#define EACH_CONTACT(c, from) EACH (c, from, SCENE_CONTACTS)
+#define EACH_CONTACT(c, from) EACH (c, from, OWN_CONTACTS)
 #define EACH_IN_FROM(c, from, set)                                                                 \
-    EACH (c, from, SCENE_CONTACTS)                                                                 \
+    EACH (c, from, OWN_CONTACTS)                                                                   \
         if (!((set) >> c & 1)) {                                                                   \
         } else
 #endif
@@ -303,7 +303,7 @@ HOT void contact_back(contact_set touching, const struct contact_factors *f, con
                     left[k][b] =
                         contact_row(contact_unknowns(p), f->through[p][k][b], x[p], left[k][b]);
     }
-    for (int p = SCENE_CONTACTS - 1; p >= 0; p--) {
+    for (int p = OWN_CONTACTS - 1; p >= 0; p--) {
         EACH (a, 0, 2) {
             if (!(touching >> p & 1) || a >= contact_unknowns(p))
                 continue;

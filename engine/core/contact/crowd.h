@@ -118,8 +118,8 @@ static void crowd_pose(const struct lane_problem *p, struct crowd *c)
             c->scale[c->n++] = 1 / sqrt(fmax(fabs(p->D[i][i]), 1e-300));
         }
     }
-    memset(c->A, 0, sizeof c->A);
     for (int i = 0; i < c->n; i++) {
+        memset(c->A[i], 0, sizeof(double[2]) * ((size_t)c->n + 1));
         const int ri = c->row[i];
         for (int j = 0; j < c->n; j++) {
             const int rj = c->row[j];

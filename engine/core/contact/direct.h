@@ -210,7 +210,7 @@ static inline mask direct_null(contact_set touching, const lanes (*D)[CONTACTS][
     }
     if (!mask_any(here))
         return here;
-    for (int q = SCENE_CONTACTS - 1; q >= 0; q--)
+    for (int q = OWN_CONTACTS - 1; q >= 0; q--)
         for (int a = 0; a < 2; a++) {
             n[q][a] = lanes_of(0);
             if (q == p)
@@ -281,7 +281,7 @@ static inline lanes direct_moves(const lanes (*D)[CONTACTS][2][2], contact_set t
                                  const mask (*rows)[2], const lanes (*n)[2])
 {
     lanes none[CONTACTS][2], u[CONTACTS][2], most = lanes_of(0);
-    for (int c = 0; c < SCENE_CONTACTS; c++)
+    for (int c = 0; c < OWN_CONTACTS; c++)
         none[c][0] = none[c][1] = lanes_of(0);
     direct_velocities(D, (const lanes(*)[2])none, touching, n, u);
     EACH_IN (c, touching)
@@ -349,7 +349,7 @@ COLD mask direct_hold(lanes friction, lanes tolerance, const lanes (*D)[CONTACTS
     lanes M[CONTACTS][CONTACTS][2][2], u[CONTACTS][2], x[CONTACTS][2], first[CONTACTS][2];
     direct_rows(active, rows);
     direct_factor(touching, CONTACT_CAREFUL, D, (const mask(*)[2])rows, NULL, 0, M, &f);
-    for (int c = 0; c < SCENE_CONTACTS; c++)
+    for (int c = 0; c < OWN_CONTACTS; c++)
         first[c][0] = first[c][1] = none;
     direct_back(touching, (const mask(*)[2])rows, &f, uf, first);
     const mask sticks =
@@ -363,7 +363,7 @@ COLD mask direct_hold(lanes friction, lanes tolerance, const lanes (*D)[CONTACTS
     /* Once more with what is left. */
     direct_velocities(D, uf, touching, (const lanes(*)[2])first, u);
     direct_back(touching, (const mask(*)[2])rows, &f, (const lanes(*)[2])u, x);
-    for (int c = 0; c < SCENE_CONTACTS; c++)
+    for (int c = 0; c < OWN_CONTACTS; c++)
         for (int a = 0; a < 2; a++)
             r[c][a] = first[c][a] + x[c][a];
     const bool several = mask_any(free.several);
@@ -384,7 +384,7 @@ COLD mask direct_hold(lanes friction, lanes tolerance, const lanes (*D)[CONTACTS
         for (int a = 0; a < 2; a++)
             good &= LANES_NOT(rows[c][a]) | mask_less_equal(lanes_abs(u[c][a]), tolerance);
     good &= direct_obeys(friction, touching, (const lanes(*)[2])r);
-    for (int c = 0; c < SCENE_CONTACTS; c++)
+    for (int c = 0; c < OWN_CONTACTS; c++)
         for (int a = 0; a < 2; a++)
             r[c][a] = choose(sticks, first[c][a], r[c][a]);
     return good | sticks;
@@ -409,13 +409,13 @@ COLD mask direct_unique(lanes friction, const lanes (*D)[CONTACTS][2][2], contac
     lanes M[CONTACTS][CONTACTS][2][2], u[CONTACTS][2], x[CONTACTS][2], sum[CONTACTS];
     direct_rows(active, rows);
     direct_factor(touching, CONTACT_GUARDED, D, (const mask(*)[2])rows, NULL, DIRECT_RIDGE, M, &f);
-    for (int c = 0; c < SCENE_CONTACTS; c++)
+    for (int c = 0; c < OWN_CONTACTS; c++)
         sum[c] = lanes_of(0);
     lanes largest = lanes_of(0);
     EACH_IN (h, touching) {
         if (contact_unknowns(h) != 2)
             continue;
-        for (int c = 0; c < SCENE_CONTACTS; c++) {
+        for (int c = 0; c < OWN_CONTACTS; c++) {
             u[c][0] = lanes_of(contact_grip(c) == h ? -1 : 0);
             u[c][1] = lanes_of(0);
         }
@@ -424,7 +424,7 @@ COLD mask direct_unique(lanes friction, const lanes (*D)[CONTACTS][2][2], contac
             if (contact_unknowns(g) == 2)
                 sum[g] += lanes_abs(contact_load(g, (const lanes(*)[2])x));
     }
-    for (int g = 0; g < SCENE_CONTACTS; g++) {
+    for (int g = 0; g < OWN_CONTACTS; g++) {
         lanes row = lanes_of(0);
         if (!(touching >> g & 1) || contact_unknowns(g) != 2)
             continue;
@@ -495,7 +495,7 @@ COLD mask direct_modes(const struct contact_rule *rule, const lanes (*D)[CONTACT
     const lanes none = lanes_of(0), friction = rule->friction;
     mask closed[CONTACTS], sticks[CONTACTS], rows[CONTACTS][2], found = MASK_NONE;
     lanes edge[CONTACTS];
-    for (int c = 0; c < SCENE_CONTACTS; c++) {
+    for (int c = 0; c < OWN_CONTACTS; c++) {
         closed[c] = active[c];
         sticks[c] = LANES_ALL;
         edge[c] = none;

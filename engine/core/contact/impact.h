@@ -134,7 +134,7 @@ static inline lanes impact_mode(lanes friction, const lanes (*r)[2])
 {
     const lanes none = lanes_of(0);
     lanes mode = none;
-    for (int c = 0; c < SCENE_CONTACTS; c++) {
+    for (int c = 0; c < OWN_CONTACTS; c++) {
         lanes own = choose(mask_less(none, r[c][0]), lanes_of(1), none);
         if (contact_unknowns(c) == 2) {
             const lanes side = choose(mask_less(none, r[c][1]), lanes_of(2), lanes_of(4));
@@ -164,7 +164,7 @@ static inline mask impact_try(const struct impact_rule *rule, const lanes *e,
 {
     const lanes none = lanes_of(0);
     lanes uf[CONTACTS][2], after[CONTACTS][2], gain = none, size = none;
-    for (int c = 0; c < SCENE_CONTACTS; c++) {
+    for (int c = 0; c < OWN_CONTACTS; c++) {
         shift[c][0] = e[c] * lanes_min(u[c][0], none);
         shift[c][1] = none;
         if (contact_unknowns(c) == 2)
@@ -176,7 +176,7 @@ static inline mask impact_try(const struct impact_rule *rule, const lanes *e,
         .friction = rule->friction, .prefer = rule->prefer, .shift = (const lanes(*)[2])shift};
     solve_contacts(&asked, D, (const lanes(*)[2])uf, CONTACT_ALL, LANES_ALL, part, r, verdict);
     direct_velocities(D, u, CONTACT_ALL, (const lanes(*)[2])r, after);
-    for (int c = 0; c < SCENE_CONTACTS; c++)
+    for (int c = 0; c < OWN_CONTACTS; c++)
         for (int a = 0; a < contact_unknowns(c); a++) {
             const lanes added = 0.5 * (r[c][a] * (u[c][a] + after[c][a]));
             const mask here = contact_part(c, part);
@@ -203,12 +203,12 @@ static inline mask impact_solve(const struct impact_rule *rule, mask where,
         const lanes tried = impact_share_next(&share);
         lanes e[CONTACTS], shift1[CONTACTS][2], r1[CONTACTS][2];
         struct contact_verdict also;
-        for (int c = 0; c < SCENE_CONTACTS; c++)
+        for (int c = 0; c < OWN_CONTACTS; c++)
             e[c] = tried * rule->restitution[c];
         const mask more = impact_try(rule, e, D, u, part, shift1, r1, &also, &said) &
                           mask_less(lanes_of(0), tried);
         const mask fits = impact_share_tell(&share, open, more, &said);
-        for (int c = 0; c < SCENE_CONTACTS; c++)
+        for (int c = 0; c < OWN_CONTACTS; c++)
             for (int a = 0; a < 2; a++) {
                 shift[c][a] = choose(fits, shift1[c][a], shift[c][a]);
                 r[c][a] = choose(fits, r1[c][a], r[c][a]);

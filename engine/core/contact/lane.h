@@ -82,7 +82,7 @@ static void lane_gather(const struct contact_rule *rule, const lanes (*D)[CONTAC
 {
     double largest = 0;
     p->rows = p->elements = 0;
-    for (int c = 0; c < SCENE_CONTACTS; c++) {
+    for (int c = 0; c < OWN_CONTACTS; c++) {
         const contact_set ends = contact_ends(c);
         if ((contact_grip(c) >= 0 && contact_grip(c) != c) || !(active & ends))
             continue;
@@ -92,7 +92,7 @@ static void lane_gather(const struct contact_rule *rule, const lanes (*D)[CONTAC
         e->slide = e->grips && rule->sliding ? lane_get(&rule->sliding[c], lane) : 0;
         if (e->grips)
             p->contact[p->rows] = c, p->axis[p->rows++] = 1;
-        for (int k = c; k < SCENE_CONTACTS; k++)
+        for (int k = c; k < OWN_CONTACTS; k++)
             if (active & ends & 1u << k)
                 p->contact[p->rows] = k, p->axis[p->rows++] = 0;
         e->end = p->rows;

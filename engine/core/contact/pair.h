@@ -23,7 +23,7 @@ static inline void pair_offer(const struct contact_rule *rule, const lanes (*uf)
 {
     const lanes none = lanes_of(0);
     lanes energy = none, apart = none;
-    for (int c = 0; c < SCENE_CONTACTS; c++)
+    for (int c = 0; c < OWN_CONTACTS; c++)
         for (int a = 0; a < 2 && touching >> c & 1; a++) {
             lanes own = 0.5 * (r[c][a] * (uf[c][a] + u[c][a]));
             if (rule->shift)
@@ -44,7 +44,7 @@ static inline void pair_offer(const struct contact_rule *rule, const lanes (*uf)
     best->have |= valid;
     best->exact |= exact;
     best->energy = choose(take, energy, best->energy);
-    for (int c = 0; c < SCENE_CONTACTS; c++)
+    for (int c = 0; c < OWN_CONTACTS; c++)
         for (int a = 0; a < 2; a++) {
             best->r[c][a] = choose(take, r[c][a], best->r[c][a]);
             best->u[c][a] = choose(take, u[c][a], best->u[c][a]);
@@ -65,7 +65,7 @@ COLD mask pair_enumerate(const struct contact_rule *rule, const lanes (*D)[CONTA
         .have = MASK_NONE, .exact = MASK_NONE, .ambiguous = MASK_NONE, .energy = none};
     lanes candidate[CONTACTS][2], u[CONTACTS][2], edge[CONTACTS];
     mask verge = MASK_NONE, never[CONTACTS][MODES], closed[CONTACTS], sticks[CONTACTS];
-    for (int c = 0; c < SCENE_CONTACTS; c++) {
+    for (int c = 0; c < OWN_CONTACTS; c++) {
         closed[c] = sticks[c] = MASK_NONE;
         edge[c] = none;
         for (int a = 0; a < 2; a++)
@@ -107,7 +107,7 @@ COLD mask pair_enumerate(const struct contact_rule *rule, const lanes (*D)[CONTA
             contact_factor(CONTACT_ALL, CONTACT_PLAIN, M, &f);
         } else
             direct_factor(carries, CONTACT_PLAIN, D, (const mask(*)[2])rows, edge, 0, M, &f);
-        for (int c = 0; c < SCENE_CONTACTS; c++)
+        for (int c = 0; c < OWN_CONTACTS; c++)
             for (int a = 0; a < 2; a++)
                 candidate[c][a] = none, u[c][a] = uf[c][a];
         for (int round = 0; round < 2 && carries; round++) { /* once more with what is left */
@@ -153,8 +153,8 @@ static inline mask pair_every(const struct contact_rule *rule, const lanes (*D)[
                               mask *ambiguous)
 {
     mask done = MASK_NONE;
-    for (int a = 0; a < SCENE_CONTACTS; a++)
-        for (int b = a + 1; b < SCENE_CONTACTS; b++) {
+    for (int a = 0; a < OWN_CONTACTS; a++)
+        for (int b = a + 1; b < OWN_CONTACTS; b++) {
             if (!(touching >> a & touching >> b & 1) || !contact_is_point(a) ||
                 !contact_is_point(b))
                 continue;

@@ -38,7 +38,7 @@ COLD void solve_rest(const struct contact_rule *rule, const lanes (*D)[CONTACTS]
     if (mask_any(holds)) {
         done = holds & direct_hold(rule->friction, tolerance.most, D, uf, touching, active, holds,
                                    stood & many, stick);
-        for (int c = 0; c < SCENE_CONTACTS; c++)
+        for (int c = 0; c < OWN_CONTACTS; c++)
             for (int a = 0; a < 2; a++)
                 r[c][a] = choose(done, stick[c][a], r[c][a]);
     }

@@ -190,7 +190,11 @@ HOT mask ordinary_newton(const struct ordinary *q, const struct setting *set,
     if (full)
         there = run & ordinary_iterate(q, set, from, h, coupled, true, run, touching, old, it);
     const mask running = run & LANES_NOT(there);
-    if (mask_any(running)) { /* with copies: what is passed on by address stays in memory */
+    if (mask_any(running)) {
+#ifdef CONTACT_LISTS
+        there |=
+            ordinary_more(q, set, from, h, coupled, full, running, touching, old, iterations, it);
+#else /* with copies: what is passed on by address stays in memory */
         struct iterate copy = *it;
         lanes start[SCENE_COORDINATES], count = *iterations;
         memcpy(start, old, sizeof start);
@@ -199,6 +203,7 @@ HOT mask ordinary_newton(const struct ordinary *q, const struct setting *set,
         *it = copy;
         *iterations = count;
         memcpy(old, start, sizeof old);
+#endif
     }
     return there & ordinary_arrive(from, h, old, it);
 }

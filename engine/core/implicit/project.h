@@ -69,7 +69,7 @@ HOT void project_multipliers(const struct setting *set, const scene_trig *trig,
                 U[i][k] = lanes_fnma(U[i][p], U[p][k], U[i][k]);
         }
     }
-    for (int p = SCENE_CONTACTS - 1; p >= 0; p--) {
+    for (int p = OWN_CONTACTS - 1; p >= 0; p--) {
         if (!(touching >> p & 1))
             continue;
         EACH_IN_FROM (k, p + 1, touching)
@@ -323,7 +323,9 @@ HOT void project_along(const struct setting *set, const lanes (*rebound)[2], con
     const mask off = project_wrong(rebound, touching, g, (const lanes(*)[2])u, wrong);
     if (!mask_any(off))
         return;
-    /* Copies, because what is passed by address has to stay in memory. */
+#ifdef CONTACT_LISTS
+    *energy += project_again(set, rebound, &it->end, touching, g, off, response, it->w, u);
+#else /* with copies: what is passed by address has to stay in memory */
     lanes w[SCENE_COORDINATES], v[CONTACTS][2], same[CONTACTS][2][SCENE_COORDINATES];
     const struct grip factors = *g;
     const scene_trig trig = it->end;
@@ -334,6 +336,7 @@ HOT void project_along(const struct setting *set, const lanes (*rebound)[2], con
                              (const lanes(*)[2][SCENE_COORDINATES])same, w, v);
     memcpy(it->w, w, sizeof w);
     memcpy(u, v, sizeof v);
+#endif
 }
 
 /* Responses to impulses at the contacts by the inertia at the end in the lanes of `impact`,
@@ -343,7 +346,7 @@ static inline void project_inertia(const struct setting *set, mask impact, const
 {
     scene_matrix A;
     scene_inertia(&set->body, &it->end, &A);
-    for (int c = 0; c < SCENE_CONTACTS; c++) {
+    for (int c = 0; c < OWN_CONTACTS; c++) {
         scene_contact_response(&set->body, &A, false, &it->end, c, response[c]);
         for (int a = 0; a < 2; a++)
             for (int i = 0; i < SCENE_COORDINATES; i++)
@@ -415,8 +418,8 @@ static inline mask project_far(const struct setting *set, const struct motion *f
 {
     struct grip g;
     lanes response[CONTACTS][2][SCENE_COORDINATES], rebound[CONTACTS][2];
-    memset(&g, 0, sizeof g);
-    for (int c = 0; c < SCENE_CONTACTS; c++) {
+    memset(g.rows, 0, sizeof g.rows);
+    for (int c = 0; c < OWN_CONTACTS; c++) {
         it->brought[c] = MASK_NONE;
         rebound[c][0] = set->restitution[c] * lanes_min(from->approach[c], lanes_of(0));
         rebound[c][1] = it->along ? it->along[c] : lanes_of(0);
@@ -431,7 +434,7 @@ static inline mask project_far(const struct setting *set, const struct motion *f
         grip_factor(set, &it->end, touching, (const lanes(*)[2][SCENE_COORDINATES])response, &g);
         project_along(set, (const lanes(*)[2])rebound, touching, &g,
                       (const lanes(*)[2][SCENE_COORDINATES])response, it, u, energy);
-        for (int c = 0; c < SCENE_CONTACTS; c++) {
+        for (int c = 0; c < OWN_CONTACTS; c++) {
             falls[c] = project_falls(set, where, &g, c, it, u[c]);
             it->brought[c] |= falls[c] & LANES_NOT(it->active[c]);
             turns[c] = MASK_NONE;
@@ -441,7 +444,7 @@ static inline mask project_far(const struct setting *set, const struct motion *f
         }
         if (!mask_any(any))
             break;
-        for (int c = 0; c < SCENE_CONTACTS; c++) { /* stopped, where there is one */
+        for (int c = 0; c < OWN_CONTACTS; c++) { /* stopped, where there is one */
             g.rows[c][0] = any & (g.rows[c][0] | falls[c]);
             g.rows[c][1] = any & (g.rows[c][1] | turns[c]);
         }

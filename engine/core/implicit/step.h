@@ -307,7 +307,7 @@ static inline bool step_moreau(const struct setting *set, const struct motion *f
     const mask moreau = m & mask_less(lanes_of(0), set->moreau);
     if (!mask_any(moreau))
         return false;
-    for (int c = 0; c < SCENE_CONTACTS; c++) {
+    for (int c = 0; c < OWN_CONTACTS; c++) {
         lanes u[2];
         scene_contact_velocity(&set->body, &from->trig, c, from->w, u);
         tangential[c] = lanes_of(0);
@@ -366,7 +366,7 @@ COLD mask step_once(const int *corner, const struct setting *set, const struct m
         EACH_CONTACT (c, 0)
             touching |= mask_any(it.active[c] & running) ? contact_with(c) : 0;
         /* Responses of all or none: position errors may have to be removed at any. */
-        for (int c = 0; c < SCENE_CONTACTS && moreau; c++)
+        for (int c = 0; c < OWN_CONTACTS && moreau; c++)
             along[c] = choose(impact, tangential[c], lanes_of(0));
         iterate_newton(set, from, h, false, running, true, impact, coupled, k > freeze_after,
                        touching, touching ? CONTACT_ALL : 0, &it);

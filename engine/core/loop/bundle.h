@@ -181,7 +181,7 @@ static void bundle_load_setting(struct setting *set, int lane, const stance_case
     lane_set(&set->prefer, lane, c->most_energy ? -1 : 1);
     lane_set(&set->moreau, lane, c->impacts == STANCE_IMPACTS_MOREAU);
     lane_set(&set->limited, lane, c->impacts != STANCE_IMPACTS_NEWTON);
-    for (int i = 0; i < SCENE_CONTACTS; i++) {
+    for (int i = 0; i < OWN_CONTACTS; i++) {
         lane_set(&set->may_touch[i], lane, (double)(c->contacts >> i & 1));
         lane_set(&set->restitution[i], lane, contact_grip(i) >= 0 ? c->restitution : 0);
     }
@@ -197,7 +197,7 @@ static void bundle_clear_answers(struct bundle *b, int lane)
 #define CLEAR(name, type, how, told, unit, text)                                                   \
     WHERE_GATHERED_##how(lane_set(&b->answer.name, lane, GATHERED_FROM_##how);)
     STANCE_ANSWERS(CLEAR)
-    for (int i = 0; i < SCENE_CONTACTS; i++)
+    for (int i = 0; i < OWN_CONTACTS; i++)
         for (int a = 0; a < 2; a++) {
             lane_set(&b->impulse[i][a], lane, 0);
             lane_set(&b->now.impulse[i][a], lane, 0);
@@ -268,7 +268,7 @@ static void bundle_load(struct bundle *b, int lane, const stance_case *c, stance
 #endif
     lane_set(&b->judge_on_way, lane, c->settle);
     lane_set(&b->has_target, lane, c->has_target);
-    for (int i = 0; i < SCENE_CONTACTS; i++) {
+    for (int i = 0; i < OWN_CONTACTS; i++) {
         lane_set(&b->mine[i], lane, c->supports >> i & 1);
         lane_set(&b->left_out[i], lane, contact_grip(i) >= 0 && !(c->contacts >> i & 1));
         lane_set(&b->ahead[i], lane,
@@ -290,7 +290,7 @@ static void bundle_begin(struct bundle *b, mask fresh)
         b->now.trig.sine[a] = choose(fresh, trig.sine[a], b->now.trig.sine[a]);
         b->now.trig.cosine[a] = choose(fresh, trig.cosine[a], b->now.trig.cosine[a]);
     }
-    for (int c = 0; c < SCENE_CONTACTS; c++) {
+    for (int c = 0; c < OWN_CONTACTS; c++) {
         lanes u[2];
         scene_contact_velocity(&b->set.body, &trig, c, b->now.w, u);
         b->now.gap[c] = choose(fresh, scene_gap(&b->set.body, b->now.s, &trig, c), b->now.gap[c]);

@@ -29,7 +29,7 @@ static void bundle_record(struct bundle *b, int lane)
                     elapsed > 0 ? lane_get(&b->impulse[k][a], lane) / elapsed : NAN;
         }
     }
-    for (int k = 0; k < SCENE_CONTACTS; k++)
+    for (int k = 0; k < OWN_CONTACTS; k++)
         lane_set(&b->impulse[k][0], lane, 0), lane_set(&b->impulse[k][1], lane, 0);
     b->row[lane] = row;
     lane_set(&b->recorded_at, lane, n);

@@ -11,21 +11,19 @@
 
 /* What a lane's next step will cost: its closed contacts, and whether it is ordinary if it is like
  * the last one; idle lanes come last. */
-enum { REGROUP_KEYS = 2 * (1 << SCENE_CONTACTS) + 1 };
-
-static int regroup_key(const struct bundle *b, int lane)
+static uint64_t regroup_key(const struct bundle *b, int lane)
 {
-    int touching = 0, rank = 0;
+    uint64_t touching = 0, rank = 0;
     if (!b->which[lane])
-        return REGROUP_KEYS - 1;
-    for (int c = 0; c < SCENE_CONTACTS; c++)
+        return UINT64_MAX;
+    for (int c = 0; c < OWN_CONTACTS; c++)
         if (lane_get(&b->set.may_touch[c], lane) > 0 &&
             lane_get(&b->now.gap[c], lane) <= STEP_CLOSED)
-            touching |= 1 << c;
+            touching |= (uint64_t)1 << c;
     for (; touching; touching >>= 1) /* its place in Gray's code: neighbours share contacts */
         rank ^= touching;
 #ifdef ADVANCE_ORDINARY
-    return 2 * rank + advance_was_ordinary(&b->advance, lane);
+    return 2 * rank + (uint64_t)advance_was_ordinary(&b->advance, lane);
 #else
     return 2 * rank;
 #endif
@@ -70,22 +68,24 @@ static void regroup_recount(struct bundle *b)
 /* Sorts the lanes of n bundles by their contacts; what is sorted stays where it is. */
 COLD void regroup(struct bundle *b, int n)
 {
-    int key[STREAM_BUNDLES * LANES], count[REGROUP_KEYS] = {0}, wanted = 0;
+    uint64_t key[STREAM_BUNDLES * LANES], sorted[STREAM_BUNDLES * LANES];
     const int lanes_in_all = n * LANES;
     bool moved = false;
-    for (int i = 0; i < lanes_in_all; i++)
-        count[key[i] = regroup_key(&b[i / LANES], i % LANES)]++;
     for (int i = 0; i < lanes_in_all; i++) {
-        while (count[wanted] == 0)
-            wanted++;
-        count[wanted]--;
+        int at = i;
+        key[i] = regroup_key(&b[i / LANES], i % LANES);
+        for (; at > 0 && sorted[at - 1] > key[i]; at--)
+            sorted[at] = sorted[at - 1];
+        sorted[at] = key[i];
+    }
+    for (int i = 0; i < lanes_in_all; i++) {
         int j = i;
-        while (key[j] != wanted)
+        while (key[j] != sorted[i])
             j++;
         if (j == i)
             continue;
         regroup_swap(&b[i / LANES], i % LANES, &b[j / LANES], j % LANES);
-        key[j] = key[i], key[i] = wanted;
+        key[j] = key[i], key[i] = sorted[i];
         moved = true;
     }
     for (int k = 0; k < n && moved; k++)

@@ -45,7 +45,7 @@ COLD bool rest_stands(const struct rest *r, const lanes *s, const lanes *w, doub
     scene_trig trig;
     bool stands = true;
     scene_trigonometry(s, &trig);
-    for (int c = 0; c < SCENE_CONTACTS; c++) {
+    for (int c = 0; c < OWN_CONTACTS; c++) {
         lanes u[2];
         if (!mask_get(r->mode.closed[c], r->lane))
             continue;
@@ -131,7 +131,7 @@ COLD bool rest_allows(const struct rest *r, const double *x, bool *gone)
     between_project_position(r->set, r->mode.closed, s, &e);
     if (rest_fallen(r, s) || !rest_mode(r, s, torque, &mode))
         return false;
-    for (int c = 0; c < SCENE_CONTACTS; c++) {
+    for (int c = 0; c < OWN_CONTACTS; c++) {
         if (mask_get(r->mode.closed[c] & LANES_NOT(mode.closed[c]), r->lane))
             return false;
         if (!mask_get(r->mode.closed[c], r->lane) && lane_get(&r->set->may_touch[c], r->lane) > 0 &&
@@ -233,7 +233,7 @@ COLD bool rest_holds(const struct bundle *b, int lane, const lanes *s, const lan
     scene_trig trig;
     scene_trigonometry(r.s, &trig);
     const lanes low = lanes_of(fmax(STANCE_GRAVITY * h * h, STEP_CLOSED));
-    for (int c = 0; c < SCENE_CONTACTS; c++) { /* for laws that ask what the contacts do */
+    for (int c = 0; c < OWN_CONTACTS; c++) { /* for laws that ask what the contacts do */
         const lanes near =
             choose(mask_less(lanes_of(0), b->set.restitution[c]), low, lanes_of(STEP_CLOSED));
         r.mode.closed[c] = mask_less(lanes_of(0), b->set.may_touch[c]) &

@@ -100,12 +100,12 @@ COLD bool rest_mode(const struct rest *r, const lanes *s, const lanes *torque,
     struct dynamics e;
     struct between_trouble trouble;
     lanes stood[CONTACTS];
-    for (int c = 0; c < SCENE_CONTACTS; c++)
+    for (int c = 0; c < OWN_CONTACTS; c++)
         stood[c] = lanes_of(1);
     rest_evaluate(r, s, torque, &e);
     between_mode(r->set, &e, CONTACT_ALL, stood, mode, &trouble);
     bool stands = !mask_get(trouble.none | trouble.impact, r->lane);
-    for (int c = 0; c < SCENE_CONTACTS; c++)
+    for (int c = 0; c < OWN_CONTACTS; c++)
         if (contact_grip(c) >= 0 && mask_get(mode->closed[c], r->lane) &&
             lane_get(&r->set->friction, r->lane) > 0)
             stands &= lane_get(&mode->slide[c], r->lane) == 0;
@@ -145,7 +145,7 @@ COLD void rest_ways(struct rest *r)
     scene_trig trig;
     int n = 0;
     scene_trigonometry(r->s, &trig);
-    for (int c = 0; c < SCENE_CONTACTS; c++) {
+    for (int c = 0; c < OWN_CONTACTS; c++) {
         if (!mask_get(r->mode.closed[c], r->lane))
             continue;
         for (int i = 0; i < SCENE_COORDINATES; i++) {

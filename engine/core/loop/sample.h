@@ -86,7 +86,7 @@ static void bundle_decouple(struct bundle *b, mask due, const lanes *s, const la
 {
     struct dynamics e;
     struct contact_state contact;
-    for (int c = 0; c < SCENE_CONTACTS; c++) {
+    for (int c = 0; c < OWN_CONTACTS; c++) {
         scene_contact_velocity(&b->set.body, &b->now.trig, c, b->now.w, e.u[c]);
         e.gap[c] = scene_gap(&b->set.body, b->now.s, &b->now.trig, c);
     }

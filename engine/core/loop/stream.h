@@ -215,7 +215,7 @@ COLD void stream_strike(struct bundle *b, lanes from)
     b->excess = choose(hit, b->excess + (next.kinetic - struck), b->excess);
     choose_all(hit, &next, &b->now, sizeof next);
     b->energy_bound = choose(hit, b->energy_bound + given, b->energy_bound);
-    for (int c = 0; c < SCENE_CONTACTS; c++)
+    for (int c = 0; c < OWN_CONTACTS; c++)
         for (int a = 0; a < 2; a++) {
             b->now.impulse[c][a] = choose(hit, lanes_of(0), b->now.impulse[c][a]);
             b->impulse[c][a] =

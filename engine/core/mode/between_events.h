@@ -88,7 +88,7 @@ COLD void between_forces(const struct contact_state *m, const lanes (*D)[CONTACT
 {
     mask sticks[CONTACTS], rows[CONTACTS][2];
     lanes edge[CONTACTS];
-    for (int c = 0; c < SCENE_CONTACTS; c++) {
+    for (int c = 0; c < OWN_CONTACTS; c++) {
         sticks[c] = mask_less_equal(lanes_abs(m->slide[c]), lanes_of(0));
         edge[c] = -(friction * m->slide[c]);
     }
@@ -100,7 +100,7 @@ COLD void between_forces(const struct contact_state *m, const lanes (*D)[CONTACT
 static inline void between_push(const mask *part, const lanes (*response)[2][SCENE_COORDINATES],
                                 const lanes (*r)[2], lanes *x)
 {
-    for (int c = 0; c < SCENE_CONTACTS; c++)
+    for (int c = 0; c < OWN_CONTACTS; c++)
         for (int i = 0; i < SCENE_COORDINATES; i++) {
             lanes push = response[c][0][i] * r[c][0];
             if (contact_unknowns(c) == 2)
@@ -144,7 +144,7 @@ static inline mask between_hops(const struct setting *set, const struct contact_
                                 const struct dynamics *e, const lanes *w)
 {
     mask hops = MASK_NONE;
-    for (int c = 0; c < SCENE_CONTACTS; c++) {
+    for (int c = 0; c < OWN_CONTACTS; c++) {
         const lanes u = e->u[c][0], room = BETWEEN_LOWEST - e->gap[c];
         const mask leaves = LANES_NOT(m->closed[c]) & mask_less(lanes_of(0), set->may_touch[c]) &
                             mask_less(lanes_of(0), room) & mask_less(lanes_of(BETWEEN_REST), u);
@@ -160,7 +160,7 @@ static inline mask between_hops(const struct setting *set, const struct contact_
 /* Contacts that stand, as between_mode wants to know of the step before: 1 or 0. */
 static inline void between_stands(const struct contact_state *m, lanes *stands)
 {
-    for (int c = 0; c < SCENE_CONTACTS; c++) {
+    for (int c = 0; c < OWN_CONTACTS; c++) {
         mask sticks = m->closed[c];
         if (contact_grip(c) >= 0)
             sticks &= mask_less_equal(lanes_abs(m->slide[contact_grip(c)]), lanes_of(0));
@@ -179,7 +179,7 @@ static inline mask between_jammed(const struct setting *set, const struct dynami
                    set->friction, r);
     direct_velocities((const lanes(*)[CONTACTS][2][2])e->D, (const lanes(*)[2])e->free, CONTACT_ALL,
                       (const lanes(*)[2])r, u);
-    for (int c = 0; c < SCENE_CONTACTS; c++)
+    for (int c = 0; c < OWN_CONTACTS; c++)
         if (contact_unknowns(c) == 2)
             jammed |= starting[c] & (mask_less(u[c][1] * m->slide[c], lanes_of(0)) |
                                      mask_less(contact_load(c, (const lanes(*)[2])r), lanes_of(0)));
@@ -196,7 +196,7 @@ static inline void between_mode(const struct setting *set, const struct dynamics
     mask part[CONTACTS], any = MASK_NONE, slides = MASK_NONE;
     lanes sliding[CONTACTS]; /* of each grip */
     *trouble = (struct between_trouble){MASK_NONE, MASK_NONE, MASK_NONE, MASK_NONE, MASK_NONE};
-    for (int c = 0; c < SCENE_CONTACTS; c++) {
+    for (int c = 0; c < OWN_CONTACTS; c++) {
         const mask closed =
             mask_less(none, set->may_touch[c]) & mask_less_equal(e->gap[c], lanes_of(STEP_CLOSED));
         trouble->impact |= closed & mask_less(e->u[c][0], lanes_of(-BETWEEN_REST));
@@ -215,7 +215,7 @@ static inline void between_mode(const struct setting *set, const struct dynamics
     struct contact_verdict verdict;
     mask starting[CONTACTS], begins = MASK_NONE;
     lanes before[CONTACTS][2]; /* any impulse inside the cone, or none */
-    for (int c = 0; c < SCENE_CONTACTS; c++) {
+    for (int c = 0; c < OWN_CONTACTS; c++) {
         const int g = contact_grip(c);
         before[c][0] = stood[c], before[c][1] = none;
         if (g < 0)
@@ -236,9 +236,9 @@ static inline void between_mode(const struct setting *set, const struct dynamics
     trouble->several = any & verdict.ambiguous & slides;
     trouble->chosen = any & verdict.ambiguous & LANES_NOT(slides);
     trouble->unranked = any & verdict.unranked;
-    for (int c = 0; c < SCENE_CONTACTS; c++)
+    for (int c = 0; c < OWN_CONTACTS; c++)
         m->closed[c] = part[c] & mask_less(none, r[c][0]);
-    for (int c = 0; c < SCENE_CONTACTS; c++) {
+    for (int c = 0; c < OWN_CONTACTS; c++) {
         starting[c] = MASK_NONE;
         if (contact_unknowns(c) == 1)
             continue;
@@ -268,7 +268,7 @@ static inline mask between_violated(const struct setting *set, const struct cont
 {
     const lanes none = lanes_of(0);
     mask out = MASK_NONE;
-    for (int c = 0; c < SCENE_CONTACTS; c++) {
+    for (int c = 0; c < OWN_CONTACTS; c++) {
         const mask closed = m->closed[c], open = LANES_NOT(closed);
         out |= open & mask_less(none, set->may_touch[c]) &
                mask_less(e->gap[c], lanes_of(-BETWEEN_GAP));
@@ -295,14 +295,14 @@ static inline void between_project_position(const struct setting *set, const mas
     lanes error[CONTACTS], multiplier[CONTACTS];
     lanes lift[CONTACTS][SCENE_COORDINATES];
     const lanes *along[CONTACTS];
-    for (int c = 0; c < SCENE_CONTACTS; c++) {
+    for (int c = 0; c < OWN_CONTACTS; c++) {
         for (int i = 0; i < SCENE_COORDINATES; i++)
             lift[c][i] = choose(held[c], e->response[c][0][i], none);
         along[c] = lift[c];
     }
     for (int round = 0; round < 4; round++) {
         mask todo = MASK_NONE;
-        for (int c = 0; c < SCENE_CONTACTS; c++) {
+        for (int c = 0; c < OWN_CONTACTS; c++) {
             error[c] = choose(held[c], -e->gap[c], none);
             todo |= mask_less(lanes_of(STEP_PROJECTION), lanes_abs(error[c]));
         }
@@ -327,7 +327,7 @@ static inline void between_project_position(const struct setting *set, const mas
             scene_trigonometry(s, &exact);
             choose_all(far, &exact, &e->trig, sizeof exact);
         }
-        for (int c = 0; c < SCENE_CONTACTS; c++)
+        for (int c = 0; c < OWN_CONTACTS; c++)
             e->gap[c] = choose(todo, scene_gap(&set->body, s, &e->trig, c), e->gap[c]);
     }
 }
@@ -339,10 +339,10 @@ static inline void between_project(const struct setting *set, const struct conta
 {
     mask held[CONTACTS];
     lanes velocity[CONTACTS][2], r[CONTACTS][2];
-    for (int c = 0; c < SCENE_CONTACTS; c++)
+    for (int c = 0; c < OWN_CONTACTS; c++)
         held[c] = where & m->closed[c];
     between_project_position(set, held, s, e);
-    for (int c = 0; c < SCENE_CONTACTS; c++) {
+    for (int c = 0; c < OWN_CONTACTS; c++) {
         scene_contact_velocity(&set->body, &e->trig, c, w, e->u[c]);
         for (int a = 0; a < 2; a++)
             velocity[c][a] = e->u[c][a];
@@ -350,7 +350,7 @@ static inline void between_project(const struct setting *set, const struct conta
     between_forces(m, (const lanes(*)[CONTACTS][2][2])e->D, (const lanes(*)[2])velocity,
                    lanes_of(0), r);
     between_push(held, (const lanes(*)[2][SCENE_COORDINATES])e->response, (const lanes(*)[2])r, w);
-    for (int c = 0; c < SCENE_CONTACTS; c++)
+    for (int c = 0; c < OWN_CONTACTS; c++)
         scene_contact_velocity(&set->body, &e->trig, c, w, e->u[c]);
 }
 
@@ -369,12 +369,12 @@ static inline mask between_impact(const struct setting *set, mask where, struct 
         torque[i] = none;
     scene_trigonometry(now->s, &e.trig);
     dynamics_evaluate(set, now->t, now->s, now->w, torque, CONTACT_ALL, false, &e);
-    for (int c = 0; c < SCENE_CONTACTS; c++)
+    for (int c = 0; c < OWN_CONTACTS; c++)
         part[c] = where & mask_less(none, set->may_touch[c]) &
                   mask_less_equal(e.gap[c], lanes_of(STEP_CLOSED));
     between_project_position(set, part, now->s, &e);
     mask impact = MASK_NONE; /* else only rounding is left to remove */
-    for (int c = 0; c < SCENE_CONTACTS; c++) {
+    for (int c = 0; c < OWN_CONTACTS; c++) {
         scene_contact_velocity(&set->body, &e.trig, c, now->w, e.u[c]);
         impact |= part[c] & mask_less(e.u[c][0], lanes_of(-BETWEEN_REST));
     }
@@ -387,7 +387,7 @@ static inline mask between_impact(const struct setting *set, mask where, struct 
                                       (const lanes(*)[2])e.u, part, rebound, r, &verdict);
     between_push(part, (const lanes(*)[2][SCENE_COORDINATES])e.response, (const lanes(*)[2])r,
                  now->w);
-    for (int c = 0; c < SCENE_CONTACTS; c++) {
+    for (int c = 0; c < OWN_CONTACTS; c++) {
         lanes after[2];
         scene_contact_velocity(&set->body, &e.trig, c, now->w, after);
         now->gap[c] = choose(where, e.gap[c], now->gap[c]);

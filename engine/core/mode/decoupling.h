@@ -40,7 +40,7 @@ static inline void decoupling_contacts(const struct setting *set, const struct d
                                        lanes rest, struct contact_state *contact)
 {
     const lanes none = lanes_of(0);
-    for (int c = 0; c < SCENE_CONTACTS; c++) {
+    for (int c = 0; c < OWN_CONTACTS; c++) {
         const lanes slip = e->u[c][1];
         contact->closed[c] = mask_less(none, set->may_touch[c]) &
                              mask_less_equal(e->gap[c], lanes_of(STEP_CLOSED)) &
@@ -150,7 +150,7 @@ static inline mask decoupling_inverse(lanes G[ACTUATORS][ACTUATORS],
 static inline void decoupling_reach(const struct setting *set, const struct dynamics *e,
                                     contact_set touching, lanes (*reach)[ACTUATORS][2])
 {
-    for (int c = 0; c < SCENE_CONTACTS; c++)
+    for (int c = 0; c < OWN_CONTACTS; c++)
         for (int i = 0; i < OWN_ACTUATORS; i++) {
             reach[c][i][0] = reach[c][i][1] = lanes_of(0);
             if (touching >> c & 1)
@@ -172,7 +172,7 @@ static inline mask decoupling_react(const struct setting *set, mask where, conta
     struct contact_verdict verdict;
     mask part[CONTACTS], none = MASK_NONE, several = MASK_NONE;
     decoupling_reach(set, e, touching, reach);
-    for (int c = 0; c < SCENE_CONTACTS; c++) {
+    for (int c = 0; c < OWN_CONTACTS; c++) {
         part[c] = where & contact->closed[c];
         for (int a = 0; a < 2; a++) {
             lanes rate[ACTUATORS];
@@ -190,8 +190,8 @@ static inline mask decoupling_react(const struct setting *set, mask where, conta
             }
         }
     }
-    for (int c = 0; c < SCENE_CONTACTS; c++)
-        for (int k = 0; k < SCENE_CONTACTS; k++)
+    for (int c = 0; c < OWN_CONTACTS; c++)
+        for (int k = 0; k < OWN_CONTACTS; k++)
             for (int a = 0; a < 2; a++)
                 for (int b = 0; b < 2; b++) {
                     problem.D[c][k][a][b] = e->D[c][k][a][b];
@@ -210,16 +210,16 @@ static inline mask decoupling_react(const struct setting *set, mask where, conta
         if (round > 0 || !mask_any(verdict.unsolved))
             break;
         none = verdict.unsolved & where; /* then the reactions without torques */
-        for (int c = 0; c < SCENE_CONTACTS; c++)
+        for (int c = 0; c < OWN_CONTACTS; c++)
             for (int a = 0; a < 2; a++) {
                 problem.free[c][a] = choose(none, e->free[c][a], problem.free[c][a]);
-                for (int k = 0; k < SCENE_CONTACTS; k++)
+                for (int k = 0; k < OWN_CONTACTS; k++)
                     for (int b = 0; b < 2; b++)
                         problem.D[c][k][a][b] =
                             choose(none, e->D[c][k][a][b], problem.D[c][k][a][b]);
             }
     }
-    for (int c = 0; c < SCENE_CONTACTS; c++)
+    for (int c = 0; c < OWN_CONTACTS; c++)
         for (int a = 0; a < contact_unknowns(c); a++)
             for (int i = 0; i < OWN_ACTUATORS; i++)
                 torque[i] = choose(contact_part(c, part),
@@ -259,7 +259,7 @@ static inline void decouple(const struct setting *set, mask where, lanes t, cons
     }
     mask stands = MASK_NONE;
     e->several = lanes_of(0);
-    for (int c = 0; c < SCENE_CONTACTS; c++)
+    for (int c = 0; c < OWN_CONTACTS; c++)
         stands |= where & contact->closed[c];
     if (touching && mask_any(stands))
         degraded |= decoupling_react(set, where, touching, contact, inverse, e, torque);
@@ -283,7 +283,7 @@ static inline void decoupling_apply(const struct setting *set, mask where, conta
             e->acceleration[k] += e->push[i][k] * torque[i];
     }
     decoupling_reach(set, e, touching, reach);
-    for (int c = 0; c < SCENE_CONTACTS; c++)
+    for (int c = 0; c < OWN_CONTACTS; c++)
         for (int a = 0; a < 2; a++)
             for (int i = 0; i < OWN_ACTUATORS; i++)
                 e->free[c][a] += reach[c][i][a] * torque[i];

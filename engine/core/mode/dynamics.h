@@ -35,9 +35,9 @@ struct dynamics {
 /* Contact terms of the contacts that are not in `touching` become zero. */
 static inline void dynamics_clear(contact_set touching, struct dynamics *e)
 {
-    for (int c = 0; c < SCENE_CONTACTS; c++)
+    for (int c = 0; c < OWN_CONTACTS; c++)
         for (int a = 0; a < 2; a++) {
-            for (int k = 0; k < SCENE_CONTACTS; k++)
+            for (int k = 0; k < OWN_CONTACTS; k++)
                 for (int b = 0; b < 2; b++)
                     if (!(touching >> c & touching >> k & 1) || b >= contact_unknowns(k))
                         e->D[c][k][a][b] = lanes_of(0);
@@ -114,7 +114,7 @@ static inline void dynamics_evaluate(const struct setting *set, lanes t, const l
     for (int i = 0; i < SCENE_ACTUATORS; i++)
         e->integral_rate[i] = lanes_of(0);
     e->degraded = e->several = lanes_of(0);
-    for (int c = 0; c < SCENE_CONTACTS; c++) {
+    for (int c = 0; c < OWN_CONTACTS; c++) {
         e->gap[c] = scene_gap(&set->body, s, &e->trig, c);
         e->force[c][0] = e->force[c][1] = lanes_of(0);
     }

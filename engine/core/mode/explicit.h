@@ -62,12 +62,12 @@ static inline void explicit_report(const struct setting *set, const struct conta
     lanes load = lanes_of(0);
     report->signorini_residual = report->coulomb_residual = report->dissipation_residual =
         lanes_of(0);
-    for (int c = 0; c < SCENE_CONTACTS; c++)
+    for (int c = 0; c < OWN_CONTACTS; c++)
         load += lanes_max(e->force[c][0], lanes_of(0));
     mask part[CONTACTS]; /* what carries but a rounding error has no direction */
-    for (int c = 0; c < SCENE_CONTACTS; c++)
+    for (int c = 0; c < OWN_CONTACTS; c++)
         part[c] = m->closed[c] & mask_less(1e-9 * load, e->force[c][0]);
-    for (int c = 0; c < SCENE_CONTACTS; c++)
+    for (int c = 0; c < OWN_CONTACTS; c++)
         report_residuals(report, c, part, set->friction, (const lanes(*)[2])e->force, e->u[c]);
 }
 
@@ -154,7 +154,7 @@ static inline void explicit_take(const struct setting *set, const struct motion 
     const struct drive drive = {torque, coupled, m};
     contact_set touches = 0;
     struct dynamics e = *begin;
-    for (int c = 0; c < SCENE_CONTACTS; c++)
+    for (int c = 0; c < OWN_CONTACTS; c++)
         if (mask_any(m->closed[c] & run))
             touches |= contact_with(c);
     report_clear(&out->report);
@@ -211,7 +211,7 @@ static inline void explicit_take(const struct setting *set, const struct motion 
                                             e.torque, w, moved);
             explicit_add(out->end.s, out->end.w, part, ks[k], kw[k]);
             explicit_sum(sums, out->end.integral, part, kz[k]);
-            for (int c = 0; c < SCENE_CONTACTS; c++) {
+            for (int c = 0; c < OWN_CONTACTS; c++) {
                 if (contact_unknowns(c) == 2)
                     out->report.slip[c] += choose(contact_part(c, m->closed),
                                                   part * lanes_abs(e.u[c][1]), lanes_of(0));
@@ -284,7 +284,7 @@ static inline void explicit_take(const struct setting *set, const struct motion 
     out->failure = choose(mask_finite(sum), lanes_of(STANCE_FAILURE_ANGLE),
                           lanes_of(STANCE_FAILURE_NOT_FINITE));
     out->bad |= run & LANES_NOT(mask_finite(sum));
-    for (int c = 0; c < SCENE_CONTACTS; c++) {
+    for (int c = 0; c < OWN_CONTACTS; c++) {
         end->gap[c] = e.gap[c];
         end->approach[c] = e.u[c][0];
     }

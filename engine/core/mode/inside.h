@@ -245,7 +245,7 @@ struct inside_values {
 };
 static inline void inside_note(const struct dynamics *e, int k, struct inside_values *values)
 {
-    for (int c = 0; c < SCENE_CONTACTS; c++) {
+    for (int c = 0; c < OWN_CONTACTS; c++) {
         values->normal[k][c] = e->force[c][0];
         values->load[k][c] = contact_load(c, (const lanes(*)[2])e->force);
         values->tangential[k][c] = e->force[c][1];
@@ -286,7 +286,7 @@ static inline void inside_find(const struct contact_state *m, contact_set touche
     const lanes none = lanes_of(0);
     lanes f[CUBIC];
     peaks->count = 0;
-    for (int c = 0; c < SCENE_CONTACTS; c++) {
+    for (int c = 0; c < OWN_CONTACTS; c++) {
         if (!(touches >> c & 1))
             continue;
         for (int k = 0; k < CUBIC; k++)

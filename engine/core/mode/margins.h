@@ -22,24 +22,28 @@
 #define EVENT_JAM 1e-6      /* determinant of the forces at which a slide ends */
 
 /* The state that ARKODE integrates: s, w, then what is summed over the step. */
+#define EVENT_IMPULSE (2 * SCENE_COORDINATES) /* normal, tangential of each contact, N s */
+#define EVENT_SLIDE (EVENT_IMPULSE + 2 * OWN_CONTACTS)
+#define EVENT_WORK (EVENT_SLIDE + OWN_CONTACTS)
+#define EVENT_INTEGRAL (EVENT_WORK + 1) /* what a law sums */
+#define EVENT_SIZE (EVENT_INTEGRAL + OWN_ACTUATORS)
+/* Those of contacts, then those of torque limits. */
+#define EVENT_CONTACTS (3 * OWN_CONTACTS)
+#define EVENT_MARGINS (EVENT_CONTACTS + 2 * OWN_ACTUATORS)
 enum {
-    EVENT_IMPULSE = 2 * SCENE_COORDINATES, /* normal, tangential of each contact, N s */
-    EVENT_SLIDE = EVENT_IMPULSE + 2 * SCENE_CONTACTS,
-    EVENT_WORK = EVENT_SLIDE + SCENE_CONTACTS,
-    EVENT_INTEGRAL, /* what a law sums */
-    EVENT_SIZE = EVENT_INTEGRAL + SCENE_ACTUATORS,
-    EVENT_MARGINS = 3 * SCENE_CONTACTS + 2 * SCENE_ACTUATORS,
+    EVENT_SIZE_ROOM = 2 * SCENE_COORDINATES + 3 * SCENE_CONTACTS + 1 + SCENE_ACTUATORS,
+    EVENT_ROOM = SLOTS(3 * SCENE_CONTACTS + 2 * SCENE_ACTUATORS),
     EVENT_SAMPLES = 8, /* parts of an internal step that is searched for dips */
 };
 
 struct event_mode {
     struct contact_state contact;
-    contact_set touches;                                /* the closed contacts */
-    double clipped[ACTUATORS];                          /* -1, 0, 1: the torque is at a limit */
-    double depth[EVENT_MARGINS], window[EVENT_MARGINS]; /* shift; what counts as zero then */
-    bool rises[EVENT_MARGINS];                          /* a gap or a slip that begins at zero */
-    double mobility[CONTACTS];                          /* 1/kg, makes velocities of impulses */
-    double energy;                                      /* J, what work is measured in */
+    contact_set touches;                          /* the closed contacts */
+    double clipped[ACTUATORS];                    /* -1, 0, 1: the torque is at a limit */
+    double depth[EVENT_ROOM], window[EVENT_ROOM]; /* shift; what counts as zero then */
+    bool rises[EVENT_ROOM];                       /* a gap or a slip that begins at zero */
+    double mobility[CONTACTS];                    /* 1/kg, makes velocities of impulses */
+    double energy;                                /* J, what work is measured in */
 };
 
 /* The step that is being made, and the mode it is in. */
@@ -55,9 +59,9 @@ struct event_problem {
 /* A state inside the step with its margins; the equations are solved in the present mode. */
 struct event_point {
     double tau; /* s, of the step */
-    double y[EVENT_SIZE];
+    double y[EVENT_SIZE_ROOM];
     struct dynamics e;
-    double margin[EVENT_MARGINS];
+    double margin[EVENT_ROOM];
 };
 
 /* ---- equations and margins of a mode ----------------------------------------------------------*/
@@ -70,7 +74,7 @@ static void event_hold(const struct setting *set, const struct contact_state *m,
     struct lane_problem p;
     contact_set closed = 0;
     double r[LANE_ROWS] = {0};
-    for (int c = 0; c < SCENE_CONTACTS; c++)
+    for (int c = 0; c < OWN_CONTACTS; c++)
         closed |= m->closed[c] ? 1u << c : 0;
     lane_gather(&rule, (const double(*)[CONTACTS][2][2])e->D, (const double(*)[2])e->free, closed,
                 0, &p);
@@ -87,11 +91,11 @@ static void event_evaluate(struct event_problem *problem, double tau, const doub
     const double *const s = y, *const w = y + SCENE_COORDINATES;
     const bool servos = problem->coupled && problem->set->law.decouples > 0;
     double torque[ACTUATORS];
-    for (int i = 0; i < SCENE_ACTUATORS; i++)
+    for (int i = 0; i < OWN_ACTUATORS; i++)
         torque[i] = problem->torque[i];
     if (problem->coupled && !servos) {
         law_torque(&problem->set->law, s, w, torque);
-        for (int i = 0; i < SCENE_ACTUATORS; i++)
+        for (int i = 0; i < OWN_ACTUATORS; i++)
             if (problem->mode.clipped[i] != 0)
                 torque[i] = problem->mode.clipped[i] * problem->set->law.limit[i];
     }
@@ -100,7 +104,7 @@ static void event_evaluate(struct event_problem *problem, double tau, const doub
                      problem->mode.touches, e);
     const struct contact_state *const m = &problem->mode.contact;
     bool holds = problem->mode.touches;
-    for (int c = 0; c < SCENE_CONTACTS; c++)
+    for (int c = 0; c < OWN_CONTACTS; c++)
         holds &= m->slide[c] == 0 || !contact_part(c, m->closed);
     if (holds)
         event_hold(problem->set, m, e);
@@ -117,7 +121,7 @@ static double event_determinant(const struct event_problem *problem, const struc
     const struct contact_state *const state = &problem->mode.contact;
     double m[LANE_ROWS][LANE_ROWS], determinant = 1;
     int of[LANE_ROWS], axis[LANE_ROWS], n = 0;
-    for (int c = 0; c < SCENE_CONTACTS; c++) {
+    for (int c = 0; c < OWN_CONTACTS; c++) {
         const double normal = e->D[c][c][0][0], cross = e->D[c][c][0][1];
         const bool sticks =
             contact_unknowns(c) == 2 && contact_part(c, state->closed) && state->slide[c] == 0;
@@ -172,7 +176,7 @@ static void event_margins(const struct event_problem *problem, const double *y,
     const struct contact_state *const m = &problem->mode.contact;
     for (int k = 0; k < EVENT_MARGINS; k++)
         margin[k] = 1;
-    for (int c = 0; c < SCENE_CONTACTS; c++) {
+    for (int c = 0; c < OWN_CONTACTS; c++) {
         double *const own = &margin[3 * c];
         if (m->closed[c])
             own[0] = e->force[c][0] * e->D[c][c][0][0];
@@ -193,9 +197,9 @@ static void event_margins(const struct event_problem *problem, const double *y,
     if (problem->coupled) {
         double command[ACTUATORS];
         law_torque(&problem->set->law, y, y + SCENE_COORDINATES, command);
-        for (int i = 0; i < SCENE_ACTUATORS; i++) {
+        for (int i = 0; i < OWN_ACTUATORS; i++) {
             const double limit = problem->set->law.limit[i];
-            double *const own = &margin[3 * SCENE_CONTACTS + 2 * i];
+            double *const own = &margin[EVENT_CONTACTS + 2 * i];
             if (!isfinite(limit))
                 continue;
             const double clipped = problem->mode.clipped[i];
@@ -217,16 +221,16 @@ static void event_look(struct event_problem *problem, struct event_point *p)
 static void event_set_depths(struct event_problem *problem, const struct event_point *p)
 {
     struct event_mode *const m = &problem->mode;
-    double raw[EVENT_MARGINS], size = 1, scale = 1;
+    double raw[EVENT_ROOM], size = 1, scale = 1;
     for (int i = 0; i < SCENE_COORDINATES; i++)
         size = fmax(fabs(p->y[i]), size);
-    for (int c = 0; c < SCENE_CONTACTS && m->touches; c++)
+    for (int c = 0; c < OWN_CONTACTS && m->touches; c++)
         for (int i = 0; i < 2; i++)
             scale = fmax(fabs(p->e.free[c][i]), scale);
     for (int k = 0; k < EVENT_MARGINS; k++)
         m->depth[k] = 0;
     event_margins(problem, p->y, &p->e, raw);
-    for (int c = 0; c < SCENE_CONTACTS; c++) {
+    for (int c = 0; c < OWN_CONTACTS; c++) {
         double *const depth = &m->depth[3 * c], *const window = &m->window[3 * c];
         bool *const rises = &m->rises[3 * c];
         for (int i = 0; i < 3; i++) {
@@ -247,8 +251,8 @@ static void event_set_depths(struct event_problem *problem, const struct event_p
         }
         m->mobility[c] = m->contact.closed[c] ? p->e.D[c][c][0][0] : 1;
     }
-    for (int k = 3 * SCENE_CONTACTS; k < EVENT_MARGINS; k++) {
-        const double limit = problem->set->law.limit[(k - 3 * SCENE_CONTACTS) / 2];
+    for (int k = EVENT_CONTACTS; k < EVENT_MARGINS; k++) {
+        const double limit = problem->set->law.limit[(k - EVENT_CONTACTS) / 2];
         m->depth[k] = isfinite(limit) ? EVENT_CLIP * limit : 0;
         m->window[k] = 0.25 * m->depth[k];
         m->rises[k] = false;
@@ -288,7 +292,7 @@ static bool event_consistent(const struct event_problem *problem, const struct e
 /* Is a margin negative at *p that began at zero and has not been seen to leave it? */
 static bool event_shallow(const struct event_problem *problem, const struct event_point *p)
 {
-    for (int k = 0; k < 3 * SCENE_CONTACTS; k++)
+    for (int k = 0; k < EVENT_CONTACTS; k++)
         if (p->margin[k] < 0 && problem->mode.rises[k])
             return true;
     return false;
@@ -298,7 +302,7 @@ static bool event_shallow(const struct event_problem *problem, const struct even
 static bool event_rise(struct event_problem *problem, struct event_point *p)
 {
     bool risen = false;
-    for (int k = 0; k < 3 * SCENE_CONTACTS; k++) {
+    for (int k = 0; k < EVENT_CONTACTS; k++) {
         if (!problem->mode.rises[k] || p->margin[k] < 100 * problem->mode.depth[k])
             continue;
         p->margin[k] -= problem->mode.depth[k];
@@ -312,7 +316,7 @@ static bool event_rise(struct event_problem *problem, struct event_point *p)
 /* Was it a contact, not a torque limit, that ended the mode at *p? */
 static bool event_of_contact(const struct event_problem *problem, const struct event_point *p)
 {
-    for (int k = 0; k < 3 * SCENE_CONTACTS; k++)
+    for (int k = 0; k < EVENT_CONTACTS; k++)
         if (p->margin[k] <= problem->mode.window[k])
             return true;
     return false;
@@ -327,7 +331,7 @@ static void event_slopes(const struct event_problem *problem, const double *y,
     const struct contact_state *const m = &problem->mode.contact;
     for (int k = 0; k < EVENT_MARGINS; k++)
         slope[k] = NAN;
-    for (int c = 0; c < SCENE_CONTACTS; c++) {
+    for (int c = 0; c < OWN_CONTACTS; c++) {
         double a[2];
         if (!m->closed[c])
             slope[3 * c] = problem->set->may_touch[c] > 0 ? e->u[c][0] : 0;
@@ -358,7 +362,7 @@ static void event_inside_step(struct event_problem *problem, const struct event_
 static void event_between(struct event_problem *problem, const struct event_point *from,
                           const struct event_point *to, double x, double *margin, double *slope)
 {
-    double y[EVENT_SIZE] = {0};
+    double y[EVENT_SIZE_ROOM] = {0};
     struct dynamics e;
     event_inside_step(problem, from, to, x, y, &e);
     event_margins(problem, y, &e, margin);
@@ -406,8 +410,8 @@ static double event_dip(struct event_problem *problem, const struct event_point 
                         const struct event_point *to)
 {
     const double h = to->tau - from->tau;
-    double g[EVENT_MARGINS][EVENT_SAMPLES + 1], rate[EVENT_MARGINS][EVENT_SAMPLES + 1];
-    double margin[EVENT_MARGINS], slope[EVENT_MARGINS], first = INFINITY;
+    double g[EVENT_ROOM][EVENT_SAMPLES + 1], rate[EVENT_ROOM][EVENT_SAMPLES + 1];
+    double margin[EVENT_ROOM], slope[EVENT_ROOM], first = INFINITY;
     bool near = false;
     if (h < EVENT_SHORTEST)
         return INFINITY;

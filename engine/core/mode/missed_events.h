@@ -76,7 +76,7 @@ static inline mask missed_between(const struct setting *set, const struct contac
 {
     const lanes none = lanes_of(0);
     mask dips = MASK_NONE;
-    for (int c = 0; c < SCENE_CONTACTS; c++) {
+    for (int c = 0; c < OWN_CONTACTS; c++) {
         const mask closed = m->closed[c], grips = contact_part(c, m->closed);
         const mask open = LANES_NOT(closed) & mask_less(none, set->may_touch[c]);
         mask sticks = MASK_NONE, slides = MASK_NONE;
