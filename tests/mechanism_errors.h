@@ -199,8 +199,8 @@
      "10:5: robot.bodies.vtrunk: the rate of the body in line 5 is called so, too: choose another "
      "name"},
     {"    rotor:", "    a_body_with_a_name_of_64_letters_xxxxxxxxxxxxxxxxxxxxxxxxxxxxxxx:",
-     "10:5: robot.bodies: 'a_body_with_a_name_of_64_letters_xxxxxxxxxxxxxxxxxxxxxxxxxxxxxxx' "
-     "is no name: a name has at most 63 letters"},
+     "10:5: robot.bodies: 'a_body_with_a_name_of_64_letters_xxxxxxxxxxx...' is no name: a "
+     "name has at most 63 letters"},
     {"    foot1:", "    trunk:",
      "12:5: robot.contacts.trunk: the part in line 5 is called so, too: choose another name"},
     {"    foot1:", "    foot2_toe:",
