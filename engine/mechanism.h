@@ -47,7 +47,7 @@ typedef struct stance_body_numbers {
 typedef struct stance_element_numbers {
     double at[2];  /* m, in the body's frame: the point, the centre of a disc, a sole's first end */
     double to[2];  /* m, a sole's second end */
-    double radius; /* m, of a disc; 0: a point */
+    double radius; /* m, of a disc or, of a sole, a capsule; 0: a point, a flat sole */
 } stance_element_numbers;
 
 typedef struct stance_point_numbers {

@@ -27,7 +27,7 @@ enum {
                                                       * hip fallen, in leg lengths */
     STANCE_ROBOT_GRAVITY,                            /* m/s^2 */
     STANCE_ROBOT_SLOPE,      /* rad, of the ground; positive: +x is downhill */
-    STANCE_MAX_POINTS = 512, /* points of a stick figure */
+    STANCE_MAX_POINTS = 640, /* points of a stick figure */
 };
 
 #define STANCE_GRAVITY 9.81    /* m/s^2 */

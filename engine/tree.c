@@ -453,9 +453,9 @@ static bool tables_contacts(const stance_mechanism *m, const stance_mechanism_nu
         double end[2][2];
         frames_place(v, f, b, at->at, end[0]);
         frames_place(v, f, b, at->to, end[1]);
-        const int kind = m->element[e].sole ? STANCE_TREE_SOLE
-                         : at->radius != 0  ? STANCE_TREE_DISC
-                                            : STANCE_TREE_POINT;
+        const int kind = at->radius != 0      ? STANCE_TREE_DISC
+                         : m->element[e].sole ? STANCE_TREE_SOLE
+                                              : STANCE_TREE_POINT;
         fits =
             fits && add_contact(m, f, tree, l, kind, b, end[0], m->element[e].sole ? c + 1 : -1, c);
         if (m->element[e].sole)
@@ -609,7 +609,7 @@ static double number_contacts(const stance_tree *tree, const stance_mechanism *m
             frames_place(v, f, b, side ? at->to : at->at, end[c]);
             if (f->of[b] < 0)
                 lay(slope[1], slope[2], end[c], end[c]);
-            end[c][2] = m->element[e].sole ? 0 : at->radius;
+            end[c][2] = at->radius;
             arm = fmax(arm, longest_arm(tree, m, v, f, l, c, end[c]) + end[c][2]);
         }
     }

@@ -12,8 +12,8 @@
 enum {
     /* Kinds of contacts. */
     STANCE_TREE_POINT,
-    STANCE_TREE_DISC,
-    STANCE_TREE_SOLE, /* an end of one */
+    STANCE_TREE_DISC, /* or an end of a capsule */
+    STANCE_TREE_SOLE, /* an end of a flat one */
     STANCE_TREE_LOW,  /* stops of a joint */
     STANCE_TREE_HIGH,
 

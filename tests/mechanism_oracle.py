@@ -51,12 +51,12 @@ class Mechanism:
         self.gravity, self.slope = REAL(gravity), REAL(slope)
         self.index = {b["name"]: k for k, b in enumerate(bodies)}
         self.contacts, self.declared = [], contacts  # a stop: (0, its lower limit) or (1, its upper one)
-        for c in contacts:  # (kind, name, body, at, radius or to)
+        for c in contacts:  # (kind, name, body, at, radius, or to and radius)
             kind, label, on, at, *rest = c
             if kind == "sole":
-                first = len(self.contacts)
-                self.contacts += [dict(body=on, at=at, radius=0, grip=first),
-                                  dict(body=on, at=rest[0], radius=0, grip=first)]
+                first, radius = len(self.contacts), rest[1] if rest[1:] else 0
+                self.contacts += [dict(body=on, at=at, radius=radius, grip=first),
+                                  dict(body=on, at=rest[0], radius=radius, grip=first)]
             else:
                 self.contacts.append(dict(body=on, at=at, radius=rest[0] if rest else 0, grip=len(self.contacts)))
         for b in bodies:
@@ -84,7 +84,7 @@ class Mechanism:
                     words += [key, *(b[key] if isinstance(b[key], tuple) else [b[key]])]
             lines.append(words)
         for kind, label, on, at, *rest in self.declared:
-            more = [] if not rest else list(rest[0]) if kind == "sole" else [rest[0]]
+            more = [*rest[0], *rest[1:]] if kind == "sole" else rest
             lines.append([kind, label, on, *at, *more])
         for name, on, limit in self.actuators:
             lines.append(["actuator", name, on, limit])
@@ -484,8 +484,10 @@ def random_mechanism(random, number, slides):
         bodies.append(body(f"b{k}", joint, parent, random.uniform(0.1, 5), random.uniform(0.01, 1), pair(0.5),
                            (0, 0) if joint == "free" else pair(0.7), **more))
         if len(contacts) < 3 and (root != "slide" or joint == "hinge") and random.random() < 0.5:
-            kind = ("point", "disc", "sole")[random.integers(3)]
-            rest = {"point": [], "disc": [random.uniform(0.05, 0.4)], "sole": [pair(0.5)]}[kind]
+            shape = ("point", "disc", "sole", "capsule")[random.integers(4)]
+            rest = {"point": [], "disc": [random.uniform(0.05, 0.4)], "sole": [pair(0.5)],
+                    "capsule": [pair(0.5), random.uniform(0.05, 0.4)]}[shape]
+            kind = "sole" if shape == "capsule" else shape
             contacts.append((kind, f"c{k}", f"b{k}", pair(0.5), *rest))
     m = Mechanism(f"random tree {number}, {root}{', slides' if slides else ''}", bodies, contacts, actuators[:6], random.uniform(1, 20),
                   random.uniform(-0.3, 0.3), pair(0.3) if root == "free" else (0, 0))

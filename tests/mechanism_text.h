@@ -2,9 +2,12 @@
  *
  *   body NAME free|hinge|slide|fixed PARENT mass inertia centre at [KEY number(s)] ...
  *                                       keys: axis angle stiffness damping rest armature limits
- * turn point|disc|sole NAME BODY at        a disc's radius, a sole's second end follow named NAME
- * BODY at [lowest] force fx fz from to [frequency] | impulse px pz at  on the point named last
- *   reference at                            what a free root's x and z are of
+ *                                       turn
+ *   point|disc|sole NAME BODY at        a disc's radius; a sole's second end [radius]
+ *   named NAME BODY at [lowest]
+ *   force fx fz from to [frequency]     on the point named last
+ *   impulse px pz at                    on the point named last
+ *   reference at                        what a free root's x and z are of
  *   actuator NAME BODY limit
  *
  * PARENT of the root: -. A line that begins otherwise ends the mechanism.
@@ -129,7 +132,8 @@ static inline bool mechanism_line(char *line, stance_mechanism *m)
         next_pair(&w, n->at);
         if (*kind == 's')
             next_pair(&w, n->to);
-        n->radius = *kind == 'd' ? next_number(&w) : 0;
+        const char *const radius = next_word(&w);
+        n->radius = *radius ? strtod(radius, NULL) : 0;
     } else {
         return false;
     }

@@ -98,7 +98,7 @@ static inline void random_mechanism(stance_mechanism *m, int joints, double slid
         m->element[e].sole = sometimes(0.3);
         random_vector(m->value.element[e].at, 0.5);
         random_vector(m->value.element[e].to, 0.5);
-        if (!m->element[e].sole && sometimes(0.4))
+        if (sometimes(0.4))
             m->value.element[e].radius = between(0.05, 0.4);
         m->elements++;
     }

@@ -411,17 +411,20 @@ static void compare_changes(const struct trial *t)
             scene_gap(&t->body, place, &trig, c) - scene_gap(&t->body, t->s, &t->trig, c);
         const double bound = scene_gap_change_error(&t->body, &t->trig, c, d);
         near(scene_gap_change(&t->body, &t->trig, c, d), change, bound + 1e-14, "gap change");
-        double u[2][2], a[2], ends[2][SCENE_COORDINATES];
+        double u[2][2], a[2], ends[2][SCENE_COORDINATES], above[2] = {1, 1};
         for (int side = 0; side < 2; side++) {
             scene_trig there;
             for (int k = 0; k < SCENE_COORDINATES; k++)
                 ends[side][k] = t->s[k] + (side ? e : -e) * 0.1 * t->w[k];
             scene_trigonometry(ends[side], &there);
             scene_contact_velocity(&t->body, &there, c, t->w, u[side]);
+            if (scene_other[c] >= 0)
+                above[side] = scene_gap(&t->body, ends[side], &there, c) -
+                              scene_gap(&t->body, ends[side], &there, scene_other[c]);
         }
         scene_contact_curvature(&t->body, &t->trig, c, t->w, a);
         for (int axis = 0; axis < 2; axis++)
-            if (scene_grip[c] == c || axis == 0)
+            if (axis == 0 || (scene_grip[c] == c && above[0] * above[1] > 0)) /* one lower end */
                 near(a[axis], (u[1][axis] - u[0][axis]) / (0.2 * e), 1e-5, "curvature");
     }
 }

@@ -33,7 +33,7 @@ static bool is_outline(const struct plot_case *c)
     bool round = m->carried && m->carried->outline;
     stance_mechanism_expand(m, c->values.robot, &number);
     for (int e = 0; e < m->elements; e++)
-        round = round || (!m->element[e].sole && number.element[e].radius > 0);
+        round = round || number.element[e].radius > 0;
     return round;
 }
 

@@ -8,7 +8,7 @@
 enum { SIDES = 12 }; /* of the polygon that is drawn for a disc */
 
 /* Each body at most twice, as a tip and on the way back; so its centre; a sole, a named point. */
-_Static_assert(1 + 4 * STANCE_MAX_BODIES + STANCE_MAX_ELEMENTS * (SIDES + 3) +
+_Static_assert(1 + 4 * STANCE_MAX_BODIES + STANCE_MAX_ELEMENTS * (SIDES + 6) +
                        2 * STANCE_MAX_NAMED + 5 <=
                    STANCE_MAX_POINTS,
                "the figure fits");
@@ -38,13 +38,35 @@ static bool away(const double local[2])
     return local[0] != 0 || local[1] != 0;
 }
 
-/* A disc with a spoke, from below round to below, so that its turning is seen. */
+/* Half a circle about an end of a capsule, on the side of `away`, of length 1. */
+static void draw_cap(struct pen *pen, int body, const double at[2], const double away[2], double r)
+{
+    for (int i = 0; i <= SIDES / 2; i++) {
+        double sine, cosine;
+        stance_sincos(2 * M_PI / SIDES * i, &sine, &cosine);
+        line_to_local(pen, body, at[0] + r * (sine * away[0] + cosine * away[1]),
+                      at[1] + r * (sine * away[1] - cosine * away[0]));
+    }
+}
+
+/* A disc with a spoke, from below round to below, so that its turning is seen; a capsule round,
+ * from its first end to there. */
 static void draw_element(struct pen *pen, int e)
 {
     const stance_element_numbers *const n = &pen->pose->number.element[e];
     const int body = pen->pose->m->element[e].body;
     line_to_local(pen, body, n->at[0], n->at[1]);
-    if (pen->pose->m->element[e].sole) {
+    if (pen->pose->m->element[e].sole && n->radius > 0) {
+        const double along[2] = {n->to[0] - n->at[0], n->to[1] - n->at[1]};
+        const double length = hypot(along[0], along[1]);
+        const double away[2] = {along[0] / length, along[1] / length},
+                     back[2] = {-away[0], -away[1]};
+        const double below[2] = {n->radius * away[1], -n->radius * away[0]};
+        line_to_local(pen, body, n->at[0] + below[0], n->at[1] + below[1]);
+        draw_cap(pen, body, n->to, away, n->radius);
+        draw_cap(pen, body, n->at, back, n->radius);
+        line_to_local(pen, body, n->at[0], n->at[1]);
+    } else if (pen->pose->m->element[e].sole) {
         line_to_local(pen, body, n->to[0], n->to[1]);
     } else if (n->radius > 0) {
         for (int i = 0; i <= SIDES; i++) {

@@ -161,8 +161,7 @@ bool stance_pose_contact(const stance_pose *pose, int index, stance_touch *touch
     for (int e = 0; e < m->elements; e++) {
         const stance_element_numbers *const n = &pose->number.element[e];
         if (index == 0 || (index == 1 && m->element[e].sole)) {
-            touch_ground(pose, m->element[e].body, index ? n->to : n->at,
-                         m->element[e].sole ? 0 : n->radius, touch);
+            touch_ground(pose, m->element[e].body, index ? n->to : n->at, n->radius, touch);
             return true;
         }
         index -= m->element[e].sole ? 2 : 1;

@@ -1,9 +1,9 @@
-/* tree_contacts.h - contacts of a tree: points, discs, soles, stops of joints. See tree_lanes.h,
- * which includes this.
+/* tree_contacts.h - contacts of a tree: points, discs, soles, capsules, stops of joints. See
+ * tree_lanes.h, which includes this.
  *
  * A disc's friction acts at its lowest point: its row is the centre's and its radius times the rate
- * of its body. A sole's acts at its lower end; with both on the ground the rows are the same. A
- * stop is a row of its joint, without friction. */
+ * of its body. A sole's acts at its lower end; with both on the ground the rows are the same. The
+ * ends of a capsule are discs that share their friction as those of a sole. A stop is a row of its joint, without friction. */
 #ifndef STANCE_SCENES_TREE_CONTACTS_H
 #define STANCE_SCENES_TREE_CONTACTS_H
 

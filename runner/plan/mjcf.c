@@ -141,7 +141,7 @@ static void places(struct model *o, int b)
             continue;
         sphere(o, contact, n->at, n->radius);
         if (o->m->element[e].sole)
-            sphere(o, contact + 1, n->to, 0);
+            sphere(o, contact + 1, n->to, n->radius);
     }
     for (int p = 0; p < o->m->points; p++) {
         if (o->m->point[p].body != b)

@@ -38,7 +38,7 @@ static bool misplaced(struct description *d, const struct part_key *key, int i, 
                        : key->part == PART_POINT
                            ? "a push has force, from and to, a stroke impulse and "
                              "from"
-                       : key->of_point ? "a sole has from and to alone"
+                       : key->of_point ? "a sole, or a capsule, has from and to"
                                        : "a contact has at, or from and to: not both");
 }
 

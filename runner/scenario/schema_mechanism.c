@@ -104,15 +104,15 @@ const struct part_key part_keys[] = {
         .of_point = true},
     {PART_CONTACT, {.path = "at", TWO, ELEMENT(at), .unit = "m", RANGE(-FAR, FAR),
         .text = "the point or the disc's centre, x and z in the body's frame",
-        .more = "Give this, or from and to: then it is a flat sole, which carries at both ends and "
-                "slips as one."}, .of_point = true},
+        .more = "Give this, or from and to: then it is a flat sole or, with a radius, a capsule, which "
+                "carries at both ends and slips as one."}, .of_point = true},
     {PART_CONTACT, {.path = "from", TWO, ELEMENT(at), .unit = "m", RANGE(-FAR, FAR),
-        .text = "one end of a flat sole"}, .of_sole = true},
+        .text = "one end of a flat sole, or of a capsule's axis"}, .of_sole = true},
     {PART_CONTACT, {.path = "to", TWO, ELEMENT(to), .unit = "m", RANGE(-FAR, FAR),
-        .text = "the sole's other end"}, .of_sole = true},
+        .text = "its other end"}, .of_sole = true},
     {PART_CONTACT, {.path = "radius", .type = FIELD_NUMBER, ELEMENT(radius), .unit = "m",
-        RANGE(0, FAR), .text = "radius of a disc, as a wheel or a round foot; 0: a point"},
-        .of_point = true},
+        RANGE(0, FAR), .text = "radius of a disc, as a wheel or a round foot, or of a capsule; 0: a point, a flat sole"},
+        .of_sole = true, .of_point = true},
 
     {PART_POINT, {.path = "body", .type = FIELD_WORD, .required = true, WORD_ROW,
         .text = "the body that it belongs to"}, .names_body = true},
