@@ -20,7 +20,6 @@
 
 #include <inttypes.h>
 #include <math.h>
-#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -31,32 +30,7 @@ enum {
     BLOCKS_OF_METHODS = 16, /* open at once where methods are swept */
 };
 
-/* s: the first rows are computed at once, whoever needs the core. */
-static const double at_once = 1;
-
-static volatile sig_atomic_t stop_asked;
-
-static void ask_stop(int number)
-{
-    (void)number;
-    stop_asked = 1;
-    deadline_begin();
-}
-
-void work_catch_signals(void)
-{
-    struct sigaction action = {.sa_handler = ask_stop, .sa_flags = SA_RESTART};
-    sigemptyset(&action.sa_mask);
-    sigaction(SIGTERM, &action, NULL);
-    sigaction(SIGUSR1, &action, NULL);
-    action.sa_flags |= SA_RESETHAND;
-    sigaction(SIGINT, &action, NULL);
-}
-
-bool work_stop_asked(void)
-{
-    return stop_asked != 0;
-}
+static const double at_once = 1; /* s: first rows do not wait, whoever needs the core */
 
 /* ---- blocks and tasks --------------------------------------------------------------------- */
 
@@ -103,7 +77,7 @@ struct job {
     struct task *tasks, *idle_task; /* all; those that are in no lane */
     uint64_t ended, kept;           /* not yet told to the counters */
     double look_at;                 /* when next */
-    double checking, waiting;       /* s spent on what the file already holds, and for kernels */
+    double elsewhere;               /* s spent on what the file already holds, and for kernels */
     bool later;                     /* there are kernels that come later ... */
     bool all_drawn;                 /* ... and no rows that no rank has drawn */
     bool came;                      /* kernels that were to come later */
@@ -346,7 +320,7 @@ static void keep_rows(struct job *job, struct block *block)
             }
         }
     }
-    job->checking += clock_seconds() - start;
+    job->elsewhere += clock_seconds() - start;
 }
 
 /* So are those that are left out. */
@@ -426,7 +400,7 @@ static bool find_row(struct job *job, struct block **block, size_t *slot)
     }
 }
 
-/* Whether this rank leaves its core to the compilers; not with the last rows in hand. */
+/* Whether this rank leaves its core to the compilers. */
 static bool gives_way(const struct job *job)
 {
     return job->later && !job->all_drawn && clock_seconds() - job->start > at_once &&
@@ -507,7 +481,7 @@ static void report(struct job *job)
 
 static bool asked_to_stop(const struct work *work, double now)
 {
-    return stop_asked || now - work->start > work->time_limit;
+    return work_stop_asked() || now - work->start > work->time_limit;
 }
 
 /* Rank 0's sign of life for the whole job. */
@@ -542,9 +516,9 @@ static void look_for_kernels(struct job *job)
     uint64_t first, count;
     if (!job->later || job->came)
         return;
-    const uint64_t chunk = (uint64_t)parallel_add(work->parallel, COUNTER_CHUNK, 0);
     job->all_drawn =
-        !schedule_chunk(job->schedule.rows.count, work->parallel->size, chunk, &first, &count);
+        !schedule_chunk(job->schedule.rows.count, work->parallel->size,
+                        (uint64_t)parallel_add(work->parallel, COUNTER_CHUNK, 0), &first, &count);
     const bool ended = work->parallel->rank == 0 && objects_later_ended(work->kernels->later);
     job->came = parallel_add(work->parallel, COUNTER_KERNELS, ended) != 0 || ended;
 }
@@ -638,8 +612,7 @@ static bool find_method(struct job *job)
 static void take_kernels(struct job *job)
 {
     for (int m = 0; m < MAX_METHODS && stance_methods()[m]; m++)
-        job->kernel[m] =
-            instruction_set_kernel(job->plan->scenario->scene, stance_methods()[m]);
+        job->kernel[m] = instruction_set_kernel(job->plan->scenario->scene, stance_methods()[m]);
 }
 
 /* Before a stream: kernels that have come are taken, and those that are to come waited for if they
@@ -647,10 +620,9 @@ static void take_kernels(struct job *job)
 static bool await_kernels(struct job *job)
 {
     const double start = clock_seconds();
-    const bool waits = gives_way(job);
-    while (waits && !job->came && !job->all_drawn && !attend(job))
+    while (gives_way(job) && !job->came && !attend(job))
         usleep(1000);
-    job->waiting += waits ? clock_seconds() - start : 0;
+    job->elsewhere += clock_seconds() - start;
     if (job->came) {
         kernels_change(job->work->kernels);
         take_kernels(job);
@@ -703,7 +675,7 @@ bool work_run(struct work *work, const struct rows *only, uint8_t *label, stance
     if (job.leaving)
         deadline_begin();
     report(&job);
-    work->seconds += clock_seconds() - start - job.checking - job.waiting;
+    work->seconds += clock_seconds() - start - job.elsewhere;
     meet(&job);
     progress_end(&work->progress);
     job_free(&job);
