@@ -110,9 +110,11 @@ static void one_after_the_other(void **state)
             char method[] = "lagrange";
             ask(&asked, scene[k], method, "scalar", false);
             asked.request.quiet = true;
-            assert_int_equal(objects_take(&alone, &asked.request, &object[k], NULL, &message), EXIT_DONE);
+            assert_int_equal(objects_take(&alone, &asked.request, &object[k], NULL, &message),
+                             EXIT_DONE);
             assert_int_equal(object[k].origin, turn == 0 ? OBJECT_COMPILED : OBJECT_KEPT);
-            assert_int_equal(objects_take(&alone, &asked.request, &again, NULL, &message), EXIT_DONE);
+            assert_int_equal(objects_take(&alone, &asked.request, &again, NULL, &message),
+                             EXIT_DONE);
             assert_string_equal(again.key, object[k].key);
             objects_release(&again, 1);
         }

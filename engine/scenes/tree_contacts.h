@@ -3,7 +3,8 @@
  *
  * A disc's friction acts at its lowest point: its row is the centre's and its radius times the rate
  * of its body. A sole's acts at its lower end; with both on the ground the rows are the same. The
- * ends of a capsule are discs that share their friction as those of a sole. A stop is a row of its joint, without friction. */
+ * ends of a capsule are discs that share their friction as those of a sole. A stop is a row of its
+ * joint, without friction. */
 #ifndef STANCE_SCENES_TREE_CONTACTS_H
 #define STANCE_SCENES_TREE_CONTACTS_H
 

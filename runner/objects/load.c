@@ -103,12 +103,12 @@ bool load_check(const struct object *object, const stance_kernel *reference,
         for (size_t i = 0; good && i < count; i++) {
             const char *const what =
                 difference(&t->expected[i], &t->got[i], request->scene->coordinates);
-            good = !what ||
-                   complain(message,
-                            "%s for %s, compiled by %.60s, computes another %s in check %zu: "
-                            "refused; another compiler may be named by CC",
-                            object->kernel.method->name, object->kernel.isa, object->compiler, what,
-                            turn + i * turns);
+            good =
+                !what || complain(message,
+                                  "%s for %s, compiled by %.60s, computes another %s in check %zu: "
+                                  "refused; another compiler may be named by CC",
+                                  object->kernel.method->name, object->kernel.isa, object->compiler,
+                                  what, turn + i * turns);
         }
     }
     free(t);

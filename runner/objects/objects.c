@@ -22,7 +22,8 @@ enum {
     METHODS = 8,
     ISAS = OBJECTS_MOST / METHODS,
     DOING = 340,
-    FRESH = 20 /* times as long a fresh object is checked as one that was checked when it was fresh */
+    FRESH =
+        20 /* times as long a fresh object is checked as one that was checked when it was fresh */
 };
 
 /* An object that some rank wants. */
@@ -97,7 +98,7 @@ static bool check(const struct objects_request *request, const struct cache *cac
     snprintf(object.compiler, sizeof object.compiler, "%s", m->label.compiler);
     const bool loads = load_object(&m->image, &object, message),
                good = loads && load_check(&object, m->reference, request, FRESH * request->patience,
-                                      message);
+                                          message);
     objects_release(&object, 1);
     m->checked = good;
     if (loads && !good)
@@ -214,8 +215,7 @@ static bool told_to_end(void *context)
 static void *compile_later(void *context)
 {
     struct objects_later *const later = context;
-    struct watch watch = {
-        .stop = told_to_end, .context = later, .progress = progress_begin(true)};
+    struct watch watch = {.stop = told_to_end, .context = later, .progress = progress_begin(true)};
     struct compiler compiler; /* points into itself: found anew, not copied */
     if (compiler_find(&compiler, &later->why))
         compile(&later->request, &later->cache, &compiler, later->missing, later->coming, &watch,
@@ -248,8 +248,8 @@ static void later_begin(struct objects_later *later, struct cache *cache,
     }
 }
 
-/* Ranks that are bound to a core each share none but rank 0's, which is the compilers'; others share
- * all. */
+/* Ranks that are bound to a core each share none but rank 0's, which is the compilers'; others
+ * share all. */
 bool objects_later_wait(const struct objects_later *later, const struct parallel *ranks)
 {
     const size_t cores = compiler_cores(), rank = (size_t)ranks->rank;
@@ -528,9 +528,8 @@ enum exit_code objects_take(const struct parallel *ranks, const struct objects_r
     message->text[0] = '\0';
     struct objects_later *coming = NULL;
     parallel_largest(ranks, &waits, 1);
-    const enum exit_code made = ranks->rank > 0
-                                    ? EXIT_DONE
-                                    : make(request, !waits, making, count, &coming, message);
+    const enum exit_code made =
+        ranks->rank > 0 ? EXIT_DONE : make(request, !waits, making, count, &coming, message);
     parallel_meet(ranks, ask_to_stop, (void *)(uintptr_t)request); /* till then the cores are the
                                                                       compiler's */
     uint8_t code = (uint8_t)share(ranks, made, making, count, message);
@@ -555,7 +554,8 @@ enum exit_code objects_take(const struct parallel *ranks, const struct objects_r
         if (full)
             code = EXIT_IO;
         for (size_t i = 0; i < count; i++)
-            missing |= (making[i].image.size == 0 && making[i].origin != OBJECT_COMING) || refused[i];
+            missing |=
+                (making[i].image.size == 0 && making[i].origin != OBJECT_COMING) || refused[i];
         if (code == EXIT_DONE && missing && ranks->rank == 0 && why.text[0] && !request->looks)
             cache_say("%s; kernels that are built in compute instead, more slowly", why.text);
     }
@@ -590,9 +590,9 @@ void objects_later_take(struct objects_later *later, struct object *object)
             continue;
         const struct objects_wanted *const wanted = &request->wanted[k];
         const size_t at = place_of(wanted, later->making, later->count);
-        const bool taken = later->making[at].image.bytes &&
-                           take(request, &later->making[at], wanted->reference, &object[k],
-                                &refused[at], &why);
+        const bool taken =
+            later->making[at].image.bytes &&
+            take(request, &later->making[at], wanted->reference, &object[k], &refused[at], &why);
         if (!taken)
             take_reference(wanted, OBJECT_REFUSED, &object[k]);
         missing |= !taken;

@@ -40,7 +40,7 @@ struct objects_request {
     const stance_case *check; /* [checks]; no trajectories */
     size_t checks;
     double patience; /* s of processor time that the checks of an object from the cache may take */
-    bool quiet; /* say nothing where all goes well */
+    bool quiet;      /* say nothing where all goes well */
     /* On rank 0: so little is to be computed that compiling would take longer. What is not kept is
      * then computed by the references. */
     bool brief;

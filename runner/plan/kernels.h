@@ -12,7 +12,7 @@ struct kernels {
     struct object object[OBJECTS_MOST];
     const stance_kernel *kernel[OBJECTS_MOST];
     size_t count;
-    bool brief; /* so little is to be computed that nothing is compiled for it */
+    bool brief;                  /* so little is to be computed that nothing is compiled for it */
     struct objects_later *later; /* NULL: all are there */
 };
 
@@ -43,8 +43,8 @@ struct kernels_outlook {
     bool brief;
 };
 struct kernels_outlook kernels_look(struct kernels *kernels, const struct plan *plan);
-/* Each rank for itself and between two streams, when objects_later_ended on rank 0: takes what has come
- * later. */
+/* Each rank for itself and between two streams, when objects_later_ended on rank 0: takes what has
+ * come later. */
 void kernels_change(struct kernels *kernels);
 /* "avx2", "avx512, scalar": what the plan's methods compute with. */
 void kernels_instruction_sets(const struct plan *plan, char text[INSTRUCTION_SETS_SIZE]);
