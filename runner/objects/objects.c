@@ -240,7 +240,12 @@ static void later_begin(struct objects_later *later, struct cache *cache,
     if (!later->request.quiet)
         cache_say("%s with %s; kernels that are built in compute till then", doing,
                   compiler->version);
-    later->begun = pthread_create(&later->thread, NULL, compile_later, later) == 0;
+    pthread_attr_t wide; /* kernels need some MB, which is more than threads may have */
+    if (pthread_attr_init(&wide) == 0) {
+        later->begun = pthread_attr_setstacksize(&wide, (size_t)1 << 26) == 0 &&
+                       pthread_create(&later->thread, &wide, compile_later, later) == 0;
+        pthread_attr_destroy(&wide);
+    }
     if (!later->begun) {
         complain(&later->why, "no thread to compile in");
         cache_close(&later->cache);
