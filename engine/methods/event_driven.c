@@ -86,7 +86,7 @@ static int event_rates(realtype tau, N_Vector y, N_Vector rate, void *data)
                 ? fabs(e.u[c][1])
                 : 0;
     }
-    for (int i = 0; i < OWN_ACTUATORS; i++)
+    for (int i = 0; i < SCENE_ACTUATORS; i++)
         to[EVENT_INTEGRAL + i] = e.integral_rate[i];
     to[EVENT_WORK] =
         motion_work(&a->problem.set->body, 1, a->problem.begin + tau, &e.trig, e.torque, w, w);
@@ -406,7 +406,7 @@ static void event_enter(const struct advance *a, const struct event_point *p, st
         now->gap[c] = p->e.gap[c];
         now->approach[c] = p->e.u[c][0];
     }
-    for (int i = 0; i < OWN_ACTUATORS; i++)
+    for (int i = 0; i < SCENE_ACTUATORS; i++)
         now->integral[i] = p->y[EVENT_INTEGRAL + i];
     now->trig = p->e.trig;
     now->t = a->problem.begin + p->tau;
@@ -447,7 +447,7 @@ static stance_failure event_begin(struct advance *a, struct event_point *p, stru
         between_stands(&m->contact, a->stood);
         double command[ACTUATORS];
         law_torque(law, s, w, command);
-        for (int i = 0; i < OWN_ACTUATORS; i++)
+        for (int i = 0; i < SCENE_ACTUATORS; i++)
             m->clipped[i] = command[i] > law->limit[i] ? 1 : command[i] < -law->limit[i] ? -1 : 0;
         m->touches = 0;
         for (int c = 0; c < OWN_CONTACTS; c++)
@@ -485,7 +485,7 @@ static void event_report(const struct advance *a, const struct event_point *p,
         report_residuals(report, c, a->problem.mode.contact.closed, a->problem.set->friction,
                          (const double(*)[2])p->e.force, p->e.u[c]);
     }
-    for (int i = 0; i < OWN_ACTUATORS; i++)
+    for (int i = 0; i < SCENE_ACTUATORS; i++)
         report->torque[i] = p->e.torque[i];
     report->work = p->y[EVENT_WORK];
 }
@@ -507,7 +507,7 @@ static inline mask advance(struct advance *a, const struct setting *set, const l
     memset(&here, 0, sizeof here);
     memcpy(here.y, now->s, sizeof now->s);
     memcpy(here.y + SCENE_COORDINATES, now->w, sizeof now->w);
-    for (int i = 0; i < OWN_ACTUATORS; i++)
+    for (int i = 0; i < SCENE_ACTUATORS; i++)
         here.y[EVENT_INTEGRAL + i] = now->integral[i];
     a->problem.set = set;
     a->problem.torque = torque;

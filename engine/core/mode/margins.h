@@ -26,10 +26,10 @@
 #define EVENT_SLIDE (EVENT_IMPULSE + 2 * OWN_CONTACTS)
 #define EVENT_WORK (EVENT_SLIDE + OWN_CONTACTS)
 #define EVENT_INTEGRAL (EVENT_WORK + 1) /* what a law sums */
-#define EVENT_SIZE (EVENT_INTEGRAL + OWN_ACTUATORS)
+#define EVENT_SIZE (EVENT_INTEGRAL + SCENE_ACTUATORS)
 /* Those of contacts, then those of torque limits. */
 #define EVENT_CONTACTS (3 * OWN_CONTACTS)
-#define EVENT_MARGINS (EVENT_CONTACTS + 2 * OWN_ACTUATORS)
+#define EVENT_MARGINS (EVENT_CONTACTS + 2 * SCENE_ACTUATORS)
 enum {
     EVENT_SIZE_ROOM = 2 * SCENE_COORDINATES + 3 * SCENE_CONTACTS + 1 + SCENE_ACTUATORS,
     EVENT_ROOM = SLOTS(3 * SCENE_CONTACTS + 2 * SCENE_ACTUATORS),
@@ -91,11 +91,11 @@ static void event_evaluate(struct event_problem *problem, double tau, const doub
     const double *const s = y, *const w = y + SCENE_COORDINATES;
     const bool servos = problem->coupled && problem->set->law.decouples > 0;
     double torque[ACTUATORS];
-    for (int i = 0; i < OWN_ACTUATORS; i++)
+    for (int i = 0; i < SCENE_ACTUATORS; i++)
         torque[i] = problem->torque[i];
     if (problem->coupled && !servos) {
         law_torque(&problem->set->law, s, w, torque);
-        for (int i = 0; i < OWN_ACTUATORS; i++)
+        for (int i = 0; i < SCENE_ACTUATORS; i++)
             if (problem->mode.clipped[i] != 0)
                 torque[i] = problem->mode.clipped[i] * problem->set->law.limit[i];
     }
@@ -197,7 +197,7 @@ static void event_margins(const struct event_problem *problem, const double *y,
     if (problem->coupled) {
         double command[ACTUATORS];
         law_torque(&problem->set->law, y, y + SCENE_COORDINATES, command);
-        for (int i = 0; i < OWN_ACTUATORS; i++) {
+        for (int i = 0; i < SCENE_ACTUATORS; i++) {
             const double limit = problem->set->law.limit[i];
             double *const own = &margin[EVENT_CONTACTS + 2 * i];
             if (!isfinite(limit))
