@@ -16,7 +16,7 @@
 enum {
     STANCE_NAME = 64,         /* bytes of a name, with its end */
     STANCE_MAX_BODIES = 31,   /* fixed ones included */
-    STANCE_MAX_ELEMENTS = 24, /* points, discs, soles */
+    STANCE_MAX_ELEMENTS = 24, /* points, discs, soles, capsules */
     STANCE_MAX_BRANCHES = 64, /* equilibria */
 };
 

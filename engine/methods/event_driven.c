@@ -181,8 +181,8 @@ static bool event_create(struct advance *a, double longest)
     good = good && a->arkode && ERKStepSetErrHandlerFn(a->arkode, event_silent, NULL) == 0 &&
            ERKStepSetUserData(a->arkode, a) == 0 && ERKStepSetTable(a->arkode, table) == 0 &&
            ERKStepWFtolerances(a->arkode, event_weights) == 0 &&
-           (EVENT_MARGINS == 0 || (ERKStepRootInit(a->arkode, EVENT_MARGINS, event_roots) == 0 &&
-                                   ERKStepSetRootDirection(a->arkode, falling) == 0)) &&
+           ERKStepRootInit(a->arkode, EVENT_MARGINS, event_roots) == 0 &&
+           ERKStepSetRootDirection(a->arkode, falling) == 0 &&
            ERKStepSetInterpolantDegree(a->arkode, 3) == 0 &&
            ERKStepSetMaxStep(a->arkode, longest) == 0 &&
            ERKStepSetMaxFirstGrowth(a->arkode, 20) == 0; /* restarts are frequent */

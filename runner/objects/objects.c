@@ -22,8 +22,7 @@ enum {
     METHODS = 8,
     ISAS = OBJECTS_MOST / METHODS,
     DOING = 340,
-    FRESH =
-        20 /* times as long a fresh object is checked as one that was checked when it was fresh */
+    FRESH = 20, /* times as long as one that was checked before a fresh object is checked */
 };
 
 /* An object that some rank wants. */
@@ -478,7 +477,7 @@ static void forget_own(const struct making *making, size_t count, const uint8_t 
 {
     struct cache cache;
     stance_message ignored;
-    if (!cache_open(&cache, false, &ignored))
+    if (!memchr(refused, true, count) || !cache_open(&cache, false, &ignored))
         return;
     for (size_t i = 0; i < count; i++) {
         struct image_label label;
@@ -493,13 +492,10 @@ static void forget_own(const struct making *making, size_t count, const uint8_t 
 static bool forget(const struct parallel *ranks, const struct making *making, size_t count,
                    uint8_t *refused, stance_message *why)
 {
-    bool any = false;
     parallel_largest(ranks, refused, count);
-    for (size_t i = 0; i < count; i++)
-        any |= refused[i] > 0;
-    if (any && ranks->rank == 0)
+    if (ranks->rank == 0)
         forget_own(making, count, refused, why);
-    return any;
+    return memchr(refused, true, count) != NULL;
 }
 
 /* The signal to stop may be this rank's own. */
@@ -521,7 +517,7 @@ enum exit_code objects_take(const struct parallel *ranks, const struct objects_r
 {
     struct making making[OBJECTS_MOST];
     const size_t count = list_wanted(ranks, request, making);
-    uint8_t waits = !request->later || !later;
+    uint8_t waits = !later;
     bool missing = false;
     for (size_t k = 0; k < request->count; k++) {
         waits |= !request->wanted[k].reference;

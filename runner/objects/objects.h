@@ -46,7 +46,6 @@ struct objects_request {
     bool brief;
     bool again; /* on rank 0: what was refused before is compiled again */
     bool looks; /* on rank 0: nothing is compiled, and the cache stays as it is, too */
-    bool later; /* references compute while rank 0 compiles: see objects_later */
     /* Told several times a second while rank 0 compiles, on every rank: true, to stop. NULL:
      * signals alone end it, and with it the process. */
     bool (*stop)(void *context);
@@ -83,9 +82,10 @@ const char *objects_isa(size_t index);
 struct objects_later;
 
 /* Collective: the kernels of a request, object[count]. All ranks give the same tables; what they
- * want of them may differ. A method that is not compiled on demand is its reference. *later is set
- * (else NULL) where the request allows it and there is a reference for each: rank 0 goes on to
- * compile what is COMING, of which the object is the reference until objects_later_take.
+ * want of them may differ. A method that is not compiled on demand is its reference. later, not
+ * NULL: where there is a reference for each nobody waits for the compiler, but rank 0 goes on to
+ * compile what is COMING, of which the object is the reference until objects_later_take; *later is
+ * NULL where nothing is. NULL on every rank, or on none.
  * EXIT_DONE: all there. EXIT_USAGE: there is no reference either, and no compiler or one that
  * fails. EXIT_IO: the cache is refused, no memory. EXIT_INTERRUPTED: told to stop. Then `message`
  * is the same on every rank, and there is nothing to be released. */

@@ -98,9 +98,8 @@ const struct command command_build = {
     options,
     "Kernels for what a scenario describes are compiled when they are first needed, while those "
     "that are built in begin, by CC, cc, gcc or clang, and kept in a cache: STANCE_CACHE, else "
-    "XDG_CACHE_HOME/stance, else "
-    "~/.cache/stance. This command does it ahead; a file of the cache may be copied to the cache "
-    "of another machine.",
+    "XDG_CACHE_HOME/stance, else ~/.cache/stance. This command does it ahead; a file of the cache "
+    "may be copied to the cache of another machine.",
     "What is compiled is tried on cases of the scenario before it is kept: an object that "
     "computes something else than the kernel that is built in is refused. That is remembered for "
     "the compiler and the version, and the kernel that is built in computes, more slowly, until "

@@ -213,7 +213,6 @@ enum exit_code kernels_take(struct kernels *kernels, const struct plan *plan,
         .quiet = choice->quiet,
         .again = choice->again,
         .looks = choice->looks,
-        .later = choice->later && parallel_on_one_host(parallel), /* the cache is everybody's */
         .stop = plan->stop,
         .context = plan->stop_context,
     };
@@ -222,8 +221,9 @@ enum exit_code kernels_take(struct kernels *kernels, const struct plan *plan,
         request.brief &= wanted[k].reference != NULL;
     request.patience = request.looks ? 0 : request.brief ? 0.01 : 0.1;
     kernels->brief = request.brief;
+    const bool later = choice->later && parallel_on_one_host(parallel); /* with one cache */
     const enum exit_code code =
-        objects_take(parallel, &request, kernels->object, &kernels->later, message);
+        objects_take(parallel, &request, kernels->object, later ? &kernels->later : NULL, message);
     free(check);
     if (code != EXIT_DONE)
         return code;
