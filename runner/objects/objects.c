@@ -477,7 +477,7 @@ static void forget_own(const struct making *making, size_t count, const uint8_t 
 {
     struct cache cache;
     stance_message ignored;
-    if (!memchr(refused, true, count) || !cache_open(&cache, false, &ignored))
+    if (!memchr(refused, 1, count) || !cache_open(&cache, false, &ignored))
         return;
     for (size_t i = 0; i < count; i++) {
         struct image_label label;
@@ -495,7 +495,7 @@ static bool forget(const struct parallel *ranks, const struct making *making, si
     parallel_largest(ranks, refused, count);
     if (ranks->rank == 0)
         forget_own(making, count, refused, why);
-    return memchr(refused, true, count) != NULL;
+    return memchr(refused, 1, count) != NULL;
 }
 
 /* The signal to stop may be this rank's own. */
