@@ -154,7 +154,7 @@ static void solve(const struct problem *p, int contacts, bool stood, bool most, 
                   bool *ambiguous, bool *unsolved)
 {
     double D[2][2][2][2], uf[2][2], out[2][2], shift[2][2] = {{0}};
-    const double before[2][2] = {{1, 0}, {1, 0}};
+    const double last[2][2] = {{1, 0}, {1, 0}};
     const bool active[2] = {true, contacts == 2};
     struct contact_verdict verdict;
     for (int c = 0; c < 2; c++) {
@@ -168,7 +168,8 @@ static void solve(const struct problem *p, int contacts, bool stood, bool most, 
     const struct contact_rule rule = {.friction = p->friction,
                                       .prefer = most ? -1 : 1,
                                       .shift = (const double(*)[2])shift,
-                                      .before = stood ? before : NULL};
+                                      .last = stood ? last : NULL,
+                                      .known = true};
     solve_contacts(&rule, (const double(*)[2][2][2])D, (const double(*)[2])uf,
                    contacts == 2 ? 3 : 1, LANES_ALL, active, out, &verdict);
     *ambiguous = verdict.ambiguous, *unsolved = verdict.unsolved;

@@ -49,11 +49,13 @@ static void direct_is_exact(void **state)
             const mask active[2] = {true, contacts == 2};
             const double(*const op)[2][2][2] = (const double(*)[2][2][2])D;
             const double(*const free)[2] = (const double(*)[2])uf;
+            struct direct_mode mode;
+            direct_mode_of(&rule, active, false, NULL, &mode);
             const bool sure =
                 contacts == 1
                     ? direct_one((const double(*)[2])D[0][0], uf[0], friction, goes_on, r[0])
                     : direct_unique(friction, op, touching, active) &&
-                          direct_modes(&rule, op, free, touching, active, 1e-11, true, r);
+                          direct_modes(&rule, op, free, touching, active, 1e-11, true, &mode, r);
             if (!sure)
                 continue;
             struct lane_problem problem;
@@ -214,7 +216,7 @@ static void steps_are_converged(bool coupled)
     uint64_t seed = 17;
     for (size_t k = 0; k < sizeof steps / sizeof *steps; k++) {
         double worst = 0, most = 0, total = 0, iterations = 0;
-        int taken = 0, ordinary = 0, redundant = 0,
+        int taken = 0, ordinary = 0, redundant = 0, contested = 0,
             grazed = 0; /* by an iterate of the full iteration alone */
         for (int i = 0; i < TRIES; i++) {
             struct bundle b;
@@ -255,7 +257,12 @@ static void steps_are_converged(bool coupled)
                     const bool parallel =
                         it.active[0] && it.active[1] && fabs(sin(b.now.s[3] - b.now.s[4])) < 1e-3;
                     redundant += parallel;
-                    if (full.landed == 0 && !parallel)
+                    /* Of several modes that would go on, the two may take different ones. */
+                    const bool another =
+                        off > 1e-3 * speed &&
+                        fmax(quick.signorini_residual, quick.dissipation_residual) < 1e-10;
+                    contested += another;
+                    if (full.landed == 0 && !parallel && !another)
                         worst = fmax(worst, (off - 1e-4 * mended) / speed);
                     most = fmax(most, mended / speed);
                     total = fmax(total, off / speed);
@@ -271,11 +278,12 @@ static void steps_are_converged(bool coupled)
             "%.1e of the speed at most, of the mending by %.1e where it is up to %.1e\n",
             coupled ? "a law inside" : "torques held", steps[k], ordinary, taken,
             iterations / ordinary, worst, total, most);
-        /* The longest steps leave up to 2.1e-10 in one of some seeds: 1e-4 of what is mended is
-         * what it may usually be off. */
-        assert_true(worst <= (steps[k] < 0.01 ? 1e-11 : 5e-10));
+        /* The longest steps leave up to 2.7e-9 in one of five seeds: 1e-4 of what is mended is what
+         * it may usually be off. */
+        assert_true(worst <= (steps[k] < 0.01 ? 1e-11 : 5e-9));
         assert_true(grazed <= 1e-4 * ordinary);
         assert_true(redundant <= 0.05 * ordinary);
+        assert_true(contested <= 1e-4 * ordinary);
         assert_true(ordinary > 0.8 * taken);
     }
 }

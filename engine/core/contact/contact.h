@@ -354,10 +354,10 @@ struct contact_rule {
     const lanes *sliding;
     const lanes (*shift)[2]; /* NULL, or what restitution adds to each contact's uf, m/s */
     bool indefinite;         /* D is neither symmetric nor positive */
-    /* Impulses in the step before, zero where not known: what stood goes on standing; NULL: nothing
-     * is known. And impulses of which the mode may be the solution's, NULL: none. */
-    const lanes (*before)[2], (*last)[2];
-    mask keeps; /* where that mode is a solution's it is taken, preferred or not */
+    /* NULL, or impulses of the iterate or step before, in the lanes of `known`: of several
+     * solutions that in their mode is taken, preferred or not. What goes on takes no decision. */
+    const lanes (*last)[2];
+    mask known;
 };
 
 /* Largest violations of the laws, m/s, of what is a solution, `most`, and of what is one to

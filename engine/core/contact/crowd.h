@@ -213,33 +213,10 @@ static void crowd_lemke(const struct lane_problem *p, struct lane_choice *best)
     lane_offer(p, r, best);
 }
 
-/* Did anything carry in the last iterate? */
-static bool crowd_knows(const struct lane_problem *p)
-{
-    bool knows = false;
-    for (int i = 0; i < p->rows; i++)
-        knows |= p->axis[i] == 0 && p->last[i] > 0;
-    return knows;
-}
-
-/* Takes the last iterate's solution where that is one; best: the one that is preferred. */
-static void crowd_keep(const struct lane_problem *p, struct lane_choice *best)
-{
-    struct lane_choice own;
-    lane_choose_none(&own);
-    if (!crowd_knows(p) || !crowd_offer_mode(p, p->last, &own))
-        return;
-    own.ambiguous = best->ambiguous;
-    *best = own;
-}
-
-/* Some solution, with the violation that is left: of several the last iterate's, or the iteration
- * that asks would go from one to the other without end. */
+/* Some solution, with the violation that is left. */
 static void crowd_solve(const struct lane_problem *p, struct lane_choice *best)
 {
     lane_choose_none(best);
-    if (crowd_knows(p) && crowd_offer_mode(p, p->last, best))
-        return;
     if (!p->indefinite && !crowd_newton(p, best))
         crowd_lemke(p, best);
     if (!(best->violation <= 1e3 * p->tolerance))

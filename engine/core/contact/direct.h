@@ -8,15 +8,17 @@
  * sticks where u_T = 0 is reached inside, else it slips at that end of the interval beyond which
  * the sticking impulse lies.
  *
- * All stick. What stood still in the step before, all of it, goes on standing as long as the
- * impulses that takes lie in the cones, whatever else would satisfy the laws: what stands has no
- * decision to take. It is also the solution with the least kinetic energy, whatever came before:
- * r.uf + r.D r / 2 has its minimum over all r at D r = -uf. (D of a Newton iteration is not quite
+ * The same mode. Contacts that stood, slid and were open in the step or iterate before go on so as
+ * long as that obeys the laws, whatever else would: motion is smooth between impacts, and what goes
+ * on has no decision to take.
+ *
+ * All stick. Where that obeys the laws it is the solution with the least kinetic energy: r.uf +
+ * r.D r / 2 has its minimum over all r at D r = -uf. (D of a Newton iteration is not quite
  * symmetric; the minimum is that of its symmetric part, to O(h).)
  *
- * A mode of all contacts that obeys the laws is the solution where there is but one
+ * Another mode of all contacts that obeys the laws is the solution where there is but one
  * (direct_unique); of more elements than are enumerated it is taken for one, and that is said
- * (unranked). The mode of the last iterate is tried, then that which each contact's impulse and
+ * (unranked). From the same mode, or all sticking, those are tried which each contact's impulse and
  * velocity point to.
  */
 #ifndef STANCE_CORE_CONTACT_DIRECT_H
@@ -72,21 +74,20 @@ HOT void direct_rows(const mask *active, mask (*rows)[2])
     contact_mode_rows(active, all, rows);
 }
 
-/* Lanes where all active contacts stood, as `before` tells. */
+/* Lanes where all active contacts stood, as `last` tells. */
 HOT mask direct_stood(const struct contact_rule *rule, contact_set touching, const mask *active)
 {
-    mask stood = rule->before ? LANES_ALL : MASK_NONE;
+    mask stood = rule->last ? rule->known : MASK_NONE;
     EACH_IN (c, touching) {
-        if (!rule->before)
+        if (!rule->last)
             continue;
-        mask stands = mask_less(lanes_of(0), rule->before[c][0]);
+        mask stands = mask_less(lanes_of(0), rule->last[c][0]);
         if (contact_is_point(c))
-            stands = contact_stands(rule->friction, rule->before[c][0], rule->before[c][1]);
+            stands = contact_stands(rule->friction, rule->last[c][0], rule->last[c][1]);
         stood &= LANES_NOT(active[c]) | stands;
         if (contact_unknowns(c) == 2 && !contact_is_point(c))
-            stood &=
-                LANES_NOT(contact_part(c, active)) |
-                contact_stands(rule->friction, contact_load(c, rule->before), rule->before[c][1]);
+            stood &= LANES_NOT(contact_part(c, active)) |
+                     contact_stands(rule->friction, contact_load(c, rule->last), rule->last[c][1]);
     }
     return stood;
 }
@@ -336,11 +337,9 @@ static inline void direct_exchange(const struct direct_freedom *free, int k, con
 }
 
 /* As lane_hold, in lanes: impulses with which all active contacts stick, whatever the operator, and
- * the lanes where they obey the laws. `where`: lanes that matter; `stood`: those where the impulses
- * of direct_stick are taken, if they do. */
+ * the lanes where they obey the laws. */
 COLD mask direct_hold(lanes friction, lanes tolerance, const lanes (*D)[CONTACTS][2][2],
-                      const lanes (*uf)[2], contact_set touching, const mask *active, mask where,
-                      mask stood, lanes (*r)[2])
+                      const lanes (*uf)[2], contact_set touching, const mask *active, lanes (*r)[2])
 {
     const lanes none = lanes_of(0);
     struct contact_factors f;
@@ -352,12 +351,6 @@ COLD mask direct_hold(lanes friction, lanes tolerance, const lanes (*D)[CONTACTS
     for (int c = 0; c < OWN_CONTACTS; c++)
         first[c][0] = first[c][1] = none;
     direct_back(touching, (const mask(*)[2])rows, &f, uf, first);
-    const mask sticks =
-        stood & f.regular & direct_obeys(friction, touching, (const lanes(*)[2])first);
-    if (!mask_any(where & LANES_NOT(sticks))) {
-        memcpy(r, first, sizeof first);
-        return sticks;
-    }
     direct_freedoms(touching, D, (const mask(*)[2])rows, (const lanes(*)[CONTACTS][2][2])M, &f,
                     &free);
     /* Once more with what is left. */
@@ -383,11 +376,7 @@ COLD mask direct_hold(lanes friction, lanes tolerance, const lanes (*D)[CONTACTS
     EACH_IN (c, touching)
         for (int a = 0; a < 2; a++)
             good &= LANES_NOT(rows[c][a]) | mask_less_equal(lanes_abs(u[c][a]), tolerance);
-    good &= direct_obeys(friction, touching, (const lanes(*)[2])r);
-    for (int c = 0; c < OWN_CONTACTS; c++)
-        for (int a = 0; a < 2; a++)
-            r[c][a] = choose(sticks, first[c][a], r[c][a]);
-    return good | sticks;
+    return good & direct_obeys(friction, touching, (const lanes(*)[2])r);
 }
 
 /* ---- one mode of all ------------------------------------------------------------------------- */
@@ -486,72 +475,102 @@ static inline void direct_take(lanes friction, contact_set touching, const lanes
     }
 }
 
-/* Tries modes in the lanes of `todo`, where a solution is the only one: r. Returns the lanes where
- * one was found. */
-COLD mask direct_modes(const struct contact_rule *rule, const lanes (*D)[CONTACTS][2][2],
-                       const lanes (*uf)[2], contact_set touching, const mask *active,
-                       lanes tolerance, mask todo, lanes (*r)[2])
+/* A mode of all contacts, in lanes. */
+struct direct_mode {
+    mask closed[CONTACTS], sticks[CONTACTS]; /* which carry; which grips stick */
+    lanes edge[CONTACTS];                    /* of each grip r_T by r_N: 0 where it sticks */
+};
+
+/* The mode of impulses r in the lanes of `known`; elsewhere all active contacts carry and stick. A
+ * slip that goes on does so. */
+static inline void direct_mode_of(const struct contact_rule *rule, const mask *active, mask known,
+                                  const lanes (*r)[2], struct direct_mode *mode)
 {
     const lanes none = lanes_of(0), friction = rule->friction;
-    mask closed[CONTACTS], sticks[CONTACTS], rows[CONTACTS][2], found = MASK_NONE;
-    lanes edge[CONTACTS];
     for (int c = 0; c < OWN_CONTACTS; c++) {
-        closed[c] = active[c];
-        sticks[c] = LANES_ALL;
-        edge[c] = none;
-        if (rule->last) {
-            const lanes load = contact_load(c, rule->last);
-            closed[c] &= mask_less(none, rule->last[c][0]);
-            sticks[c] = contact_stands(friction, load, rule->last[c][1]);
-            edge[c] = choose(mask_less(rule->last[c][1], none), -friction, friction);
+        mode->closed[c] = active[c];
+        mode->sticks[c] = LANES_ALL;
+        mode->edge[c] = none;
+        if (r) {
+            mode->closed[c] &= LANES_NOT(known) | mask_less(none, r[c][0]);
+            mode->sticks[c] =
+                LANES_NOT(known) | contact_stands(friction, contact_load(c, r), r[c][1]);
+            mode->edge[c] = choose(mask_less(r[c][1], none), -friction, friction);
         }
+        mode->edge[c] = choose(mode->sticks[c], none, mode->edge[c]);
         if (rule->sliding) {
             const mask slides = mask_less(none, lanes_abs(rule->sliding[c]));
-            sticks[c] &= LANES_NOT(slides);
-            edge[c] = choose(slides, -(friction * rule->sliding[c]), edge[c]);
-        }
-        edge[c] = choose(sticks[c], none, edge[c]);
-    }
-    for (int round = 0; round < DIRECT_ROUNDS && mask_any(todo); round++) {
-        struct contact_factors f;
-        lanes M[CONTACTS][CONTACTS][2][2], candidate[CONTACTS][2], u[CONTACTS][2];
-        contact_mode_rows(closed, sticks, rows);
-        direct_factor(touching, CONTACT_CAREFUL, D, (const mask(*)[2])rows, edge, 0, M, &f);
-        direct_back(touching, (const mask(*)[2])rows, &f, uf, candidate);
-        EACH_IN (c, touching)
-            if (contact_unknowns(c) == 2)
-                candidate[c][1] = lanes_fma(edge[c], contact_load(c, (const lanes(*)[2])candidate),
-                                            candidate[c][1]);
-        direct_velocities(D, uf, touching, (const lanes(*)[2])candidate, u);
-        const lanes violation = direct_violation(
-            rule, D, touching, active, (const lanes(*)[2])candidate, (const lanes(*)[2])u);
-        const mask good = todo & mask_less_equal(violation, tolerance);
-        found |= good;
-        todo &= LANES_NOT(good);
-        direct_take(friction, touching, (const lanes(*)[2])candidate, good, r);
-        EACH_IN (c, touching) {
-            const mask carries = closed[c] & mask_less(none, candidate[c][0]);
-            closed[c] = carries | (active[c] & LANES_NOT(closed[c]) & mask_less(u[c][0], none));
-            if (contact_unknowns(c) == 1)
-                continue;
-            /* A grip that slips sticks when its slip is with its friction; one that sticks slips
-             * when it leaves the cone. */
-            const lanes tangential = candidate[c][1];
-            const lanes load = contact_load(c, (const lanes(*)[2])candidate);
-            const mask turns = mask_less(none, edge[c] * u[c][1]);
-            const mask leaves = sticks[c] & LANES_NOT(contact_inside(friction, load, tangential)) &
-                                mask_less(none, load);
-            mask slips = leaves | (LANES_NOT(sticks[c]) & LANES_NOT(turns));
-            const lanes side = choose(mask_less(tangential, none), -friction, friction);
-            edge[c] = choose(slips, choose(leaves, side, edge[c]), none);
-            if (rule->sliding) {
-                const mask slides = mask_less(none, lanes_abs(rule->sliding[c]));
-                slips |= slides;
-                edge[c] = choose(slides, -(friction * rule->sliding[c]), edge[c]);
-            }
-            sticks[c] = LANES_NOT(slips);
+            mode->sticks[c] &= LANES_NOT(slides);
+            mode->edge[c] = choose(slides, -(friction * rule->sliding[c]), mode->edge[c]);
         }
     }
+}
+
+/* In the lanes of m that which impulses r and velocities u, the mode's, point to. */
+static inline void direct_mode_next(const struct contact_rule *rule, contact_set touching,
+                                    const mask *active, mask m, const lanes (*r)[2],
+                                    const lanes (*u)[2], struct direct_mode *mode)
+{
+    const lanes none = lanes_of(0), friction = rule->friction;
+    EACH_IN (c, touching) {
+        const mask was = mode->closed[c], grips = mode->sticks[c];
+        const mask closed = (was & mask_less(none, r[c][0])) |
+                            (active[c] & LANES_NOT(was) & mask_less(u[c][0], none));
+        mode->closed[c] = (m & closed) | (was & LANES_NOT(m));
+        if (contact_unknowns(c) == 1)
+            continue;
+        /* A grip that slips sticks when its slip is with its friction; one that sticks slips when
+         * it leaves the cone; where the slip is given it does that. */
+        const lanes load = contact_load(c, r);
+        const mask turns = mask_less(none, mode->edge[c] * u[c][1]);
+        const mask leaves =
+            grips & LANES_NOT(contact_inside(friction, load, r[c][1])) & mask_less(none, load);
+        mask moves = m & (leaves | (LANES_NOT(grips) & turns));
+        if (rule->sliding)
+            moves &= LANES_NOT(mask_less(none, lanes_abs(rule->sliding[c])));
+        const lanes side = choose(mask_less(r[c][1], none), -friction, friction);
+        mode->edge[c] = choose(moves, choose(leaves, side, none), mode->edge[c]);
+        mode->sticks[c] = (moves & LANES_NOT(leaves)) | (grips & LANES_NOT(moves));
+    }
+}
+
+/* Tries a mode in the lanes of `todo`: r where it is a solution's, and, in those of `regular`, its
+ * operator is; these are returned. In the others of `todo` the mode becomes the next one to try. */
+COLD mask direct_try(const struct contact_rule *rule, const lanes (*D)[CONTACTS][2][2],
+                     const lanes (*uf)[2], contact_set touching, const mask *active,
+                     lanes tolerance, mask todo, mask regular, struct direct_mode *mode,
+                     lanes (*r)[2])
+{
+    struct contact_factors f;
+    mask rows[CONTACTS][2];
+    lanes M[CONTACTS][CONTACTS][2][2], candidate[CONTACTS][2], u[CONTACTS][2];
+    contact_mode_rows(mode->closed, mode->sticks, rows);
+    direct_factor(touching, CONTACT_CAREFUL, D, (const mask(*)[2])rows, mode->edge, 0, M, &f);
+    direct_back(touching, (const mask(*)[2])rows, &f, uf, candidate);
+    EACH_IN (c, touching)
+        if (contact_unknowns(c) == 2)
+            candidate[c][1] = lanes_fma(
+                mode->edge[c], contact_load(c, (const lanes(*)[2])candidate), candidate[c][1]);
+    direct_velocities(D, uf, touching, (const lanes(*)[2])candidate, u);
+    const lanes violation = direct_violation(rule, D, touching, active,
+                                             (const lanes(*)[2])candidate, (const lanes(*)[2])u);
+    const mask good =
+        todo & (f.regular | LANES_NOT(regular)) & mask_less_equal(violation, tolerance);
+    direct_take(rule->friction, touching, (const lanes(*)[2])candidate, good, r);
+    direct_mode_next(rule, touching, active, todo & LANES_NOT(good), (const lanes(*)[2])candidate,
+                     (const lanes(*)[2])u, mode);
+    return good;
+}
+
+/* direct_try, and again with what that points to, where a solution is the only one. */
+static inline mask direct_modes(const struct contact_rule *rule, const lanes (*D)[CONTACTS][2][2],
+                                const lanes (*uf)[2], contact_set touching, const mask *active,
+                                lanes tolerance, mask todo, struct direct_mode *mode, lanes (*r)[2])
+{
+    mask found = MASK_NONE;
+    for (int round = 0; round < DIRECT_ROUNDS && mask_any(todo & LANES_NOT(found)); round++)
+        found |= direct_try(rule, D, uf, touching, active, tolerance, todo & LANES_NOT(found),
+                            MASK_NONE, mode, r);
     return found;
 }
 

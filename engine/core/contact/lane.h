@@ -55,7 +55,6 @@ struct lane_problem {
     struct lane_element element[CONTACTS];
     double D[LANE_ROWS][LANE_ROWS], uf[LANE_ROWS];
     double shift[LANE_ROWS];
-    double last[LANE_ROWS]; /* see contact_rule */
     double friction, prefer;
     double tolerance, exact; /* violations, m/s, see contact_tolerance: the most, and none */
     bool indefinite;
@@ -103,7 +102,6 @@ static void lane_gather(const struct contact_rule *rule, const lanes (*D)[CONTAC
         const int c = p->contact[i], a = p->axis[i];
         p->uf[i] = lane_get(&uf[c][a], lane);
         p->shift[i] = rule->shift ? lane_get(&rule->shift[c][a], lane) : 0;
-        p->last[i] = rule->last ? lane_get(&rule->last[c][a], lane) : 0;
         largest = fmax(fabs(p->uf[i]), largest);
         for (int j = 0; j < p->rows; j++)
             p->D[i][j] = lane_get(&D[c][p->contact[j]][a][p->axis[j]], lane);
@@ -481,6 +479,9 @@ static void lane_arrive(const struct lane_problem *p, const struct lane_path *pa
         for (int j = row + 1; j < p->rows; j++)
             sum += equation[j] * r[j];
         r[row] = -sum / equation[row];
+        /* Most candidates pull so hard that no other row can make them a solution. */
+        if (p->axis[row] == 0 && r[row] * fabs(p->D[row][row]) < -LANE_ROUNDING * p->tolerance)
+            return;
         if (path->modes.grip[of] > LANE_STICK) /* before the rows of other elements are reached */
             r[p->element[of].first] =
                 lane_edge(p, path->modes.grip[of]) * lane_load(&p->element[of], r);

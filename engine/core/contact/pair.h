@@ -79,9 +79,9 @@ COLD mask pair_enumerate(const struct contact_rule *rule, const lanes (*D)[CONTA
             never[c][BACKWARD] |= mask_less(none, slide);
         }
     }
-    const mask holds = direct_hold(rule->friction, tolerance->most, D, uf, touching, active, todo,
-                                   MASK_NONE, candidate) &
-                       LANES_NOT(never[first][STICK] | never[second][STICK]);
+    const mask holds =
+        direct_hold(rule->friction, tolerance->most, D, uf, touching, active, candidate) &
+        LANES_NOT(never[first][STICK] | never[second][STICK]);
     direct_velocities(D, uf, touching, (const lanes(*)[2])candidate, u);
     pair_offer(rule, uf, tolerance->most, touching, active, (const lanes(*)[2])candidate,
                (const lanes(*)[2])u, todo & holds, todo & holds, &best);
@@ -153,7 +153,7 @@ static inline mask pair_every(const struct contact_rule *rule, const lanes (*D)[
                               mask *ambiguous)
 {
     mask done = MASK_NONE;
-    for (int a = 0; a < OWN_CONTACTS; a++)
+    for (int a = 0; a < OWN_CONTACTS && mask_any(todo); a++)
         for (int b = a + 1; b < OWN_CONTACTS; b++) {
             if (!(touching >> a & touching >> b & 1) || !contact_is_point(a) ||
                 !contact_is_point(b))

@@ -31,30 +31,38 @@ COLD void solve_rest(const struct contact_rule *rule, const lanes (*D)[CONTACTS]
         for (int a = 0; a < contact_unknowns(c); a++)
             largest = lanes_max(choose(active[c], lanes_abs(uf[c][a]), none), largest);
     const struct contact_tolerance tolerance = contact_tolerance(largest);
-    const mask stood = unsure & direct_stood(rule, touching, active);
-    const mask crowded = unsure & solve_crowded(touching, active);
-    const mask holds = stood | (crowded & direct_stick_is_least(rule, touching, active));
+    struct direct_mode mode;
+    mask known = MASK_NONE; /* something carried */
+    EACH_IN (c, touching)
+        if (rule->last)
+            known |= unsure & many & rule->known & active[c] & mask_less(none, rule->last[c][0]);
+    const mask stood = known & direct_stood(rule, touching, active);
+    direct_mode_of(rule, active, known, rule->last, &mode);
     mask done = MASK_NONE;
+    if (mask_any(known))
+        done = direct_try(rule, D, uf, touching, active, tolerance.exact, known, stood, &mode, r);
+    const mask crowded = unsure & solve_crowded(touching, active);
+    const mask holds =
+        (stood | (crowded & direct_stick_is_least(rule, touching, active))) & LANES_NOT(done);
     if (mask_any(holds)) {
-        done = holds & direct_hold(rule->friction, tolerance.most, D, uf, touching, active, holds,
-                                   stood & many, stick);
+        const mask held =
+            holds & direct_hold(rule->friction, tolerance.most, D, uf, touching, active, stick);
         for (int c = 0; c < OWN_CONTACTS; c++)
             for (int a = 0; a < 2; a++)
-                r[c][a] = choose(done, stick[c][a], r[c][a]);
+                r[c][a] = choose(held, stick[c][a], r[c][a]);
+        done |= held;
     }
     if (!rule->indefinite && mask_any(unsure & LANES_NOT(done))) {
-        const mask open = unsure & LANES_NOT(done);
         const mask unique = direct_unique(rule->friction, D, touching, active);
-        const mask todo = open & (unique | crowded);
-        mask found = MASK_NONE;
-        if (mask_any(todo))
-            found = direct_modes(rule, D, uf, touching, active, tolerance.exact, todo, r);
+        const mask todo = unsure & LANES_NOT(done) & (unique | crowded);
+        const mask found =
+            direct_modes(rule, D, uf, touching, active, tolerance.exact, todo, &mode, r);
         v->unranked |= found & LANES_NOT(unique);
         done |= found;
     }
     mask left = unsure & LANES_NOT(done);
-    left &= LANES_NOT(pair_every(rule, D, uf, touching, active, &tolerance,
-                                 left & LANES_NOT(stood | rule->keeps), r, &v->ambiguous));
+    left &=
+        LANES_NOT(pair_every(rule, D, uf, touching, active, &tolerance, left, r, &v->ambiguous));
     for (int lane = 0; lane < LANES && mask_any(left); lane++) {
         if (!mask_get(left, lane))
             continue;
@@ -67,8 +75,6 @@ COLD void solve_rest(const struct contact_rule *rule, const lanes (*D)[CONTACTS]
         lane_choose_none(&best);
         if (p.elements <= SOLVE_ENUMERATED) {
             lane_enumerate(&p, &best);
-            if (mask_get(rule->keeps, lane))
-                crowd_keep(&p, &best);
         } else {
             crowd_solve(&p, &best);
             v->unranked |= mask_of_lane(lane);
@@ -159,7 +165,7 @@ HOT void solve_contacts(const struct contact_rule *rule, const lanes (*D)[CONTAC
     /* Copies, because what is passed by address has to stay in memory. */
     struct contact_rule own = *rule;
     lanes D1[CONTACTS][CONTACTS][2][2], uf1[CONTACTS][2], r1[CONTACTS][2];
-    lanes sliding[CONTACTS], shift[CONTACTS][2], before[CONTACTS][2], last[CONTACTS][2];
+    lanes sliding[CONTACTS], shift[CONTACTS][2], last[CONTACTS][2];
     mask part[CONTACTS];
     struct contact_verdict verdict = *v;
     EACH_CONTACT (c, 0)
@@ -171,7 +177,6 @@ HOT void solve_contacts(const struct contact_rule *rule, const lanes (*D)[CONTAC
         EACH (a, 0, 2) {
             r1[c][a] = r[c][a];
             shift[c][a] = rule->shift ? rule->shift[c][a] : none;
-            before[c][a] = rule->before ? rule->before[c][a] : none;
             last[c][a] = rule->last ? rule->last[c][a] : none;
         }
     }
@@ -183,7 +188,6 @@ HOT void solve_contacts(const struct contact_rule *rule, const lanes (*D)[CONTAC
     }
     own.sliding = rule->sliding ? sliding : NULL;
     own.shift = rule->shift ? (const lanes(*)[2])shift : NULL;
-    own.before = rule->before ? (const lanes(*)[2])before : NULL;
     own.last = rule->last ? (const lanes(*)[2])last : NULL;
     solve_rest(&own, (const lanes(*)[CONTACTS][2][2])D1, (const lanes(*)[2])uf1, touching, part,
                unsure, many, r1, &verdict);

@@ -19,12 +19,11 @@ struct iterate {
     scene_trig middle, end; /* trigonometry at u and at s1; one and the same for theta = 1 */
     mask active[CONTACTS];
     mask brought[CONTACTS]; /* not active, but come to the ground with the end's position mended */
-    mask keeps;             /* see contact_rule */
+    mask decides;           /* which of several contact solutions it is, whatever was before */
     struct contact_verdict verdict;
     lanes size;                                /* of the last correction */
     lanes shift;                               /* how far impulses moved with it, as a velocity */
     lanes approach[CONTACTS], energy, kinetic; /* at the end, see struct motion */
-    const lanes (*before)[2];                  /* see contact_rule */
     const lanes *along; /* NULL, or what restitution adds to tangential velocities, m/s */
     const int *corner;  /* see law_inside */
 };
@@ -125,12 +124,13 @@ HOT void iterate_contacts(const struct setting *set, const struct motion *from, 
     const struct contact_rule rule = {.friction = set->friction,
                                       .prefer = set->prefer,
                                       .shift = (const lanes(*)[2])rebound,
-                                      .before = it->before,
                                       .last = (const lanes(*)[2])it->r,
-                                      .keeps = it->keeps};
+                                      .known = LANES_NOT(it->decides)};
     solve_contacts(&rule, (const lanes(*)[CONTACTS][2][2])D, (const lanes(*)[2])uf, touching,
                    running, it->active, r, &now);
-    it->verdict = all ? now : contact_verdicts(running, &now, &it->verdict);
+    it->verdict.ambiguous |= running & now.ambiguous; /* a decision is taken once in a step */
+    it->verdict.unranked |= running & now.unranked;
+    it->verdict.unsolved = (it->verdict.unsolved & LANES_NOT(running)) | (running & now.unsolved);
     EACH_IN (c, touching) {
         const int n = contact_unknowns(c);
         const mask part = contact_part(c, it->active);

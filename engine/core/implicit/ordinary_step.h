@@ -235,9 +235,8 @@ HOT mask ordinary_reach(const struct ordinary *q, const struct setting *set,
     mask good = run;
     it->corner = NULL;
     it->along = NULL;
+    it->decides = MASK_NONE;
     it->verdict = (struct contact_verdict){MASK_NONE, MASK_NONE, MASK_NONE};
-    it->before = from->impulse;
-    it->keeps = MASK_NONE;
     EACH (i, 0, SCENE_ACTUATORS)
         it->torque[i] = torque[i];
     EACH_CONTACT (c, 0) {
@@ -267,7 +266,7 @@ HOT mask ordinary_try(const struct ordinary *q, const struct setting *set,
         it->gap[c] = scene_gap(&set->body, it->s1, &it->end, c);
     good &= LANES_NOT(ordinary_arrivals(set, it));
     good = step_finish(set, from, h, touching, full ? STEP_FULL : STEP_ORDINARY, MASK_NONE, good,
-                       false, it, report);
+                       false, it, report, NULL);
     good &= LANES_NOT(ordinary_arrivals(set, it)); /* removing position errors may bring some */
     report->iterations = report->evaluations = iterations;
     return good;

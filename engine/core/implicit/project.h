@@ -29,55 +29,67 @@ COLD void project_lift(contact_set touching, const mask *idle, const lanes (*G)[
     }
 }
 
-/* Multipliers of the directions `lift`, one for each contact, that change the gaps of held
- * contacts, which are in `touching`, by `error`, to first order; of those that are dependent the
- * first do the work, and as much as it takes to leave none below. The operator is of a step's
- * matrix: it need not be symmetric nor positive. A contact that is not held is a row of the
- * identity, so that the others' multipliers are to the bit what they are without it (zeros
- * included: + 0). */
-HOT void project_multipliers(const struct setting *set, const scene_trig *trig,
-                             contact_set touching, const lanes *const lift[CONTACTS],
-                             const mask *held, const lanes *error, lanes *multiplier)
-{
+/* The operator of the directions `lift`, one for each contact, that take multipliers to gaps of
+ * contacts that are held, in lanes, eliminated. It is of a step's matrix: it need not be symmetric
+ * nor positive. A contact that is not held is a row of the identity, so that the others'
+ * multipliers are to the bit what they are without it (zeros included: + 0). */
+struct lifts {
+    const lanes *lift[CONTACTS];
     lanes G[CONTACTS][CONTACTS], U[CONTACTS][CONTACTS], reciprocal[CONTACTS];
-    mask idle[CONTACTS], any = MASK_NONE;
+    mask idle[CONTACTS], any; /* which depend on those before */
+};
+
+HOT void project_factor(const struct setting *set, const scene_trig *trig, contact_set touching,
+                        const mask *held, struct lifts *f)
+{
+    lanes(*const U)[CONTACTS] = f->U;
     EACH_IN (c, touching) {
         scene_rows rows;
         scene_contact_rows(&set->body, trig, c, NULL, lanes_of(0), &rows);
         EACH_IN (k, touching) {
             lanes u[2];
-            scene_rows_velocity(&set->body, c, &rows, lift[k], u);
-            G[c][k] = U[c][k] = choose(held[c] & held[k], u[0], lanes_of(c == k));
+            scene_rows_velocity(&set->body, c, &rows, f->lift[k], u);
+            f->G[c][k] = U[c][k] = choose(held[c] & held[k], u[0], lanes_of(c == k));
         }
     }
+    f->any = MASK_NONE;
     EACH_IN (p, touching) {
-        idle[p] = MASK_NONE;
-        reciprocal[p] = 1 / U[p][p];
+        f->idle[p] = MASK_NONE;
+        f->reciprocal[p] = 1 / U[p][p];
         if (touching & ((1u << p) - 1)) { /* not the first */
-            idle[p] =
-                LANES_NOT(mask_less(CONTACT_RANK_GUARD * lanes_abs(G[p][p]), lanes_abs(U[p][p])));
-            reciprocal[p] = 1 / choose(idle[p], lanes_of(INFINITY), U[p][p]);
+            f->idle[p] = LANES_NOT(
+                mask_less(CONTACT_RANK_GUARD * lanes_abs(f->G[p][p]), lanes_abs(U[p][p])));
+            f->reciprocal[p] = 1 / choose(f->idle[p], lanes_of(INFINITY), U[p][p]);
         }
-        any |= idle[p];
-        multiplier[p] = error[p];
-        for (int k = 0; k < p; k++)
-            if (touching >> k & 1)
-                multiplier[p] = lanes_fnma(U[p][k], multiplier[k], multiplier[p]);
+        f->any |= f->idle[p];
         EACH_IN_FROM (i, p + 1, touching) {
-            U[i][p] = U[i][p] * reciprocal[p];
+            U[i][p] = U[i][p] * f->reciprocal[p];
             EACH_IN_FROM (k, p + 1, touching)
                 U[i][k] = lanes_fnma(U[i][p], U[p][k], U[i][k]);
         }
+    }
+}
+
+/* Multipliers that change the gaps of held contacts by `error`, to first order; of those that are
+ * dependent the first do the work, and as much as it takes to leave none below. */
+HOT void project_multipliers(contact_set touching, const struct lifts *f, const lanes *error,
+                             lanes *multiplier)
+{
+    EACH_IN (p, touching) {
+        multiplier[p] = error[p];
+        for (int k = 0; k < p; k++)
+            if (touching >> k & 1)
+                multiplier[p] = lanes_fnma(f->U[p][k], multiplier[k], multiplier[p]);
     }
     for (int p = OWN_CONTACTS - 1; p >= 0; p--) {
         if (!(touching >> p & 1))
             continue;
         EACH_IN_FROM (k, p + 1, touching)
-            multiplier[p] = lanes_fnma(U[p][k], multiplier[k], multiplier[p]);
-        multiplier[p] = lanes_fma(multiplier[p], reciprocal[p], lanes_of(0));
+            multiplier[p] = lanes_fnma(f->U[p][k], multiplier[k], multiplier[p]);
+        multiplier[p] = lanes_fma(multiplier[p], f->reciprocal[p], lanes_of(0));
     }
-    if (mask_any(any))
-        project_lift(touching, idle, (const lanes(*)[CONTACTS])G, error, multiplier);
+    if (mask_any(f->any))
+        project_lift(touching, f->idle, (const lanes(*)[CONTACTS])f->G, error, multiplier);
 }
 
 /* Sine and cosine after turning by small angles d, to third order. */
@@ -121,11 +133,12 @@ HOT void project_move(const struct setting *set, const struct iterate *it, conta
                       const mask *held, const lanes *error, lanes *d)
 {
     lanes multiplier[CONTACTS], rest[CONTACTS], more[CONTACTS];
-    const lanes *lift[CONTACTS];
+    struct lifts f;
     EACH_IN (c, touching) {
         multiplier[c] = lanes_of(0);
-        lift[c] = it->response[c][0];
+        f.lift[c] = it->response[c][0];
     }
+    project_factor(set, &it->end, touching, held, &f);
     for (int round = 0; round < 2; round++) {
         EACH_IN (c, touching) {
             rest[c] = error[c];
@@ -133,23 +146,36 @@ HOT void project_move(const struct setting *set, const struct iterate *it, conta
                 rest[c] -= scene_gap_change(&set->body, &it->end, c, d);
             rest[c] = choose(held[c], rest[c], lanes_of(0));
         }
-        project_multipliers(set, &it->end, touching, lift, held, rest, more);
+        project_multipliers(touching, &f, rest, more);
         EACH_IN (c, touching)
             multiplier[c] = multiplier[c] + more[c];
         EACH (i, 0, SCENE_COORDINATES) {
             d[i] = lanes_of(0);
             EACH_IN (c, touching)
-                d[i] = choose(held[c], lanes_fma(lift[c][i], multiplier[c], d[i]), d[i]);
+                d[i] = choose(held[c], lanes_fma(f.lift[c][i], multiplier[c], d[i]), d[i]);
         }
     }
 }
 
-/* Moves the end position until loaded contacts have their gap and no contact penetrates. Returns
- * the lanes where that needed no more than STEP_FARTHEST of turning: elsewhere the step is too
- * long for its velocity. */
+/* Contacts not in `near` that are not above the ground in a lane of m. */
+static inline contact_set project_missed(const struct setting *set, contact_set near, mask m,
+                                         const struct iterate *it)
+{
+    contact_set missed = 0;
+    EACH_IN (c, CONTACT_ALL & ~near)
+        if (mask_any(m & mask_less(lanes_of(0), set->may_touch[c]) &
+                     mask_less_equal(it->gap[c], lanes_of(STEP_CLOSED))))
+            missed |= contact_with(c);
+    return missed;
+}
+
+/* Moves the end position until loaded contacts have their gap and no contact penetrates, of those
+ * in `touching`; `missed`: with impacts, others that came to the ground. Returns the lanes where
+ * that needed no more than STEP_FARTHEST of turning: elsewhere the step is too long for its
+ * velocity. */
 HOT mask project_position(const struct setting *set, const struct motion *from, lanes h,
                           contact_set touching, bool impacts, mask run, struct iterate *it,
-                          lanes *energy)
+                          lanes *energy, contact_set *missed)
 {
     lanes wanted[CONTACTS], error[CONTACTS];
     mask held[CONTACTS], somewhere = MASK_NONE;
@@ -164,6 +190,8 @@ HOT mask project_position(const struct setting *set, const struct motion *from, 
     mask todo = run;
     for (int round = 0; round < 12; round++) {
         todo = MASK_NONE;
+        if (impacts)
+            *missed |= project_missed(set, touching, run, it);
         EACH_IN (c, touching) {
             mask near = run & it->active[c];
             if (impacts)
@@ -339,14 +367,15 @@ HOT void project_along(const struct setting *set, const lanes (*rebound)[2], con
 #endif
 }
 
-/* Responses to impulses at the contacts by the inertia at the end in the lanes of `impact`,
- * elsewhere those of the iterate. */
+/* Responses to impulses at contacts in `touching` by the inertia at the end in the lanes of
+ * `impact`, elsewhere those of the iterate. */
 static inline void project_inertia(const struct setting *set, mask impact, const struct iterate *it,
+                                   contact_set touching,
                                    lanes response[CONTACTS][2][SCENE_COORDINATES])
 {
     scene_matrix A;
     scene_inertia(&set->body, &it->end, &A);
-    for (int c = 0; c < OWN_CONTACTS; c++) {
+    EACH_IN (c, touching) {
         scene_contact_response(&set->body, &A, false, &it->end, c, response[c]);
         for (int a = 0; a < 2; a++)
             for (int i = 0; i < SCENE_COORDINATES; i++)
@@ -388,7 +417,8 @@ static inline void project_slides(const struct setting *set, const struct iterat
 }
 
 /* Three tests, by lanes: a contact that does not carry lies on the ground and approaches it; an end
- * of a grip carries; a sliding contact has come to slide the way its friction points. */
+ * of a grip carries; a sliding contact has come to slide the way its friction points, by more
+ * than rounding. */
 HOT mask project_falls(const struct setting *set, mask run, const struct grip *g, int c,
                        const struct iterate *it, const lanes u[2])
 {
@@ -398,23 +428,21 @@ HOT mask project_falls(const struct setting *set, mask run, const struct grip *g
 }
 HOT mask project_loaded(const struct grip *g, int c)
 {
-    mask loaded = g->rows[c][0];
-    EACH_CONTACT (k, c + 1)
-        if (contact_grip(k) == c)
-            loaded |= g->rows[k][0];
-    return loaded;
+    const int second = contact_second(c);
+    return second < 0 ? g->rows[c][0] : g->rows[c][0] | g->rows[second][0];
 }
 HOT mask project_turns(const struct grip *g, int c, const struct iterate *it, const lanes u[2])
 {
     return project_loaded(g, c) & LANES_NOT(g->rows[c][1]) &
-           mask_less(lanes_of(0), it->r[c][1] * iterate_slip(it, c, u));
+           mask_less(PROJECT_VELOCITY * lanes_abs(it->r[c][1]),
+                     it->r[c][1] * iterate_slip(it, c, u));
 }
 
 /* Position, then velocity at the end of a step in which contacts may have come, in the lanes of
- * `run`. Returns those where the position could be mended. */
+ * `run`; `missed`: see project_position. Returns those where the position could be mended. */
 static inline mask project_far(const struct setting *set, const struct motion *from, lanes h,
                                contact_set touching, mask impact, mask run, struct iterate *it,
-                               lanes (*u)[2], lanes *energy)
+                               lanes (*u)[2], lanes *energy, contact_set *missed)
 {
     struct grip g;
     lanes response[CONTACTS][2][SCENE_COORDINATES], rebound[CONTACTS][2];
@@ -426,15 +454,15 @@ static inline mask project_far(const struct setting *set, const struct motion *f
     }
     project_rows(set, touching, run, it, &g);
     project_slides(set, it, touching, &g);
-    const mask near = project_position(set, from, h, touching, true, run, it, energy);
-    project_inertia(set, impact, it, response);
+    const mask near = project_position(set, from, h, touching, true, run, it, energy, missed);
+    project_inertia(set, impact, it, touching, response);
     mask where = run; /* a lane in which nothing is left to do has done with it */
     for (int round = 0; round < 2 + OWN_CONTACTS; round++) {
         mask falls[CONTACTS], turns[CONTACTS], any = MASK_NONE;
         grip_factor(set, &it->end, touching, (const lanes(*)[2][SCENE_COORDINATES])response, &g);
         project_along(set, (const lanes(*)[2])rebound, touching, &g,
                       (const lanes(*)[2][SCENE_COORDINATES])response, it, u, energy);
-        for (int c = 0; c < OWN_CONTACTS; c++) {
+        EACH_IN (c, touching) {
             falls[c] = project_falls(set, where, &g, c, it, u[c]);
             it->brought[c] |= falls[c] & LANES_NOT(it->active[c]);
             turns[c] = MASK_NONE;
@@ -444,7 +472,7 @@ static inline mask project_far(const struct setting *set, const struct motion *f
         }
         if (!mask_any(any))
             break;
-        for (int c = 0; c < OWN_CONTACTS; c++) { /* stopped, where there is one */
+        EACH_IN (c, touching) { /* stopped, where there is one */
             g.rows[c][0] = any & (g.rows[c][0] | falls[c]);
             g.rows[c][1] = any & (g.rows[c][1] | turns[c]);
         }
@@ -471,12 +499,12 @@ HOT mask project_near(const struct setting *set, const struct motion *from, lane
         EACH_IN (c, touching)
             g.rows[c][0] = g.rows[c][1] = LANES_ALL;
         grip_factor(set, &it->end, touching, it->response, &g);
-        good &= project_position(set, from, h, touching, false, run, it, energy);
+        good &= project_position(set, from, h, touching, false, run, it, energy, NULL);
         project_along(set, NULL, touching, &g, it->response, it, u, energy);
         return good;
     }
     grip_factor(set, &it->end, touching, it->response, &g);
-    good &= project_position(set, from, h, touching, false, run, it, energy);
+    good &= project_position(set, from, h, touching, false, run, it, energy, NULL);
     project_along(set, NULL, touching, &g, it->response, it, u, energy);
     /* Of contacts that are active: others may be in `touching` for a neighbour's sake. */
     EACH_IN (c, touching) {

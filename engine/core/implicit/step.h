@@ -35,10 +35,10 @@
 #include "project.h"
 
 #define STEP_MAX_ITERATIONS 25
+#define STEP_DECIDED 2 /* iterations in which an impact decides between several solutions */
+#define STEP_NEAR 1e-3 /* m, rad: what is nearer may close in a step with an impact */
 #define STEP_TOLERANCE                                                                             \
     1e-7 /* last Newton correction, m/s and rad/s; the error left is its square */
-#define STEP_KEEPS_AFTER                                                                           \
-    8 /* iterations: of several solutions it is the last iterate's from then on */
 #define STEP_FROZEN_RESIDUAL                                                                       \
     1e-6 /* m/s: a step with frozen geometry that is further off is refused */
 #define STEP_MOST_GAIN                                                                             \
@@ -46,8 +46,10 @@
 #define STEP_MOST_REBOUND 4   /* the same for a step with a rebound, of all kinetic energy ... */
 #define STEP_MOST_MOREAU 1.25 /* ... and by Moreau's law, whose further roots are nearer */
 
-/* Kinetic energy that the contact impulses added: r.U - x^T A x / 2, x = A^-1 H^T r. */
-static inline lanes impact_energy(const struct setting *set, const struct iterate *it)
+/* Kinetic energy that the impulses of contacts in `touching` added: r.U - x^T A x / 2, x = A^-1 H^T
+ * r. */
+static inline lanes impact_energy(const struct setting *set, contact_set touching,
+                                  const struct iterate *it)
 {
     const scene_trig *const trig = METHOD_THETA == 1 ? &it->end : &it->middle;
     scene_matrix A;
@@ -55,7 +57,7 @@ static inline lanes impact_energy(const struct setting *set, const struct iterat
     lanes x[SCENE_COORDINATES], work = lanes_of(0);
     EACH (i, 0, SCENE_COORDINATES)
         x[i] = lanes_of(0);
-    EACH_CONTACT (c, 0) {
+    EACH_IN (c, touching) {
         lanes response[2][SCENE_COORDINATES], u[2];
         const bool grips = contact_unknowns(c) == 2;
         scene_contact_response(&set->body, &A, false, &it->end, c, response);
@@ -202,11 +204,12 @@ HOT lanes step_damped(const struct setting *set, const struct motion *from,
 
 /* What an iterate that has arrived leaves: position errors removed, the balance of energy, the
  * report. `touching`: contacts that are active anywhere; `kind`: with STEP_ANY not all were closed
- * before, and those in `impact` are; `frozen`: the geometry was. Returns the lanes of `converged`
- * whose step is admitted. */
+ * before, those in `impact` are, and others may be `missed`; `frozen`: the geometry was. Returns
+ * the lanes of `converged` whose step is admitted. */
 HOT mask step_finish(const struct setting *set, const struct motion *from, lanes h,
                      contact_set touching, enum step_kind kind, mask impact, mask converged,
-                     bool frozen, struct iterate *it, struct step_report *report)
+                     bool frozen, struct iterate *it, struct step_report *report,
+                     contact_set *missed)
 {
     const lanes none = lanes_of(0);
     const bool impacts = kind == STEP_ANY;
@@ -229,7 +232,7 @@ HOT mask step_finish(const struct setting *set, const struct motion *from, lanes
     EACH_IN (c, touching)
         somewhere |= it->active[c] & converged;
     if (impacts && mask_any(somewhere & impact))
-        report->impact_energy = choose(somewhere & impact, impact_energy(set, it), none);
+        report->impact_energy = choose(somewhere & impact, impact_energy(set, touching, it), none);
     if (frozen)
         converged &= step_obeys(set, from, it);
     lanes u[CONTACTS][2];
@@ -241,7 +244,7 @@ HOT mask step_finish(const struct setting *set, const struct motion *from, lanes
             scene_contact_velocity(&set->body, &it->end, c, it->w, it->u[c]);
     if (touching) {
         const mask right = impacts ? project_far(set, from, h, touching, lands, somewhere, it, u,
-                                                 &report->projection_energy)
+                                                 &report->projection_energy, missed)
                                    : project_near(set, from, h, touching, kind == STEP_FULL,
                                                   somewhere, it, u, &report->projection_energy);
         converged &= right | LANES_NOT(somewhere);
@@ -321,21 +324,20 @@ static inline bool step_moreau(const struct setting *set, const struct motion *f
  * only where it converged. `torque` is held over the step unless `coupled`: then the law acts
  * inside it. From iteration `freeze_after` on inertia and directions stay those of that iterate:
  * with parallel legs the contact solution can jump with the geometry, and Newton then cycles
- * between two modes for every h. From iteration STEP_KEEPS_AFTER on it is the last iterate's of
- * several contact solutions: two may be each other's mirror image - legs side by side, of which one
- * takes the blow and the other gives way -, and each is a little the worse at the iterate that it
- * leads to itself. `corner`: as in law_inside; converged is then only what agrees
- * with it. brought: contacts that take part from the first iterate on though they were open; those
- * that turn out to be such are added. Returns the lanes that converged. */
-COLD mask step_once(const int *corner, const struct setting *set, const struct motion *from,
-                    const lanes *torque, lanes h, mask run, bool coupled, int freeze_after,
-                    mask *brought, struct motion *to, struct step_report *report)
+ * between two modes for every h. `corner`: as in law_inside; converged is then only what agrees
+ * with it. `near`: contacts that may take part; `missed`: others that did come to the ground, and
+ * nothing is written. brought: contacts that take part from the first iterate on though they were
+ * open; those that turn out to be such are added. Returns the lanes that converged. */
+COLD mask step_within(contact_set near, contact_set *missed, const int *corner,
+                      const struct setting *set, const struct motion *from, const lanes *torque,
+                      lanes h, mask run, bool coupled, int freeze_after, mask *brought,
+                      struct motion *to, struct step_report *report)
 {
     struct iterate it;
     it.corner = corner;
     mask impact = MASK_NONE, running = run;
     mask closed[CONTACTS];
-    lanes before[CONTACTS][2], tangential[CONTACTS], along[CONTACTS];
+    lanes tangential[CONTACTS], along[CONTACTS];
     const bool moreau = step_moreau(set, from, run, tangential);
     it.along = moreau ? along : NULL;
     EACH (i, 0, SCENE_COORDINATES)
@@ -349,30 +351,32 @@ COLD mask step_once(const int *corner, const struct setting *set, const struct m
         it.brought[c] = MASK_NONE;
         impact |= closed[c] & mask_less(from->approach[c], lanes_of(-STEP_APPROACH));
         impact |= brought[c];
-        it.r[c][0] = it.r[c][1] = lanes_of(0);
-        EACH (a, 0, 2) {
-            before[c][a] = choose(impact, lanes_of(0), from->impulse[c][a]);
+        EACH (a, 0, 2)
             EACH (i, 0, SCENE_COORDINATES)
                 it.response[c][a][i] = lanes_of(0);
-        }
     }
-    it.before = (const lanes(*)[2])before;
+    EACH_CONTACT (c, 0)
+        EACH (a, 0, 2)
+            it.r[c][a] = choose(it.active[c] & LANES_NOT(impact), from->impulse[c][a], lanes_of(0));
     it.verdict = (struct contact_verdict){MASK_NONE, MASK_NONE, MASK_NONE};
     iterate_place(set, from, h, false, &it);
     lanes iterations = lanes_of(0);
     for (int k = 0; k < STEP_MAX_ITERATIONS && mask_any(running); k++) {
-        it.keeps = k < STEP_KEEPS_AFTER ? MASK_NONE : running;
+        it.decides = k < STEP_DECIDED ? impact : MASK_NONE;
         contact_set touching = 0;
         EACH_CONTACT (c, 0)
             touching |= mask_any(it.active[c] & running) ? contact_with(c) : 0;
-        /* Responses of all or none: position errors may have to be removed at any. */
+        /* Responses of all that are near or none: position errors may have to be removed. */
         for (int c = 0; c < OWN_CONTACTS && moreau; c++)
             along[c] = choose(impact, tangential[c], lanes_of(0));
         iterate_newton(set, from, h, false, running, true, impact, coupled, k > freeze_after,
-                       touching, touching ? CONTACT_ALL : 0, &it);
+                       touching, touching ? near : 0, &it);
         iterations += choose(running, lanes_of(1), lanes_of(0));
         iterate_place(set, from, h, k >= freeze_after, &it);
         mask news = MASK_NONE;
+        *missed = project_missed(set, near, running, &it);
+        if (*missed)
+            return MASK_NONE;
         EACH_CONTACT (c, 0) {
             const mask hit = running & LANES_NOT(it.active[c]) &
                              mask_less(lanes_of(0), set->may_touch[c]) &
@@ -398,13 +402,37 @@ COLD mask step_once(const int *corner, const struct setting *set, const struct m
         iterate_place(set, from, h, false, &it);
     if (METHOD_THETA != 1)
         scene_trigonometry(it.s1, &it.end);
-    converged = step_finish(set, from, h, CONTACT_ALL, STEP_ANY, impact, converged,
-                            freeze_after < STEP_MAX_ITERATIONS, &it, report);
+    converged = step_finish(set, from, h, near, STEP_ANY, impact, converged,
+                            freeze_after < STEP_MAX_ITERATIONS, &it, report, missed);
+    if (*missed)
+        return MASK_NONE;
     report->iterations = report->evaluations = iterations;
     step_commit(from->t + h, &it, false, converged, mask_less(lanes_of(0), report->landed), to);
     EACH_CONTACT (c, 0)
         brought[c] |= converged & it.brought[c];
     return converged;
+}
+
+/* step_within the contacts that are or may come near, and those that it turns out to miss: what it
+ * finds in a lane does not depend on others. */
+static inline mask step_once(const int *corner, const struct setting *set,
+                             const struct motion *from, const lanes *torque, lanes h, mask run,
+                             bool coupled, int freeze_after, mask *brought, struct motion *to,
+                             struct step_report *report)
+{
+    contact_set near = 0, missed = 0;
+    EACH_CONTACT (c, 0) {
+        const lanes way = (2 * h) * lanes_min(from->approach[c], lanes_of(0));
+        if (mask_any(run & mask_less(lanes_of(0), set->may_touch[c]) &
+                     (brought[c] | mask_less(from->gap[c] + way, lanes_of(STEP_NEAR)))))
+            near |= contact_with(c);
+    }
+    for (;; near |= missed) {
+        const mask good = step_within(near, &missed, corner, set, from, torque, h, run, coupled,
+                                      freeze_after, brought, to, report);
+        if (!missed)
+            return good;
+    }
 }
 
 /* step_once, repeated where mending the position brings contacts to the ground that no iterate saw

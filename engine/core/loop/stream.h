@@ -30,11 +30,15 @@
 /* Bundles of one kind that take turns, for how many steps at most, and for how many of them a step
  * counts that is not ordinary: the caller is to be asked soon again. */
 #ifdef ADVANCE_MOVES
-enum { STREAM_BUNDLES = 4, STREAM_STEPS = 250 };
-#ifdef ADVANCE_ORDINARY
-enum { STREAM_SLOW = 8 };
+#ifdef CONTACT_LISTS /* the more cases, the less that lanes side by side have not in common */
+enum { STREAM_BUNDLES = 16, STREAM_RARE = 16 };
 #else
-enum { STREAM_SLOW = 1 };
+enum { STREAM_BUNDLES = 4, STREAM_RARE = 8 };
+#endif
+#ifdef ADVANCE_ORDINARY
+enum { STREAM_STEPS = 250, STREAM_SLOW = STREAM_RARE };
+#else
+enum { STREAM_STEPS = 250, STREAM_SLOW = 1 };
 #endif
 #else
 enum { STREAM_BUNDLES = 1, STREAM_STEPS = 1000, STREAM_SLOW = 200 };

@@ -214,20 +214,23 @@ static inline void between_mode(const struct setting *set, const struct dynamics
     lanes r[CONTACTS][2], u[CONTACTS][2];
     struct contact_verdict verdict;
     mask starting[CONTACTS], begins = MASK_NONE;
-    lanes before[CONTACTS][2]; /* any impulse inside the cone, or none */
+    lanes last[CONTACTS][2]; /* any impulse inside the cone, where all stood */
+    mask moves = MASK_NONE;
     for (int c = 0; c < OWN_CONTACTS; c++) {
         const int g = contact_grip(c);
-        before[c][0] = stood[c], before[c][1] = none;
-        if (g < 0)
-            continue;
-        const mask goes_on = mask_less(none, lanes_abs(sliding[g]));
-        before[c][0] = choose(goes_on, none, stood[c]);
-        slides |= part[c] & goes_on & mask_less(none, set->friction);
+        mask slips = MASK_NONE;
+        if (g >= 0)
+            slips = part[c] & mask_less(none, lanes_abs(sliding[g]));
+        slides |= slips & mask_less(none, set->friction);
+        moves |= slips | (part[c] & LANES_NOT(mask_less(none, stood[c])));
     }
+    for (int c = 0; c < OWN_CONTACTS; c++)
+        last[c][0] = stood[c], last[c][1] = none;
     const struct contact_rule rule = {.friction = set->friction,
                                       .prefer = set->prefer,
                                       .sliding = sliding,
-                                      .before = (const lanes(*)[2])before};
+                                      .last = (const lanes(*)[2])last,
+                                      .known = LANES_NOT(moves)};
     solve_contacts(&rule, (const lanes(*)[CONTACTS][2][2])e->D, (const lanes(*)[2])e->free,
                    touching, LANES_ALL, part, r, &verdict);
     direct_velocities((const lanes(*)[CONTACTS][2][2])e->D, (const lanes(*)[2])e->free, CONTACT_ALL,
@@ -294,11 +297,11 @@ static inline void between_project_position(const struct setting *set, const mas
     const lanes none = lanes_of(0);
     lanes error[CONTACTS], multiplier[CONTACTS];
     lanes lift[CONTACTS][SCENE_COORDINATES];
-    const lanes *along[CONTACTS];
+    struct lifts along;
     for (int c = 0; c < OWN_CONTACTS; c++) {
         for (int i = 0; i < SCENE_COORDINATES; i++)
             lift[c][i] = choose(held[c], e->response[c][0][i], none);
-        along[c] = lift[c];
+        along.lift[c] = lift[c];
     }
     for (int round = 0; round < 4; round++) {
         mask todo = MASK_NONE;
@@ -309,7 +312,8 @@ static inline void between_project_position(const struct setting *set, const mas
         if (!mask_any(todo))
             return;
         lanes d[SCENE_COORDINATES];
-        project_multipliers(set, &e->trig, CONTACT_ALL, along, held, error, multiplier);
+        project_factor(set, &e->trig, CONTACT_ALL, held, &along);
+        project_multipliers(CONTACT_ALL, &along, error, multiplier);
         for (int i = 0; i < SCENE_COORDINATES; i++) {
             lanes sum = none;
             EACH_IN (c, CONTACT_ALL)

@@ -184,18 +184,19 @@ HOT mask standing_project(contact_set touching, const struct setting *set, const
     const lanes none = lanes_of(0);
     lanes error[CONTACTS], multiplier[CONTACTS], u[CONTACTS][2], r[CONTACTS][2], far = none;
     lanes d[SCENE_COORDINATES];
-    const lanes *along[CONTACTS];
+    struct lifts along;
     mask held[CONTACTS];
     EACH_CONTACT (c, 0) {
         held[c] = LANES_ALL;
-        along[c] = e->response[c][0];
+        along.lift[c] = e->response[c][0];
         error[c] = none;
         if (!(touching >> c & 1))
             continue;
         error[c] = -scene_gap(&set->body, end->s, &end->trig, c);
         far = lanes_max(lanes_abs(error[c]), far);
     }
-    project_multipliers(set, &e->trig, touching, along, held, error, multiplier);
+    project_factor(set, &e->trig, touching, held, &along);
+    project_multipliers(touching, &along, error, multiplier);
     EACH (i, 0, SCENE_COORDINATES) {
         d[i] = none;
         EACH_IN (c, touching)
