@@ -96,8 +96,8 @@ const struct row schema_rows[] = {
     {0, {.path = "ground.prefer", .type = FIELD_WORD, .sweep = true, VALUE(most_energy),
          .fallback = 0, WORDS(prefer_words), .quiet = true,
          .text = "which motion, where several obey the contact laws",
-         .more = "The one that leaves the least kinetic energy, or the most; contacts that stand "
-                 "go on standing while they can. Such steps are counted as ambiguous_steps. Swept "
+         .more = "The one that leaves the least kinetic energy, or the most; contacts go on as "
+                 "they do, standing or sliding, while they can. Such steps are counted as ambiguous_steps. Swept "
                  "over both, each case is followed down both branches."}},
     {FAMILY_CONTACTS, {.path = "ground.contacts", .type = FIELD_WORDS, .by_scene = true,
          VALUE(contacts), .fallback_text = "all of the scene's",
