@@ -81,6 +81,20 @@ static inline void between_evaluate(const struct setting *set, lanes t, const la
     decoupling_apply(set, decouples, touching, e);
 }
 
+/* Contacts that are in `part` in any lane, and what they need of others; few are all. */
+static inline contact_set between_set(const mask *part)
+{
+#ifdef CONTACT_LISTS
+    contact_set set = 0;
+    for (int c = 0; c < OWN_CONTACTS; c++)
+        set |= mask_any(part[c]) ? contact_with(c) : 0;
+    return set;
+#else
+    (void)part;
+    return CONTACT_ALL;
+#endif
+}
+
 /* Forces r of all contacts in their states that bring free[][] to rest; friction 0: what slides
  * does so freely. */
 COLD void between_forces(const struct contact_state *m, const lanes (*D)[CONTACTS][2][2],
@@ -93,14 +107,14 @@ COLD void between_forces(const struct contact_state *m, const lanes (*D)[CONTACT
         edge[c] = -(friction * m->slide[c]);
     }
     contact_mode_rows(m->closed, sticks, rows);
-    contact_rest(CONTACT_ALL, CONTACT_CAREFUL, D, free, (const mask(*)[2])rows, edge, r);
+    contact_rest(between_set(m->closed), CONTACT_CAREFUL, D, free, (const mask(*)[2])rows, edge, r);
 }
 
 /* Adds what forces or impulses r of contacts in `part` do, by their responses, to x. */
 static inline void between_push(const mask *part, const lanes (*response)[2][SCENE_COORDINATES],
                                 const lanes (*r)[2], lanes *x)
 {
-    for (int c = 0; c < OWN_CONTACTS; c++)
+    EACH_IN (c, between_set(part))
         for (int i = 0; i < SCENE_COORDINATES; i++) {
             lanes push = response[c][0][i] * r[c][0];
             if (contact_unknowns(c) == 2)
@@ -297,6 +311,7 @@ static inline void between_project_position(const struct setting *set, const mas
     const lanes none = lanes_of(0);
     lanes error[CONTACTS], multiplier[CONTACTS];
     lanes lift[CONTACTS][SCENE_COORDINATES];
+    const contact_set all = between_set(held);
     struct lifts along;
     for (int c = 0; c < OWN_CONTACTS; c++) {
         for (int i = 0; i < SCENE_COORDINATES; i++)
@@ -312,11 +327,11 @@ static inline void between_project_position(const struct setting *set, const mas
         if (!mask_any(todo))
             return;
         lanes d[SCENE_COORDINATES];
-        project_factor(set, &e->trig, CONTACT_ALL, held, &along);
-        project_multipliers(CONTACT_ALL, &along, error, multiplier);
+        project_factor(set, &e->trig, all, held, &along);
+        project_multipliers(all, &along, error, multiplier);
         for (int i = 0; i < SCENE_COORDINATES; i++) {
             lanes sum = none;
-            EACH_IN (c, CONTACT_ALL)
+            EACH_IN (c, all)
                 sum += lift[c][i] * multiplier[c];
             d[i] = choose(todo, sum, none);
             s[i] = choose(todo, s[i] + d[i], s[i]);
