@@ -282,6 +282,8 @@ later() { # name, what is said, what the run is started with ...: none comes
     is "... the same bits" "$stance" compare all.h5 comes.h5
 }
 later "a compiler that fails while kernels that are built in compute" 'failing does not compile' CC=./failing
+# (Made before, so that it comes while there still are cases, however busy the machine is.)
+CC=./fusing "$stance" build "$pole" >log 2>&1
 later "... or fuses" 'computes another [a-z_]* in check [0-9]*: refused' CC=./fusing
 is "... remembered" test -n "$(others "$STANCE_CACHE" | grep 'refused$')"
 
