@@ -534,11 +534,31 @@ static inline void direct_mode_next(const struct contact_rule *rule, contact_set
     }
 }
 
-/* Tries a mode in the lanes of `todo`: r where it is a solution's, and, in those of `regular`, its
- * operator is; these are returned. In the others of `todo` the mode becomes the next one to try. */
+/* Lanes where a mode speaks for itself: not all contacts are at rest, or all stick and their
+ * operator is regular. Else impulses may be shared in other ways, and one on its cone's edge for no
+ * reason: see direct_hold. */
+static inline mask direct_is_plain(const struct contact_rule *rule, contact_set touching,
+                                   const mask *active, const struct direct_mode *mode, mask regular,
+                                   lanes tolerance, const lanes (*u)[2])
+{
+    mask rest = LANES_ALL, stick = regular;
+    EACH_IN (c, touching) {
+        rest &= LANES_NOT(active[c]) | mode->closed[c];
+        if (contact_unknowns(c) == 1)
+            continue;
+        const mask slips = contact_part(c, mode->closed) & LANES_NOT(mode->sticks[c]) &
+                           mask_less(lanes_of(0), rule->friction);
+        rest &= LANES_NOT(slips & mask_less(tolerance, lanes_abs(u[c][1])));
+        stick &= LANES_NOT(slips);
+    }
+    return stick | LANES_NOT(rest);
+}
+
+/* Tries a mode in the lanes of `todo`: r where it is a solution's, and, in those of `plain`, speaks
+ * for itself; these are returned. In the others of `todo` the mode becomes the next one to try. */
 COLD mask direct_try(const struct contact_rule *rule, const lanes (*D)[CONTACTS][2][2],
                      const lanes (*uf)[2], contact_set touching, const mask *active,
-                     lanes tolerance, mask todo, mask regular, struct direct_mode *mode,
+                     lanes tolerance, mask todo, mask plain, struct direct_mode *mode,
                      lanes (*r)[2])
 {
     struct contact_factors f;
@@ -554,8 +574,10 @@ COLD mask direct_try(const struct contact_rule *rule, const lanes (*D)[CONTACTS]
     direct_velocities(D, uf, touching, (const lanes(*)[2])candidate, u);
     const lanes violation = direct_violation(rule, D, touching, active,
                                              (const lanes(*)[2])candidate, (const lanes(*)[2])u);
-    const mask good =
-        todo & (f.regular | LANES_NOT(regular)) & mask_less_equal(violation, tolerance);
+    mask good = todo & mask_less_equal(violation, tolerance);
+    if (mask_any(plain))
+        good &= LANES_NOT(plain) | direct_is_plain(rule, touching, active, mode, f.regular,
+                                                   tolerance, (const lanes(*)[2])u);
     direct_take(rule->friction, touching, (const lanes(*)[2])candidate, good, r);
     direct_mode_next(rule, touching, active, todo & LANES_NOT(good), (const lanes(*)[2])candidate,
                      (const lanes(*)[2])u, mode);

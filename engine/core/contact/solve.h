@@ -40,10 +40,11 @@ COLD void solve_rest(const struct contact_rule *rule, const lanes (*D)[CONTACTS]
     direct_mode_of(rule, active, known, rule->last, &mode);
     mask done = MASK_NONE;
     if (mask_any(known))
-        done = direct_try(rule, D, uf, touching, active, tolerance.exact, known, stood, &mode, r);
+        done = direct_try(rule, D, uf, touching, active, tolerance.exact, known, known, &mode, r);
     const mask crowded = unsure & solve_crowded(touching, active);
     const mask holds =
-        (stood | (crowded & direct_stick_is_least(rule, touching, active))) & LANES_NOT(done);
+        LANES_NOT(done) &
+        (stood | ((known | crowded) & direct_stick_is_least(rule, touching, active)));
     if (mask_any(holds)) {
         const mask held =
             holds & direct_hold(rule->friction, tolerance.most, D, uf, touching, active, stick);
