@@ -8,9 +8,10 @@
  * sticks where u_T = 0 is reached inside, else it slips at that end of the interval beyond which
  * the sticking impulse lies.
  *
- * The same mode. Several contacts that stood, slid and were open in the step or iterate before go on
- * so as long as that obeys the laws, whatever else would: motion is smooth between impacts, and what
- * goes on has no decision to take. (One point alone is decided anew: it seldom has two solutions.)
+ * The same mode. Several contacts that stood, slid and were open in the step or iterate before go
+ * on so as long as that obeys the laws, whatever else would: motion is smooth between impacts, and
+ * what goes on has no decision to take. (One point alone is decided anew: it seldom has two
+ * solutions.)
  *
  * All stick. Where that obeys the laws it is the solution with the least kinetic energy: r.uf +
  * r.D r / 2 has its minimum over all r at D r = -uf. (D of a Newton iteration is not quite
