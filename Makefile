@@ -137,12 +137,10 @@ $(BUILD)/libproduct.a: $(filter-out %/main.o %/build_info.o,$(program_objects))
 $(BUILD)/%.a:
 	$(call QUIET,ar,$@)rm -f $@ && $(AR) rcs $@ $^
 
-# One kernel of each method says what the method is.
-describing := $(foreach m,$(METHODS),$(RUNTIME)-$(m)-$(firstword $(runtime_isas))) $(SCALAR_METHODS:%=$(RUNTIME)-%-scalar)
 define kernel_rule
 $(BUILD)/kernel/$(1)-$(2)-$(3).o: engine/methods/$(2).c $(BUILD)/flags
 	@mkdir -p $$(@D)
-	$$(call QUIET,kernel,$$@)$$(CC) $$(KERNEL_CFLAGS) $$(ALLFLAGS) $$(kernel_warnings) $(4) -DSTANCE_SCENE=$(1) -DSTANCE_ISA=$(3) $(if $(filter $(describing),$(1)-$(2)-$(3)),-DSTANCE_DESCRIBE_METHOD) \
+	$$(call QUIET,kernel,$$@)$$(CC) $$(KERNEL_CFLAGS) $$(ALLFLAGS) $$(kernel_warnings) $(4) -DSTANCE_SCENE=$(1) -DSTANCE_ISA=$(3) \
 	    -DSTANCE_SCENE_LANES='"engine/scenes/$(1)_lanes.h"' -MMD -MP -c -o $$@ $$<
 endef
 $(foreach s,$(STRUCTURES),$(foreach m,$(METHODS),$(foreach i,$(ISAS),\

@@ -496,13 +496,11 @@ static inline mask advance(struct advance *a, const struct setting *set, const l
 #include "engine/core/loop/stream.h"
 // clang-format on
 
-#ifdef STANCE_DESCRIBE_METHOD
-const stance_method stance_method_capturing = {
+STANCE_METHOD(capturing) = {
     .name = "capturing",
     .text = "order 4 or 5 between events; the implicit law, refined to tolerance, across them",
     .order_smooth = 5,
     .tolerance = 1e-8,
 };
-#endif
 
 STANCE_KERNEL(capturing);

@@ -553,13 +553,11 @@ static inline mask advance(struct advance *a, const struct setting *set, const l
 #include "engine/core/loop/stream.h"
 // clang-format on
 
-#ifdef STANCE_DESCRIBE_METHOD
-const stance_method stance_method_event_driven = {
+STANCE_METHOD(event_driven) = {
     .name = "event-driven",
     .text = "the reference: order 6 between events, every event located to rounding (SUNDIALS)",
     .order_smooth = 6,
     .tolerance = 1e-12,
 };
-#endif
 
 STANCE_KERNEL(event_driven);

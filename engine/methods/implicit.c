@@ -16,12 +16,10 @@
 #include "engine/core/loop/stream.h"
 // clang-format on
 
-#ifdef STANCE_DESCRIBE_METHOD
-const stance_method stance_method_implicit = {
+STANCE_METHOD(implicit) = {
     .name = "implicit",
     .text = "Moreau's implicit step, theta = 1, exact contact: the paper's method",
     .order_smooth = 1,
 };
-#endif
 
 STANCE_KERNEL(implicit);

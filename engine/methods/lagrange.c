@@ -147,12 +147,10 @@ static inline mask advance(struct advance *a, const struct setting *set, const l
 #include "engine/core/loop/stream.h"
 // clang-format on
 
-#ifdef STANCE_DESCRIBE_METHOD
-const stance_method stance_method_lagrange = {
+STANCE_METHOD(lagrange) = {
     .name = "lagrange",
     .text = "switched Lagrange equations, Runge-Kutta of order 4, switches bracketed by halving",
     .order_smooth = 4,
 };
-#endif
 
 STANCE_KERNEL(lagrange);

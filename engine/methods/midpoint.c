@@ -14,12 +14,10 @@
 #include "engine/core/loop/stream.h"
 // clang-format on
 
-#ifdef STANCE_DESCRIBE_METHOD
-const stance_method stance_method_midpoint = {
+STANCE_METHOD(midpoint) = {
     .name = "midpoint",
     .text = "implicit midpoint for smooth forces, implicit contact impulses",
     .order_smooth = 2,
 };
-#endif
 
 STANCE_KERNEL(midpoint);

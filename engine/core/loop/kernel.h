@@ -17,6 +17,12 @@
 #define STANCE_JOIN2_(a, b) stance_##a##_##b
 #define STANCE_JOIN2(a, b) STANCE_JOIN2_(a, b)
 
+/* What the method is (a stance_method's fields): in each of its kernels, of which the linker keeps
+ * one. */
+#define STANCE_METHOD(name)                                                                        \
+    extern const stance_method STANCE_JOIN2(method, name);                                         \
+    __attribute__((weak)) const stance_method STANCE_JOIN2(method, name)
+
 #ifdef STANCE_OBJECT
 /* Compiled on demand, into an object of its own: nothing of the program can be named. */
 #define STANCE_KERNEL(name)                                                                        \
@@ -26,7 +32,6 @@
 #else
 #define STANCE_KERNEL(name)                                                                        \
     extern const stance_kernel STANCE_JOIN4(kernel, STANCE_SCENE, name, STANCE_ISA);               \
-    extern const stance_method STANCE_JOIN2(method, name);                                         \
     const stance_kernel STANCE_JOIN4(kernel, STANCE_SCENE, name,                                   \
                                      STANCE_ISA) = {STANCE_QUOTE(STANCE_SCENE),                    \
                                                     &STANCE_JOIN2(method, name),                   \
