@@ -48,6 +48,7 @@ typedef struct stance_element_numbers {
     double at[2];  /* m, in the body's frame: the point, the centre of a disc, a sole's first end */
     double to[2];  /* m, a sole's second end */
     double radius; /* m, of a disc or, of a sole, a capsule; 0: a point, a flat sole */
+    double friction_factor; /* its coefficient of friction by the ground's, > 0 */
 } stance_element_numbers;
 
 typedef struct stance_point_numbers {
@@ -98,7 +99,8 @@ typedef struct stance_mechanism {
     struct {
         char name[STANCE_NAME];
         int body;
-        bool sole; /* from `at` to `to`; else a disc or a point */
+        bool sole;  /* from `at` to `to`; else a disc or a point */
+        bool rough; /* its `friction_factor` counts */
     } element[STANCE_MAX_ELEMENTS];
     struct {
         char name[STANCE_NAME];

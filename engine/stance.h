@@ -351,6 +351,7 @@ typedef struct stance_tree_numbers {
     double rotor[STANCE_MAX_ANGLES + 1];     /* kg m^2, kg */
     double spring[STANCE_MAX_ANGLES + 1][3]; /* stiffness, damping, where it rests */
     double end[STANCE_MAX_CONTACTS][3]; /* m: place in its frame, radius; of a stop: the limit */
+    double rough[STANCE_MAX_CONTACTS];  /* its coefficient of friction by the ground's */
     double point[STANCE_MAX_NAMED][2];  /* m: points that may fall, in their frames ... */
     double lowest[STANCE_MAX_NAMED];    /* ... and how far */
     double turn[STANCE_MAX_ANGLES][2];  /* rad, that bodies may turn; their angles at 0 */

@@ -460,6 +460,8 @@ static bool tables_contacts(const stance_mechanism *m, const stance_mechanism_nu
             fits && add_contact(m, f, tree, l, kind, b, end[0], m->element[e].sole ? c + 1 : -1, c);
         if (m->element[e].sole)
             fits = fits && add_contact(m, f, tree, l, kind, b, end[1], c, c);
+        for (int k = c; k < tree->contacts; k++)
+            tree->rough[k] = m->element[e].rough;
     }
     for (int b = 0; b < m->bodies; b++) {
         for (int side = 0; side < 2; side++)
@@ -598,7 +600,8 @@ static bool is_upright(const stance_tree *tree, int joint)
 /* Numbers of contacts, in the order of tables_contacts; returns the longest arm. */
 static double number_contacts(const stance_tree *tree, const stance_mechanism *m,
                               const stance_mechanism_numbers *v, const struct frames *f,
-                              const struct lumps *l, const double slope[3], double (*end)[3])
+                              const struct lumps *l, const double slope[3], double (*end)[3],
+                              double *rough)
 {
     double arm = 0;
     int c = 0;
@@ -610,6 +613,7 @@ static double number_contacts(const stance_tree *tree, const stance_mechanism *m
             if (f->of[b] < 0)
                 lay(slope[1], slope[2], end[c], end[c]);
             end[c][2] = at->radius;
+            rough[c] = m->element[e].rough ? at->friction_factor : 1;
             arm = fmax(arm, longest_arm(tree, m, v, f, l, c, end[c]) + end[c][2]);
         }
     }
@@ -693,6 +697,7 @@ void stance_tree_numbers_make(const stance_tree *tree, const stance_mechanism *m
         number->push[k][5] = m->point[p].pushed == STANCE_IMPULSE ? point->from : point->to;
         number->push[k++][6] = point->frequency;
     }
-    const double arm = number_contacts(tree, m, &v, &f, &l, number->slope, number->end);
+    const double arm =
+        number_contacts(tree, m, &v, &f, &l, number->slope, number->end, number->rough);
     lumps_curvature(m, &v, &f, &l, arm, number->curvature);
 }

@@ -64,6 +64,7 @@ void stance_tree_text(const stance_tree *t, bool servos, char text[STANCE_TREE_T
     write_list(&end, "tree_body", t->body, t->contacts);
     write_list(&end, "scene_other", t->other, t->contacts);
     write_list(&end, "scene_grip", t->grip, t->contacts);
+    write_list(&end, "tree_rough", t->rough, t->contacts);
     write_list(&end, "tree_top", t->top, t->contacts);
     write_list(&end, "tree_point_top", t->point_top, t->points);
     write_list(&end, "tree_actuator", t->actuator, t->actuators);

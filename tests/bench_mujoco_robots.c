@@ -91,6 +91,9 @@ static bool take(struct beside *b, const struct regime *regime)
         fprintf(stderr, "bench_mujoco_robots: %s%s\n", error.message.text, message.text);
         return false;
     }
+    for (size_t k = b->kernels.count; k < b->isas; k++) /* the program carries it */
+        b->kernels.kernel[k] =
+            stance_kernel_find(b->scenario.scene, stance_method_find(regime->method), isa[k]);
     for (uint64_t row = 0; row < CASES; row++) {
         int method;
         /* 7 and 256 have no common divisor: the first ones are spread as evenly as all. */

@@ -14,7 +14,11 @@
     {"{body: thigh1, limit: 150}", "{body: thigh1, torque: 150}",
      "17:26: robot.actuators.hip1: unknown key 'torque' (known: body, limit)"},
     {"foot1: {body: shank1, at: [0, -0.4]}", "foot1: {body: shank1, at: [0, -0.4], on: trunk}",
-     "12:42: robot.contacts.foot1: unknown key 'on' (known: body, at, from, to, radius)"},
+     "12:42: robot.contacts.foot1: unknown key 'on' (known: body, at, from, to, radius, "
+     "friction_factor)"},
+    {"foot1: {body: shank1, at: [0, -0.4]}",
+     "foot1: {body: shank1, at: [0, -0.4], friction_factor: 0}",
+     "12:59: robot.contacts.foot1.friction_factor: 0 is out of range (0.01 ... 100)"},
     {"    trunk: {joint: free, mass: 20, inertia: 2.22, centre: [0, 0.2]}", "    trunk: heavy",
      "5:12: robot.bodies.trunk: expected a mapping, found 'heavy'"},
     {"    head: {body: trunk, at: [0, 0.625]}", "    - head",

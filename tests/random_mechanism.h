@@ -144,6 +144,10 @@ static inline stance_scene *random_scene(int tree, double slides)
             m.element[e].sole &= fabs(m.value.element[e].at[0] - m.value.element[e].to[0]) +
                                      fabs(m.value.element[e].at[1] - m.value.element[e].to[1]) >
                                  0.05;
+        for (int e = 0; e < m.elements && tree % 4 == 3; e++) {
+            m.element[e].rough = e % 3 != 1;
+            m.value.element[e].friction_factor = 0.4 + 0.3 * e;
+        }
     } while (stance_mechanism_scene(&m, &scene, NULL) != STANCE_OK);
     return scene;
 }

@@ -3,6 +3,9 @@
  * steps of 0.1 to 20 ms, friction 0 to 2: nothing is not finite, nothing is below the ground or
  * moves into it, no friction is outside its cone, no impact adds energy; and what fails says so. A
  * root that is held may jam, where no contact impulse fits; a free one may not, and must not fail.
+ *
+ * Contacts that all have the friction factor k on a ground of friction mu do what those without one
+ * do on a ground of k mu, but for where iterations stop.
  */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -119,9 +122,54 @@ static void capturing(void **state)
     hunt(stance_method_find("capturing"), trees_of() / 4, trees_of() / 4);
 }
 
+/* One mechanism on its ground and on one of a half of the friction, with factors of 2. */
+static void factors_of(int tree, const char *method, long *same, long *cases)
+{
+    stance_scene *scene = random_scene(4 * tree, 0.2), *rough = NULL;
+    static stance_mechanism m;
+    stance_case c[2];
+    stance_result r[2];
+    m = *scene->mechanism;
+    for (int e = 0; e < m.elements; e++)
+        m.element[e].rough = true, m.value.element[e].friction_factor = 2;
+    assert_int_equal(stance_mechanism_scene(&m, &rough, NULL), STANCE_OK);
+    for (int k = 0; k < 20; k++, ++*cases) {
+        random_scene_case(scene, &c[0]);
+        c[0].step = 0.002;
+        c[0].steps = 200;
+        c[1] = c[0];
+        c[1].friction /= 2;
+        c[1].scene = rough, c[1].tree = rough->tree;
+        stance_tree_numbers_make(rough->tree, rough->mechanism, c[1].robot, &c[1].body);
+        for (int i = 0; i < 2; i++)
+            stance_kernel_find(c[i].scene, stance_method_find(method), NULL)->run(&c[i], &r[i], 1);
+        double off = fabs(r[0].slip_distance - r[1].slip_distance);
+        for (int i = 0; i < scene->coordinates; i++)
+            off = fmax(off, fabs(r[0].position[i] - r[1].position[i]));
+        *same += r[0].status == r[1].status && off <= 1e-3;
+        assert_true(r[1].friction_used <= c[1].friction * (1 + 1e-9) + 1e-9);
+    }
+    stance_scene_free(scene);
+    stance_scene_free(rough);
+}
+
+static void factors(void **state)
+{
+    static const char *const method[] = {"implicit", "midpoint", "capturing", "lagrange"};
+    (void)state;
+    for (size_t i = 0; i < sizeof method / sizeof *method; i++) {
+        long same = 0, cases = 0;
+        for (int tree = 0; tree < trees_of() / 10; tree++)
+            factors_of(tree, method[i], &same, &cases);
+        print_message("# friction factors, %s: %ld of %ld the same\n", method[i], same, cases);
+        assert_true(cases - same <= 1 + cases / 100);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(factors),
         cmocka_unit_test(implicit),
         cmocka_unit_test(midpoint),
         cmocka_unit_test(capturing),

@@ -2,6 +2,7 @@
  * figures 11, 12, 16, 19 to 21 of the paper show them. Its stick figures are in plot_strip.c. */
 #include "plot_case.h"
 
+#include "engine/tree.h"
 #include "runner/base/message.h"
 
 #include <math.h>
@@ -346,8 +347,13 @@ static bool draw_forces(const struct plot_case *c)
     const struct results_trajectory *t = c->t;
     const size_t count = grounded(c);
     struct page page = {.c = c, .of = FORCES};
+    stance_tree_numbers number;
     char text[300];
+    bool rough = false;
 
+    if (c->readable)
+        stance_tree_numbers_make(c->scenario.scene->tree, c->scenario.scene->mechanism,
+                                 c->values.robot, &number);
     if (!begin_page(&page, "forces", "Forces of the ground on the contacts"))
         return false;
     for (size_t k = 0; k < 2; k++) {
@@ -359,14 +365,16 @@ static bool draw_forces(const struct plot_case *c)
         put_panel(&page, 220, text, range.of, names[k][1], "N");
         for (size_t i = 0; i < count; i++) {
             for (int sign = -1; k == 1 && c->readable && sign <= 1; sign += 2)
-                put_line(&page, 2 * i, sign * c->values.friction, i, true);
+                put_line(&page, 2 * i, sign * c->values.friction * number.rough[i], i, true);
             put_line(&page, 2 * i + k, 1, i, false);
+            rough |= c->readable && number.rough[i] != 1;
         }
     }
     put_names(&page, t->contact, count);
     if (c->readable) {
         gnuplot_note(&page.g, "tangential, dotted:");
-        gnuplot_note(&page.g, "limit of friction %.4g", c->values.friction);
+        gnuplot_note(&page.g, "limit of friction %.4g%s", c->values.friction,
+                     rough ? " times each friction_factor" : "");
     }
     return gnuplot_end(&page.g);
 }

@@ -23,6 +23,7 @@ static const int tree_kind[] = {0, 0};
 static const int tree_body[] = {1, 2};
 static const int scene_other[] = {-1, -1};
 static const int scene_grip[] = {0, 1};
+static const int tree_rough[] = {0, 0};
 static const int tree_top[] = {-1, -1};
 static const int tree_point_top[] = {-1, -1};
 static const int tree_actuator[] = {1, 2};

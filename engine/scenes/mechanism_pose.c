@@ -162,6 +162,7 @@ bool stance_pose_contact(const stance_pose *pose, int index, stance_touch *touch
         const stance_element_numbers *const n = &pose->number.element[e];
         if (index == 0 || (index == 1 && m->element[e].sole)) {
             touch_ground(pose, m->element[e].body, index ? n->to : n->at, n->radius, touch);
+            touch->rough = m->element[e].rough ? n->friction_factor : 1;
             return true;
         }
         index -= m->element[e].sole ? 2 : 1;

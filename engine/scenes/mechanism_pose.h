@@ -44,8 +44,8 @@ typedef struct stance_pose {
 typedef struct stance_touch {
     int body;
     bool stop;
-    double gap, point[2]; /* a stop's: its joint */
-    double radius;
+    double gap, point[2];                  /* a stop's: its joint */
+    double radius, rough;                  /* rough: friction_factor */
     double row[2][STANCE_MAX_COORDINATES]; /* normal, tangential; a stop's second: 0 */
 } stance_touch;
 

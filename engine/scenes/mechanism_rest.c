@@ -381,7 +381,8 @@ static void write_down(const struct search *s, const double *u, const struct tri
     for (int k = 0; k < s->rows; k++) {
         if (t->sticking.direction[k] == 1) {
             const int grip = s->scene->grip[t->sticking.contact[k]];
-            e->friction = fmax(e->friction, fabs(lambda[k]) / normal[grip]);
+            e->friction =
+                fmax(e->friction, fabs(lambda[k]) / (normal[grip] * t->sticking.touch[k].rough));
         }
     }
     e->undetermined = undetermined(s, t);

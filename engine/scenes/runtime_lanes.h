@@ -49,6 +49,7 @@ static _Thread_local const stance_tree *tree_now;
 #define tree_body (tree_now->body)
 #define scene_other (tree_now->other)
 #define scene_grip (tree_now->grip)
+#define tree_rough (tree_now->rough)
 #define tree_top (tree_now->top)
 #define tree_point_top (tree_now->point_top)
 #define tree_actuator (tree_now->actuator)

@@ -4,9 +4,28 @@
  * A disc's friction acts at its lowest point: its row is the centre's and its radius times the rate
  * of its body. A sole's acts at its lower end; with both on the ground the rows are the same. The
  * ends of a capsule are discs that share their friction as those of a sole. A stop is a row of its
- * joint, without friction. */
+ * joint, without friction.
+ *
+ * Where the coefficient of friction is k times the ground's, tangential velocities here are k times
+ * the true ones and forces one k-th, so that power is what it is: |r_T| <= k mu r_N becomes
+ * |r_T / k| <= mu r_N, and every law of contact holds with the ground's mu. */
 #ifndef STANCE_SCENES_TREE_CONTACTS_H
 #define STANCE_SCENES_TREE_CONTACTS_H
+
+HOT lanes tree_roughly(const scene_body *b, int c, lanes tangential)
+{
+    if (tree_rough[c])
+        return b->rough[c] * tangential;
+    return tangential;
+}
+
+/* The true slip, of a tangential velocity or way. */
+HOT lanes scene_slip(const scene_body *b, int c, lanes tangential)
+{
+    if (tree_rough[c])
+        return tangential / b->rough[c];
+    return tangential;
+}
 
 /* x[direction] = J^-1 H_c^T e_direction for normal (0) and tangential (1) impulses at contact c. */
 HOT void scene_contact_response(const scene_body *b, const scene_matrix *m, bool coupled,
@@ -41,6 +60,8 @@ HOT void scene_contact_response(const scene_body *b, const scene_matrix *m, bool
                     load[TREE_BASE + j] = load[TREE_BASE + j] + b->end[c][2];
             }
         }
+        for (int k = 0; k < SCENE_COORDINATES && direction == 1; k++)
+            load[k] = tree_roughly(b, c, load[k]);
         tree_solve(m, tree_loads[c], load, x[direction]);
         if (coupled)
             tree_answer(m, x[direction]);
@@ -48,8 +69,8 @@ HOT void scene_contact_response(const scene_body *b, const scene_matrix *m, bool
 }
 
 /* What the rates of the angles on its way do to the velocity of contact c, normal [0] and
- * tangential [1] (of a disc that of its centre); w: NULL, or H + lever dH/ds w, as of angles that
- * move by `lever` times a change of rates. Not of a stop. */
+ * tangential [1] (the true one, of a disc that of its centre); w: NULL, or H + lever dH/ds w, as of
+ * angles that move by `lever` times a change of rates. Not of a stop. */
 typedef struct scene_rows {
     lanes of[2][TREE_SLOTS(TREE_ANGLES)];
 } scene_rows;
@@ -99,6 +120,7 @@ HOT void scene_rows_velocity(const scene_body *b, int c, const scene_rows *rows,
         if (tree_kind[c] == STANCE_TREE_DISC && tree_path[c][j] == TREE_OWN)
             u[1] = lanes_fma(w[TREE_BASE + j], b->end[c][2], u[1]);
     }
+    u[1] = tree_roughly(b, c, u[1]);
 }
 HOT void scene_contact_velocity(const scene_body *b, const scene_trig *trig, int c, const lanes *w,
                                 lanes u[2])
@@ -124,6 +146,7 @@ HOT void scene_contact_curvature(const scene_body *b, const scene_trig *trig, in
         a[0] = lanes_fnma(turning, reach[1], a[0]);
         a[1] = lanes_fnma(turning, grip[0], a[1]);
     }
+    a[1] = tree_roughly(b, c, a[1]);
 }
 
 /* Where a contact is along an axis of the ground: 0 along it, 1 normal to it. */

@@ -129,6 +129,7 @@ typedef struct scene_body {
     lanes rotor[TREE_SLOTS(TREE_ROTORS)];
     lanes spring[TREE_SLOTS(TREE_SPRINGS)][3]; /* stiffness, damping, angle at rest */
     lanes end[TREE_SLOTS(TREE_CONTACTS)][3];   /* place in its body, radius; of a stop: limit */
+    lanes rough[TREE_SLOTS(TREE_CONTACTS)];    /* see tree_contacts.h */
     lanes point[TREE_SLOTS(TREE_POINTS)][2];   /* points that may fall, in their bodies ... */
     lanes lowest[TREE_SLOTS(TREE_POINTS)];     /* ... and how far, m */
     lanes turn[TREE_SLOTS(TREE_TURNS)][2];     /* rad, that a body may turn; its angle at 0 */
@@ -168,7 +169,7 @@ static inline void scene_load_body(scene_body *b, int lane, const stance_tree_nu
     LOAD(mass), LOAD(gravity), LOAD(slope), LOAD(lift), LOAD(rail), LOAD(reference);
     LOAD(curvature), LOAD(moment), LOAD(inertia), LOAD(inverse), LOAD(joint), LOAD(rotor),
         LOAD(spring);
-    LOAD(end), LOAD(point), LOAD(lowest), LOAD(turn), LOAD(push);
+    LOAD(end), LOAD(rough), LOAD(point), LOAD(lowest), LOAD(turn), LOAD(push);
 #undef LOAD
 }
 

@@ -124,10 +124,13 @@ static void joints(struct model *o, int b)
     fputs("/>\n", o->out);
 }
 
-static void sphere(struct model *o, int contact, const double at[2], double radius)
+static void sphere(struct model *o, int contact, int e, const double at[2])
 {
+    const stance_element_numbers *const n = &o->number.element[e];
     fprintf(line(o), "<geom name='%s' size='%.17g'", o->scene->contact_name[contact],
-            radius + MJCF_SKIN);
+            n->radius + MJCF_SKIN);
+    if (o->m->element[e].rough) /* else the larger of its own and the ground's */
+        fprintf(o->out, " priority='1' friction='%.17g 0 0'", n->friction_factor * o->c->friction);
     in_plane(o->out, "pos", at);
     fprintf(o->out, "%s/>\n", o->c->contacts >> contact & 1 ? "" : " contype='0'");
 }
@@ -139,9 +142,9 @@ static void places(struct model *o, int b)
         const stance_element_numbers *const n = &o->number.element[e];
         if (o->m->element[e].body != b)
             continue;
-        sphere(o, contact, n->at, n->radius);
+        sphere(o, contact, e, n->at);
         if (o->m->element[e].sole)
-            sphere(o, contact + 1, n->to, n->radius);
+            sphere(o, contact + 1, e, n->to);
     }
     for (int p = 0; p < o->m->points; p++) {
         if (o->m->point[p].body != b)

@@ -300,6 +300,7 @@ static void fill_structure(struct description *d)
         snprintf(m->element[i].name, STANCE_NAME, "%s", entry->key->name);
         m->element[i].body = d->place[entry->body];
         m->element[i].sole = tree_find(entry->map, "from") || tree_find(entry->map, "to");
+        m->element[i].rough = tree_find(entry->map, "friction_factor");
     }
     for (int i = 0; i < m->points; i++)
         fill_point(d, i);
@@ -583,7 +584,8 @@ bool mechanism_same(const stance_mechanism *a, const stance_mechanism *b)
         same = a->body[i].joint == b->body[i].joint && a->body[i].bounded == b->body[i].bounded &&
                strcmp(a->body[i].coordinate, b->body[i].coordinate) == 0;
     for (int i = 0; same && i < a->elements; i++)
-        same = a->element[i].sole == b->element[i].sole;
+        same =
+            a->element[i].sole == b->element[i].sole && a->element[i].rough == b->element[i].rough;
     for (int i = 0; same && i < a->points; i++)
         same = a->point[i].falls == b->point[i].falls && a->point[i].pushed == b->point[i].pushed &&
                a->point[i].swings == b->point[i].swings;

@@ -113,6 +113,10 @@ const struct part_key part_keys[] = {
     {PART_CONTACT, {.path = "radius", .type = FIELD_NUMBER, ELEMENT(radius), .unit = "m",
         RANGE(0, FAR), .text = "radius of a disc, as a wheel or a round foot, or of a capsule; 0: a point, a flat sole"},
         .of_sole = true, .of_point = true},
+    {PART_CONTACT, {.path = "friction_factor", .type = FIELD_NUMBER, ELEMENT(friction_factor), .unit = "1",
+        RANGE(0.01, 100), .fallback = 1, .text = "its coefficient of friction: so many times ground.friction",
+        .more = "friction_used counts in the ground's friction: as its force divided by this."},
+        .of_sole = true, .of_point = true},
 
     {PART_POINT, {.path = "body", .type = FIELD_WORD, .required = true, WORD_ROW,
         .text = "the body that it belongs to"}, .names_body = true},

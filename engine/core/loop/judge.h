@@ -43,7 +43,8 @@ HOT void account_contacts(struct bundle *b, bool all, mask ok, contact_set touch
     EACH_IN (c, touching) {
         account_largest(false, ok & mask_less(none, b->set.may_touch[c]), -b->now.gap[c],
                         &b->answer.max_penetration);
-        account_sum(all, ok, report->slip[c], &b->answer.slip_distance);
+        account_sum(all, ok, scene_slip(&b->set.body, c, report->slip[c]),
+                    &b->answer.slip_distance);
         for (int a = 0; a < 2 && bundle_some(b->recorded); a++)
             account_sum(all, ok, report->impulse[c][a], &b->impulse[c][a]);
     }

@@ -26,7 +26,9 @@ static void bundle_record(struct bundle *b, int lane)
             t->gap[row * OWN_CONTACTS + k] = lane_get(&b->now.gap[k], lane);
             for (int a = 0; a < 2; a++)
                 t->force[(row * OWN_CONTACTS + k) * 2 + a] =
-                    elapsed > 0 ? lane_get(&b->impulse[k][a], lane) / elapsed : NAN;
+                    elapsed > 0 ? (a == 1 ? c->body.rough[k] : 1) *
+                                      lane_get(&b->impulse[k][a], lane) / elapsed
+                                : NAN;
         }
     }
     for (int k = 0; k < OWN_CONTACTS; k++)
