@@ -107,6 +107,15 @@ typedef struct stance_workload {
 struct stance_mechanism;
 struct stance_tree;
 
+/* Two legs that are alike in structure: what takes whose place when the other one stands. Each list
+ * is its own inverse. */
+typedef struct stance_exchange {
+    bool any;        /* else there are no two, or more: every list is 0, 1, 2 ... */
+    uint32_t leg[2]; /* contacts of each, the first one's the lower; stops count */
+    int coordinate[STANCE_MAX_COORDINATES], contact[STANCE_MAX_CONTACTS],
+        actuator[STANCE_MAX_ACTUATORS];
+} stance_exchange;
+
 typedef struct stance_scene stance_scene;
 struct stance_scene {
     const char *name, *text;
@@ -123,6 +132,7 @@ struct stance_scene {
     const char *const *actuator_name; /* [actuators] */
     const int *posture;               /* [postures] indices into the coordinates */
     const int *actuated;              /* [actuators] the coordinate that each drives */
+    stance_exchange exchange;
     /* Gap of each contact above the ground, normal to it, m; a joint's stop: rad or m.
      * position[coordinates], gap[contacts]. */
     void (*gaps)(const stance_scene *scene, const double *robot, const double *position,
@@ -196,6 +206,7 @@ typedef enum stance_status { STANCE_PENDING, STANCE_DONE, STANCE_FAILED } stance
  * numbers in files (0: none) and the texts. Of several that are true at once the last one holds. */
 #define STANCE_OUTCOMES(X)                                                                         \
     X(STABILISED, stabilised, 1, "stands at its target, and the loop holds it there")              \
+    X(WALKS, walks, 5, "walks: its last steps are alike")                                          \
     X(RESTED, rested, 3, "is at rest elsewhere, for good")                                         \
     X(FELL, fell, 2, "fell")                                                                       \
     X(UNDECIDED, undecided, 4, "none of these when time was up")
@@ -286,6 +297,26 @@ typedef struct stance_servo {
     double integral_limit;           /* of the integral, its unit times s; may be INFINITY */
 } stance_servo;
 
+/* Outputs that a law holds at zero, as many as there are actuators: y = row (q - the robot's angles
+ * where they are measured from 0) less a polynomial of the phase; which rows, says the leg that
+ * stands (stance_exchange; without one always the first). s = (phase q - from) / (to - from);
+ * beyond 0 ... 1 the polynomial goes on with its second derivative at the end. Accelerations -kp y
+ * - kd y' of the outputs are decoupled as servos are or, `constant`, weighted: torque = sum of
+ * torques times these. */
+enum { STANCE_MAX_COEFFICIENTS = 9 };
+typedef struct stance_output {
+    double row[STANCE_MAX_COORDINATES];
+    double along[STANCE_MAX_COEFFICIENTS]; /* of the powers of s */
+    double kp, kd;                         /* 1/s^2, 1/s */
+    double torques[STANCE_MAX_ACTUATORS];  /* kg m^2, kg m, kg */
+} stance_output;
+typedef struct stance_outputs {
+    bool constant;
+    double from, to;
+    double phase[2][STANCE_MAX_COORDINATES]; /* by the leg that stands */
+    stance_output output[2][STANCE_MAX_ACTUATORS];
+} stance_outputs;
+
 /* ---- control laws: what they are told, and what that makes of a case ------------------------ */
 
 /* How many numbers a parameter of a law is. */
@@ -295,20 +326,23 @@ typedef enum stance_per {
     STANCE_PER_POSTURE,    /* one for each coordinate of the posture */
     STANCE_PER_COORDINATE, /* one for each coordinate of the scene */
     STANCE_PER_SELECTION,  /* which coordinates, see stance_selection: an int */
+    STANCE_PER_TERM,       /* a list of up to STANCE_MAX_COEFFICIENTS; NAN: the rest */
 } stance_per;
 
 typedef struct stance_parameter {
     stance_quantity of; /* in `unit` and `text` %s stands for what the coordinate has there; unit ""
                          * of an actuator's: its coordinate's. fallback NAN: none */
     stance_per per;
-    bool required;                          /* must be given */
-    bool positive;                          /* `low` itself is out of range */
-    bool unlimited;                         /* the word `none`, INFINITY, may stand for it */
-    bool told;                              /* a summary tells it even where it is the default */
+    bool required;  /* must be given */
+    bool positive;  /* `low` itself is out of range */
+    bool unlimited; /* the word `none`, INFINITY, may stand for it */
+    bool told;      /* a summary tells it even where it is the default */
+    int output;     /* that it is of, from 1: there are as many as actuators; 0: none */
     const char *fallback_text, *all, *more; /* of NAN; of the numbers together; may be NULL */
 } stance_parameter;
 
-enum { STANCE_LAW_PARAMETERS = 8, STANCE_LAW_ROOM = STANCE_MAX_COORDINATES, STANCE_MAX_LAWS = 8 };
+/* STANCE_LAW_PARAMETERS: of all laws together. */
+enum { STANCE_LAW_PARAMETERS = 64, STANCE_LAW_ROOM = STANCE_MAX_COORDINATES, STANCE_MAX_LAWS = 8 };
 
 /* A file of engine/laws each. What is not linear acts in core/law and core/mode, too. */
 typedef struct stance_law {
@@ -319,6 +353,9 @@ typedef struct stance_law {
     bool samples;  /* needs a sample time above 0 */
     int parameters;
     const stance_parameter *parameter; /* [parameters] */
+    /* What mappings that hold parameters are ("phase" of "phase.from"), name and text; NULL ends;
+     * "*" of one of the outputs. */
+    const char *const (*group)[2];
     /* Makes *c act by it. value[parameters * STANCE_LAW_ROOM]: of each parameter one number, or by
      * actuators or coordinates; NAN: as the scene is at `begin`[coordinates]. `linear`: c's near or
      * far. Errors: BAD_ARGUMENT. NULL: nothing acts, or a designed law
@@ -328,10 +365,13 @@ typedef struct stance_law {
 } stance_law;
 
 /* The laws there are, NULL-terminated; the first one is `none`. */
-#define STANCE_LAWS(X) X(none) X(hold) X(state_feedback) X(bimodal_feedback) X(decoupling)
+#define STANCE_LAWS(X)                                                                             \
+    X(none) X(hold) X(state_feedback) X(bimodal_feedback) X(decoupling) X(outputs)
 const stance_law *const *stance_laws(void);
 /* One by name, or NULL. */
 const stance_law *stance_law_find(const char *name);
+/* Where a law's parameters begin among those of all laws. */
+int stance_law_first(const stance_law *law);
 
 /* What kernels take of a mechanism (engine/tree.c has the meanings and makes them), arrays by
  * angles, contacts and so on in the order of its tables. */
@@ -394,6 +434,8 @@ typedef struct stance_case {
     bool decouples, switches, bends;
     stance_bend bend; /* of `near`, where it bends; needs sample_every > 0 */
     stance_servo servo[STANCE_MAX_ACTUATORS];
+    bool follows; /* `decouples`, and `outputs` are held instead of what servos do */
+    stance_outputs outputs;
     double switch_axis[2 * STANCE_MAX_POSTURE]; /* rad, rad/s, > 0 */
     double torque_limit; /* N m, > 0, may be INFINITY; of an actuator, `body.limit` where smaller */
     double torque_limits[STANCE_MAX_ACTUATORS]; /* ... or this one; 0: none */
@@ -416,6 +458,14 @@ typedef struct stance_case {
     /* Judge `stabilised` and `rested` on the way and stop there. Both ask for an equilibrium that
      * holds, too, no further than settle_angle away: see core/loop/rest.h. */
     bool settle;
+    int64_t footfalls; /* ends at so many of them, where they fall; 0: does not */
+    /* `walks` ends the case, too, where walk_steps > 0: so many in a row are like the one 1, 2 or 4
+     * steps before, within walk_angle and walk_rate (rad, rad/s) just after the footfall, and no
+     * less so. A step is a footfall that is walk_length (m) or more away from the foot that stood,
+     * the way the last one went, and comes walk_time (s) or more after the last: core/loop/walk.h.
+     */
+    int64_t walk_steps;
+    double walk_length, walk_time, walk_angle, walk_rate;
     bool has_target;     /* without one nothing is ever `stabilised` */
     uint32_t supports;   /* bit c: a stabilised robot stands on contact c, and on no other */
     double settle_angle; /* rad */
@@ -465,6 +515,10 @@ void stance_case_robot(const stance_scene *scene, stance_case *c);
       "deepest below the ground that a contact came which the scenario leaves out")                \
     X(slip_distance, double, SUM, own, "m", "distance slipped, summed over contacts")              \
     X(footfalls, int64_t, SUM, own, "1", "landings of another foot than the one that landed last") \
+    X(walked_steps, int64_t, END, own, "1", "footfalls that are steps, see stop.walks")            \
+    X(step_time, double, END, own, "s", "mean time of the last four of them")                      \
+    X(step_length, double, END, own, "m", "mean length of the last four of them, along +x")        \
+    X(gait_period, int64_t, END, own, "1", "steps after which the gait repeats: 1, 2 or 4")        \
     X(excursion, double, MAX, each, "rad", "largest angle off its target on the way")              \
     X(peak_torque, double, MAX, each, "N m", "largest torque applied")                             \
     X(friction_used, double, MAX, touching, "1", "largest ratio |rT|/rN of a contact")             \

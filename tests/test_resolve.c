@@ -193,6 +193,7 @@ static void hold_law(void **state)
     *law_value(&v, "hold", "kp") = 500;
     *law_value(&v, "hold", "kd") = 50;
     v.state_given = 1;
+    v.support_foot = 0;
     v.equilibrium.given = false;
     memcpy(v.state, dropped, sizeof dropped);
     stance_case c = resolved(&v);
@@ -258,6 +259,7 @@ static void refusals(void **state)
     v.equilibrium.given = false;
     assert_refused(&v, "an initial state is needed: initial.equilibrium or initial.state");
     v.state_given = 1;
+    v.support_foot = 0;
     v.state[1] = 2;
     assert_refused(&v, "the controller needs an equilibrium to work at: give "
                        "controller.equilibrium or initial.equilibrium");
@@ -335,6 +337,7 @@ static void scenes_that_move(void **state)
         v.tolerance = NAN;
         stance_robot_fallback(scene, v.robot);
         v.state_given = 1;
+        v.support_foot = 0;
         v.equilibrium.given = false;
         v.support_foot = 0;
         v.state[1] = 2;

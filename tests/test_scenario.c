@@ -63,6 +63,11 @@ static const char decouples[] =
     "stance: 1\nscene: biped\ninitial: {state: {z: 1.1}}\nstop: {time: 1}\n"
     "controller: {kind: decoupling, controlled: x-theta}\n";
 
+static const char follows[] =
+    "stance: 1\nscene: biped\ninitial: {state: {z: 1.1}}\nstop: {time: 1, walks: {steps: 10}}\n"
+    "controller: {kind: outputs, phase: {of: {theta: -1, q1: -1}},\n"
+    "  outputs: {y1: {of: {theta: 1}, along: [0, 1]}, y2: {of: {q1: 1, q2: 1}, along: [0, 1]}}}\n";
+
 static const char switches[] =
     "stance: 1\nscene: biped\ninitial: {equilibrium: {theta: -0.41, q2: 0.82}}\nstop: {time: 1}\n"
     "controller: {kind: state-feedback, design: lqr, far: hold,\n"
@@ -177,8 +182,9 @@ static void every_key_is_read(void **state)
     assert_int_equal(s.record_cases, RECORD_LIST);
     assert_int_equal(s.record_count, 2);
     assert_true(s.record_list[0] == 3 && s.record_list[1] == 5);
-    assert_int_equal(s.answers, 1u << STANCE_ANSWER_outcome | 1u << STANCE_ANSWER_steps |
-                                    1u << SCENARIO_FINAL_STATE | 1u << 31);
+    assert_int_equal(s.answers, UINT64_C(1) << STANCE_ANSWER_outcome |
+                                    UINT64_C(1) << STANCE_ANSWER_steps |
+                                    UINT64_C(1) << SCENARIO_FINAL_STATE);
     int line = 0, column = 0;
     assert_true(scenario_place(&s, "initial: a message", &line, &column));
     assert_int_equal(line, 6);
@@ -360,8 +366,9 @@ static void other_scenes_are_read(void **state)
     assert_false(s.axis[0].design || s.axis[1].design);
     scenario_case_values(&s, 9, &v);
     assert_true(v.tolerance == 1e-5 && v.robot[0] == 2);
-    assert_int_equal(s.answers, 1u << STANCE_ANSWER_events | 1u << STANCE_ANSWER_energy_gain |
-                                    1u << STANCE_ANSWER_dissipation_residual);
+    assert_int_equal(s.answers, UINT64_C(1) << STANCE_ANSWER_events |
+                                    UINT64_C(1) << STANCE_ANSWER_energy_gain |
+                                    UINT64_C(1) << STANCE_ANSWER_dissipation_residual);
     scenario_free(&s);
     for (size_t i = 0; i < sizeof plain / sizeof plain[0]; i++) {
         read_good(&s, plain[i].text, NULL, 0);
@@ -523,7 +530,7 @@ static void bad_sets_are_refused(void **state)
         {"stop.time=x", "stop.time: expected a number, found 'x'"},
         {"stop.time=", "stop.time: expected a number, found nothing"},
         {"stop.tim=1", "stop: unknown key 'tim'; did you mean 'time'? (known: time, settle, "
-                       "fall_height)"},
+                       "walks, footfalls, fall_height)"},
         {"stop.time", "a value must follow; write stop.time=VALUE"},
         {"=1", "'' is not a path such as sweep.grid[0].count"},
         {"a[=1", "'a[' is not a path such as sweep.grid[0].count"},
@@ -636,13 +643,14 @@ static const char *text_for(const struct scenario_field *field)
 {
     const enum field_use use = field->use;
     const char *const law = use == USE_LAW ? stance_laws()[field->law]->name : "";
-    return strcmp(law, "hold") == 0 || use == USE_STATE ? holds
-           : use == USE_GAINS                           ? gives_gains
-           : use == USE_LQR                             ? regulates
-           : strcmp(law, "decoupling") == 0             ? decouples
-           : strcmp(law, "bimodal-feedback") == 0       ? bends
-           : use == USE_FAR                             ? switches
-                                                        : places;
+    return strcmp(law, "hold") == 0 || use == USE_STATE      ? holds
+           : use == USE_GAINS                                ? gives_gains
+           : use == USE_LQR                                  ? regulates
+           : strcmp(law, "decoupling") == 0                  ? decouples
+           : strcmp(law, "bimodal-feedback") == 0            ? bends
+           : strcmp(law, "outputs") == 0 || use == USE_WALKS ? follows
+           : use == USE_FAR                                  ? switches
+                                                             : places;
 }
 
 static void set_path(const struct scenario_field *field, char *path, size_t size)

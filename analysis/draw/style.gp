@@ -4,10 +4,11 @@
 set encoding utf8
 
 # ---- colours: after Okabe and Ito (2008), so that readers who do not tell red from green tell these
-# apart; blue hues stand for standing, orange for falling. Those of outcomes are as far apart in grey: 69, 112,
+# apart; blue hues stand for standing, green for walking, orange for falling. Outcomes in grey: 69, 112, 136,
 # 157, 191 and 228 of 255 ----
 colour_stabilised = 0x005a92
 colour_rested = 0x56b4e9
+colour_walks = 0x2db87c
 colour_fell = 0xf3bb4c
 colour_undecided = 0xa45288
 colour_done = 0x009e73
@@ -33,7 +34,7 @@ over_map = ", '$allowed'.p using 1:2 with lines lw 4.4 dt 1 lc rgb 'white' notit
     ."'$allowed'.p using 1:2 with lines lw 2 dt 11 lc rgb colour_allowed notitle"
 palette = "set palette defined (0 '#00224e', 0.25 '#434e6c', 0.5 '#7d7c78', 0.75 '#bcae6c', 1 '#fee838')"
 all_grey = 0
-in_grey = "all_grey = 1; colour_stabilised = 0x404040; colour_rested = 0x8a8a8a; colour_fell = 0xdcdcdc; colour_undecided = 0xb0b0b0; " \
+in_grey = "all_grey = 1; colour_stabilised = 0x404040; colour_rested = 0x8a8a8a; colour_walks = 0x666666; colour_fell = 0xdcdcdc; colour_undecided = 0xb0b0b0; " \
     ."colour_done = 0x606060; colour_pending = 0xf6f6f6; array hue[7] = [0x000000, 0x7a7a7a, 0x404040, 0xa6a6a6, 0x202020, " \
     ."0x909090, 0x5a5a5a]; no_number = 0xffffff; palette = \"set palette defined (0 '#101010', 1 '#f0f0f0')\""
 # Of a colour that stands for one thing alone.

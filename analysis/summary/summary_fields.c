@@ -89,9 +89,11 @@ static bool is_controlled(const struct results *r, const struct scenario *s,
 {
     const stance_law *const law = stance_laws()[field->law];
     const size_t place =
-        (field->offset - offsetof(struct scenario_values, law_value[field->law])) / sizeof(double);
+        (field->offset - offsetof(struct scenario_values, law_value)) / sizeof(double) -
+        (size_t)(stance_law_first(law) * STANCE_LAW_ROOM);
     int selected[STANCE_MAX_ACTUATORS], selection;
-    if (field->use != USE_LAW ||
+    if (field->use != USE_LAW || field->offset == NO_OFFSET ||
+        strcmp(law->parameter[0].of.name, "controlled") != 0 ||
         law->parameter[place / STANCE_LAW_ROOM].per != STANCE_PER_COORDINATE)
         return true;
     memcpy(&selection, scenario_law_value(v, law->name, "controlled"), sizeof selection);

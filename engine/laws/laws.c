@@ -15,6 +15,14 @@ const stance_law *const *stance_laws(void)
     return laws;
 }
 
+int stance_law_first(const stance_law *law)
+{
+    int first = 0;
+    for (const stance_law *const *before = stance_laws(); *before != law; before++)
+        first += (*before)->parameters;
+    return first;
+}
+
 const stance_law *stance_law_find(const char *name)
 {
     for (const stance_law *const *law = stance_laws(); *law; law++)

@@ -57,6 +57,11 @@ struct advance {
     struct event_problem problem;
     double attempts, most; /* internal steps in this step; then it fails */
     struct step_report *report;
+    /* A step stops after each impact where legs change their parts or footfalls end the case: */
+    bool stops, within;      /* ... and is in hand */
+    struct event_point here; /* where, */
+    struct step_report sum;  /* what it has come to */
+    int events;
     SUNContext context;
     void *arkode;
     N_Vector y;
@@ -199,6 +204,8 @@ static void advance_load(struct advance *a, int lane, const stance_case *c)
     advance_free(a);
     a->tolerance = c->tolerance;
     a->next = EVENT_LONGEST;
+    a->stops = c->follows || c->footfalls > 0 || c->walk_steps > 0;
+    a->within = false;
     for (int i = 0; i < OWN_CONTACTS; i++)
         a->stood[i] = 0;
 }
@@ -490,7 +497,7 @@ static void event_report(const struct advance *a, const struct event_point *p,
     report->work = p->y[EVENT_WORK];
 }
 
-/* The whole step. */
+/* The whole step, or what of it there is up to an impact. */
 static inline mask advance(struct advance *a, const struct setting *set, const lanes *torque,
                            lanes h, mask live, bool coupled, struct motion *now,
                            struct step_report *report, mask *failed)
@@ -503,34 +510,45 @@ static inline mask advance(struct advance *a, const struct setting *set, const l
     const double longest = fmin(EVENT_LONGEST, scene_longest_step(&set->body));
     stance_failure failure =
         event_create(a, longest) ? STANCE_FAILURE_NONE : STANCE_FAILURE_TOLERANCE;
-    struct event_point here;
-    memset(&here, 0, sizeof here);
-    memcpy(here.y, now->s, sizeof now->s);
-    memcpy(here.y + SCENE_COORDINATES, now->w, sizeof now->w);
-    for (int i = 0; i < SCENE_ACTUATORS; i++)
-        here.y[EVENT_INTEGRAL + i] = now->integral[i];
+    struct event_point *const here = &a->here;
+    if (a->within) {
+        *report = a->sum;
+    } else {
+        memset(here, 0, sizeof *here);
+        memcpy(here->y, now->s, sizeof now->s);
+        memcpy(here->y + SCENE_COORDINATES, now->w, sizeof now->w);
+        for (int i = 0; i < SCENE_ACTUATORS; i++)
+            here->y[EVENT_INTEGRAL + i] = now->integral[i];
+        a->problem.begin = now->t;
+        a->problem.evaluations = a->attempts = a->events = 0;
+    }
+    a->within = false;
     a->problem.set = set;
     a->problem.torque = torque;
-    a->problem.begin = now->t;
     a->problem.coupled = coupled;
-    a->problem.evaluations = a->attempts = 0;
     a->most = EVENT_ATTEMPTS + 4 * h / longest;
     enum event_result result = EVENT_ON;
-    for (int events = 0; failure == STANCE_FAILURE_NONE && result != EVENT_ARRIVED; events++) {
+    for (; failure == STANCE_FAILURE_NONE && result != EVENT_ARRIVED; a->events++) {
         bool impact;
-        failure = event_begin(a, &here, now, report, &impact);
+        failure = event_begin(a, here, now, report, &impact);
         report->events += impact && result == EVENT_ON;
         if (failure != STANCE_FAILURE_NONE)
             break;
-        result = event_march(a, &here, h);
-        event_finish(a, &here, now);
-        if (result == EVENT_FOUND && event_of_contact(&a->problem, &here)) {
+        if (impact && a->stops) {
+            event_enter(a, here, now);
+            a->sum = *report;
+            a->within = true;
+            return false;
+        }
+        result = event_march(a, here, h);
+        event_finish(a, here, now);
+        if (result == EVENT_FOUND && event_of_contact(&a->problem, here)) {
             report->events++;
             memset(a->stood, 0, sizeof a->stood);
         }
         if (result == EVENT_FAILED)
             failure = a->attempts > a->most ? STANCE_FAILURE_WORK : STANCE_FAILURE_TOLERANCE;
-        else if (events >= EVENT_LIMIT)
+        else if (a->events >= EVENT_LIMIT)
             failure = STANCE_FAILURE_EVENTS;
     }
     report->evaluations = a->problem.evaluations;
@@ -545,7 +563,7 @@ static inline mask advance(struct advance *a, const struct setting *set, const l
         report->failure = isfinite(sum) && scene_angles_in_range(ahead) ? failure : 0;
         return false;
     }
-    event_report(a, &here, report);
+    event_report(a, here, report);
     return true;
 }
 

@@ -62,11 +62,12 @@ static double gain_unit(const struct scenario *s, size_t actuator, size_t column
  * s/rad and the like, its rate; else 1. So a bend by 1 N m is as wide as a gain. */
 static double law_unit(const struct scenario *s, int k)
 {
-    const size_t size = sizeof s->base.law_value[0];
     const size_t offset = s->search.axis.offset[k] - offsetof(struct scenario_values, law_value);
-    const stance_law *const law = stance_laws()[offset / size];
-    const size_t number = offset % size / sizeof(double), place = number % STANCE_LAW_ROOM;
-    const stance_parameter *const p = &law->parameter[number / STANCE_LAW_ROOM];
+    const size_t number = offset / sizeof(double), place = number % STANCE_LAW_ROOM;
+    int law = 0, parameter = (int)(number / STANCE_LAW_ROOM);
+    while (parameter >= stance_laws()[law]->parameters)
+        parameter -= stance_laws()[law++]->parameters;
+    const stance_parameter *const p = &stance_laws()[law]->parameter[parameter];
     const size_t rate = p->of.unit[0] == 's' ? (size_t)s->scene->postures : 0;
     double unit = 0;
     for (size_t i = 0; p->per == STANCE_PER_POSTURE && i < (size_t)s->scene->actuators; i++)

@@ -319,7 +319,7 @@ void resolve_start(const stance_scene *scene, const struct scenario_values *valu
     }
     memcpy(position, values->state, n * sizeof *position);
     memcpy(velocity, values->state + n, n * sizeof *velocity);
-    if (values->support > 0)
+    if (values->support > 0 || values->support_foot > 0)
         scene->stand(scene, values->robot, scenario_supports(scene, values), position, velocity);
 }
 
@@ -406,11 +406,8 @@ bool resolve_law(const stance_scene *scene, const struct scenario_values *values
                  const stance_law *law, const double *begin, stance_linear_law *linear,
                  stance_case *out, stance_message *message)
 {
-    int index = 0;
-    while (stance_laws()[index] != law)
-        index++;
-    return !law->set ||
-           law->set(scene, values->law_value[index], begin, linear, out, message) == STANCE_OK;
+    const double *const value = &values->law_value[stance_law_first(law) * STANCE_LAW_ROOM];
+    return !law->set || law->set(scene, value, begin, linear, out, message) == STANCE_OK;
 }
 
 /* What acts from where the run begins or, outside the ellipsoid about the target of a designed law,

@@ -275,7 +275,8 @@ static void set_defaults(struct reader *r)
         char *place = (char *)base + field->offset;
         if (field->type == FIELD_NUMBER) {
             for (size_t k = 0;
-                 k < schema_items(field) && !(strchr(field->path, '[') && isnan(field->fallback));
+                 k < schema_items(field) &&
+                 !(strchr(field->path, '[') && isnan(field->fallback) && !field->fewer);
                  k++)
                 memcpy(place + k * sizeof field->fallback, &field->fallback,
                        sizeof field->fallback);
@@ -672,5 +673,5 @@ const double *scenario_law_value(const struct scenario_values *values, const cha
         l++;
     while (strcmp(stance_laws()[l]->parameter[p].of.name, parameter) != 0)
         p++;
-    return &values->law_value[l][p * STANCE_LAW_ROOM];
+    return &values->law_value[(stance_law_first(stance_laws()[l]) + p) * STANCE_LAW_ROOM];
 }

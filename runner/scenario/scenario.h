@@ -45,10 +45,12 @@ struct scenario_equilibrium {
 /* What a case (stance_case) has by the same name and takes as it is; words by their place in the
  * schema, contacts as bits. */
 /* clang-format off */
-#define SCENARIO_WHOLES(X) X(impacts) X(most_energy) X(lands_ahead) X(contacts) X(delay) X(settle)
+#define SCENARIO_WHOLES(X) \
+    X(impacts) X(most_energy) X(lands_ahead) X(contacts) X(delay) X(settle) X(footfalls) X(walk_steps)
 #define SCENARIO_NUMBERS(X) \
     X(friction) X(restitution) X(torque_limit) X(lag) X(angle_noise) X(rate_noise) X(noise) \
-    X(settle_angle) X(settle_rate) X(settle_hold)
+    X(settle_angle) X(settle_rate) X(settle_hold) X(walk_length) X(walk_time) X(walk_angle) \
+    X(walk_rate)
 /* clang-format on */
 
 /* Everything that one case needs, as numbers: a sweep changes fields of this struct only, found
@@ -77,9 +79,9 @@ struct scenario_values {
     double pole_re[SCENARIO_MAX_POLES], pole_im[SCENARIO_MAX_POLES];
     double gains[SCENARIO_MAX_GAINS]; /* [actuators][2 postures] */
     double state_weights[SCENARIO_MAX_POLES], torque_weights[STANCE_MAX_ACTUATORS]; /* lqr */
-    /* Of each law (stance_laws) its parameters as stance_law.set takes them; NAN: as it is at the
-     * beginning. What is a selection is an int in the first bytes of its place. */
-    double law_value[STANCE_MAX_LAWS][STANCE_LAW_PARAMETERS * STANCE_LAW_ROOM];
+    /* Of each law (stance_law_first) its parameters as stance_law.set takes them; NAN: as it is at
+     * the beginning. What is a selection is an int in the first bytes of its place. */
+    double law_value[STANCE_LAW_PARAMETERS * STANCE_LAW_ROOM];
     int far;                      /* what acts far from the target, see scenario_far; 0: none */
     double near_angle, near_rate; /* semi-axes of the ellipsoid that is near */
     double sample_time;           /* 0: continuous */

@@ -46,6 +46,7 @@ enum field_use {
     USE_GAINS,
     USE_EQUILIBRIUM, /* the scenario starts from initial.equilibrium */
     USE_STATE,       /* ... from initial.state */
+    USE_WALKS,       /* stop.walks.steps is above 0 */
     USE_SETTLE,      /* stop.settle is not off */
     USE_SALTELLI,    /* by sweep.sample.method ... */
     USE_MORRIS,
@@ -90,7 +91,7 @@ struct scenario_field {
 
 #define NO_OFFSET ((size_t)-1)
 
-enum { SCHEMA_MAX_FIELDS = 1536, SCHEMA_MAX_WORDS = 40 };
+enum { SCHEMA_MAX_FIELDS = 2048, SCHEMA_MAX_WORDS = 40 };
 
 struct schema {
     const stance_scene *scene; /* NULL: unknown; fields by scene are left out then */

@@ -19,6 +19,7 @@ const struct schema_use schema_uses[] = {
     [USE_GAINS] = {"with controller.design gains", "controller.design", USE_FEEDBACK},
     [USE_EQUILIBRIUM] = {"with initial.equilibrium", "initial.state", USE_ALWAYS},
     [USE_STATE] = {"with initial.state", "initial.equilibrium", USE_ALWAYS},
+    [USE_WALKS] = {"with stop.walks.steps above 0", "stop.walks.steps", USE_ALWAYS},
     [USE_SETTLE] = {"with a stop.settle other than off", "stop.settle", USE_ALWAYS},
     [USE_SALTELLI] = {"with method saltelli", "sweep.sample.method", USE_ALWAYS},
     [USE_MORRIS] = {"with method morris", "sweep.sample.method", USE_ALWAYS},
@@ -42,6 +43,7 @@ bool schema_allows(enum field_use use, int law, const struct scenario_values *v)
         [USE_GAINS] = v->design == DESIGN_GAINS,
         [USE_EQUILIBRIUM] = !v->state_given,
         [USE_STATE] = v->state_given,
+        [USE_WALKS] = v->walk_steps > 0,
         [USE_SETTLE] = v->settle,
     };
     const enum field_use within = schema_uses[use].within;

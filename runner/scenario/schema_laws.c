@@ -32,7 +32,8 @@ static bool add_number(struct schema *schema, const struct scenario_field *row, 
                        int parameter, const stance_quantity *coordinate, int place)
 {
     const stance_parameter *const p = &stance_laws()[law]->parameter[parameter];
-    const bool one = p->per == STANCE_PER_LAW || p->per == STANCE_PER_SELECTION;
+    const bool list = p->per == STANCE_PER_TERM;
+    const bool one = p->per == STANCE_PER_LAW || p->per == STANCE_PER_SELECTION || list;
     char name[64];
     snprintf(name, sizeof name, "%s%s%s", p->of.name, coordinate ? "." : "",
              coordinate ? coordinate->name : "");
@@ -40,7 +41,7 @@ static bool add_number(struct schema *schema, const struct scenario_field *row, 
     if (!field)
         return false;
     field->law = law;
-    field->by_scene = p->per != STANCE_PER_LAW;
+    field->by_scene = p->per != STANCE_PER_LAW || p->output > 0;
     if (!one && !coordinate) { /* the mapping of all its numbers */
         field->type = FIELD_MAP;
         field->sweep = false;
@@ -50,8 +51,10 @@ static bool add_number(struct schema *schema, const struct scenario_field *row, 
     }
     const bool its = p->of.unit[0] == '\0' && coordinate; /* unit and range are the coordinate's */
     field->required = p->required;
-    field->offset = offsetof(struct scenario_values, law_value[law]) +
-                    (size_t)(parameter * STANCE_LAW_ROOM + place) * sizeof(double);
+    field->offset =
+        offsetof(struct scenario_values, law_value) +
+        (size_t)((stance_law_first(stance_laws()[law]) + parameter) * STANCE_LAW_ROOM + place) *
+            sizeof(double);
     fill_in(field->unit, sizeof field->unit, its ? "%s" : p->of.unit,
             coordinate ? coordinate->unit : "");
     fill_in(field->text, sizeof field->text, p->of.text, coordinate ? coordinate->text : "");
@@ -65,6 +68,20 @@ static bool add_number(struct schema *schema, const struct scenario_field *row, 
     if (p->unlimited) {
         field->words = schema_none;
         field->word_count = 1;
+    }
+    if (list) {
+        field->items = STANCE_MAX_COEFFICIENTS;
+        field->fewer = true;
+        struct scenario_field *const item = schema_add(schema, row, name, "[]");
+        if (!item)
+            return false;
+        struct scenario_field whole = *field;
+        snprintf(whole.path, sizeof whole.path, "%s", item->path);
+        *item = whole; /* its numbers; the list: */
+        field->type = FIELD_NUMBERS;
+        field->sweep = false;
+        field->offset = NO_OFFSET;
+        snprintf(field->text, sizeof field->text, "%s", p->all);
     }
     if (p->per == STANCE_PER_SELECTION) {
         field->type = FIELD_WORD;
@@ -81,11 +98,39 @@ static bool add_number(struct schema *schema, const struct scenario_field *row, 
     return true;
 }
 
+/* The rows of the mappings that hold a law's parameters. */
+static bool add_groups(struct schema *schema, const struct scenario_field *row, int law)
+{
+    const stance_law *const of = stance_laws()[law];
+    const int outputs = schema->scene ? schema->scene->actuators : 0;
+    for (int g = 0; of->group && of->group[g][0]; g++) {
+        const char *const name = of->group[g][0], *const star = strchr(name, '*');
+        for (int i = 1; i <= (star ? outputs : 1); i++) {
+            char path[64];
+            snprintf(path, sizeof path, star ? "%.*sy%d" : "%.*s",
+                     star ? (int)(star - name) : (int)strlen(name), name, i);
+            struct scenario_field *const field = schema_add(schema, row, "", path);
+            if (!field)
+                return false;
+            field->law = law;
+            field->by_scene = true;
+            field->type = FIELD_MAP;
+            field->sweep = false;
+            field->offset = NO_OFFSET;
+            snprintf(field->text, sizeof field->text, "%s", of->group[g][1]);
+        }
+    }
+    return true;
+}
+
 static bool add_parameter(struct schema *schema, const struct scenario_field *row, int law,
                           int parameter)
 {
     const stance_scene *const scene = schema->scene;
     const stance_per per = stance_laws()[law]->parameter[parameter].per;
+    const int output = stance_laws()[law]->parameter[parameter].output;
+    if (output > (scene ? scene->actuators : 0))
+        return true;
     const int count = !scene                         ? 0
                       : per == STANCE_PER_ACTUATOR   ? scene->actuators
                       : per == STANCE_PER_POSTURE    ? scene->postures
@@ -108,10 +153,13 @@ static bool add_parameter(struct schema *schema, const struct scenario_field *ro
 
 bool schema_add_laws(struct schema *schema, const struct scenario_field *row)
 {
-    for (int law = 0; stance_laws()[law]; law++)
+    for (int law = 0; stance_laws()[law]; law++) {
+        if (!add_groups(schema, row, law))
+            return false;
         for (int p = 0; p < stance_laws()[law]->parameters; p++)
             if (!add_parameter(schema, row, law, p))
                 return false;
+    }
     return true;
 }
 

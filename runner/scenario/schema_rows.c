@@ -122,7 +122,7 @@ const struct row schema_rows[] = {
          .text = "number of the foot that the robot stands on",
          .more = "With an equilibrium this foot stands at rest at the origin: offsets of angles "
                  "and their rates apply first, the translation follows from the foot, offsets of "
-                 "the translation come last."}},
+                 "the translation come last. With a state x, z and their rates follow."}},
     {FAMILY_CONTACTS, {.path = "initial.support", .type = FIELD_WORDS, .by_scene = true,
          .design = true, VALUE(support),
          .fallback_text = "the first contact with an equilibrium of a free root, else none",
@@ -333,6 +333,32 @@ const struct row schema_rows[] = {
          .more = "Along the ground, either way, however it came there: a robot that stands at its "
                  "target further away has hopped, slid or rolled off and is rested. none: "
                  "anywhere."}},
+    {0, {.path = "stop.walks", .type = FIELD_MAP, BY_HAND,
+         .text = "when a robot counts as walking, which ends the run"}},
+    {0, {.path = "stop.walks.steps", .type = FIELD_INTEGER, VALUE(walk_steps), .unit = "1",
+         .fallback = 0, RANGE(0, 1000), .quiet = true,
+         .text = "steps in a row that are like the one 1, 2 or 4 before; 0: nobody walks",
+         .more = "Alike in angles and rates just after the footfall, legs exchanged, and no less "
+                 "so from first to last; see the answers walked_steps, step_time, step_length and "
+                 "gait_period."}},
+    {0, {.path = "stop.walks.length", .type = FIELD_NUMBER, .use = USE_WALKS, .sweep = true,
+         VALUE(walk_length), .unit = "m", .fallback = 0.05, ABOVE(0, LARGE), .quiet = true,
+         .text = "shortest step: what lands nearer to the other foot is none",
+         .more = "Steps go one way, along +x or along -x."}},
+    {0, {.path = "stop.walks.time", .type = FIELD_NUMBER, .use = USE_WALKS, .sweep = true,
+         VALUE(walk_time), .unit = "s", .fallback = 0.05, RANGE(0, LARGE), .quiet = true,
+         .text = "time that a step takes at least: what lands sooner is none"}},
+    {0, {.path = "stop.walks.angle", .type = FIELD_NUMBER, .use = USE_WALKS, .sweep = true,
+         VALUE(walk_angle), .unit = "rad", .fallback = 0.01, ABOVE(0, LARGE), .quiet = true,
+         .text = "largest difference of an angle between steps that are alike"}},
+    {0, {.path = "stop.walks.rate", .type = FIELD_NUMBER, .use = USE_WALKS, .sweep = true,
+         VALUE(walk_rate), .unit = "rad/s", .fallback = 0.1, ABOVE(0, LARGE), .quiet = true,
+         .text = "largest difference of a rate between steps that are alike"}},
+    {0, {.path = "stop.footfalls", .type = FIELD_INTEGER, VALUE(footfalls), .unit = "1",
+         .fallback = 0, RANGE(0, 1e9), .quiet = true,
+         .text = "footfalls after which the run ends, just after the last; 0: it goes on",
+         .more = "capturing and event-driven end where it falls, the others at the end of its step. "
+                 "A footfall is the landing of another foot than the one that landed last."}},
     {0, {.path = "stop.fall_height", .type = FIELD_NUMBER, .sweep = true,
          VALUE(robot[STANCE_ROBOT_FALL_HEIGHT]), .unit = "1", .fallback = STANCE_FALL_HEIGHT,
          RANGE(0, 1),

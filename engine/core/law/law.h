@@ -16,6 +16,14 @@
  * together. I is kept within +-integral_limit and does not grow while a torque is at its limit
  * (anti-windup).
  *
+ * A law of outputs drives y_i = row_i q - h_i(s) to zero, h_i a polynomial of the phase
+ * s = (phase q - from) / (to - from):
+ *
+ *   y' = E q',  E = row - h' ds/dq,     y'' = E q'' + row q''|_(no accelerations) - h'' s'^2,
+ *
+ * so that E is the row of a servo that asks for e = -kp y - kd y', and h'' s'^2 more. Rows and
+ * phase are those of the leg that stands. Or torques are constants times e, without a model.
+ *
  * A switching law is linear inside an ellipsoid about its target and something else outside: a
  * decoupling law, or a second linear one (`far`).
  */
@@ -31,7 +39,7 @@ struct linear_law {
     lanes target[POSTURES];
 };
 
-/* One controlled coordinate; `pick` is 1 at it, 0 elsewhere. */
+/* One controlled coordinate, `pick` 1 at it, 0 elsewhere; or an output and its row. */
 struct servo {
     lanes pick[SCENE_COORDINATES];
     lanes setpoint, ramp, duration; /* unit of the coordinate; /s; s */
@@ -39,9 +47,18 @@ struct servo {
     lanes integral_limit;           /* of the coordinate, times s */
 };
 
+#ifdef SCENE_SERVOS
+#define LAW_OUTPUTS ACTUATORS
+#else
+#define LAW_OUTPUTS 1
+#endif
 struct law {
     struct linear_law near, far;
     struct servo servo[ACTUATORS];
+    lanes follows;  /* 1: servos are outputs, of the phase: */
+    lanes constant; /* 1: ... whose accelerations are weighted by `torques` */
+    lanes phase[SCENE_COORDINATES], phase_from; /* s = phase q - phase_from */
+    lanes along[LAW_OUTPUTS][STANCE_MAX_COEFFICIENTS], torques[LAW_OUTPUTS][LAW_OUTPUTS];
     lanes decouples; /* 1: torques are those of the servos, where the law does not switch */
     lanes switches;  /* 1: `linear` inside the ellipsoid only */
     lanes inverse_axis[2 * POSTURES]; /* of the ellipsoid, 1/rad and s/rad */
@@ -156,26 +173,89 @@ static inline mask law_near(const struct law *law, const lanes *posture, const l
     return mask_less_equal(sum, lanes_of(1));
 }
 
-/* Errors r - q of the servos and the accelerations e that they ask for. q, v: the scene's own
- * coordinates and their rates. */
-static inline void law_servo(const struct law *law, lanes t, const lanes *q, const lanes *v,
-                             const lanes *integral, lanes *error, lanes *wanted)
+#ifdef SCENE_SERVOS
+/* Where the phase is, held to 0 ... 1, and how far beyond; its rate. */
+struct law_phase {
+    lanes place, beyond, rate;
+};
+static inline struct law_phase law_phase_at(const struct law *law, const lanes *q, const lanes *v)
 {
+    lanes s = -law->phase_from, rate = lanes_of(0);
+    for (int k = 0; k < SCENE_COORDINATES; k++) {
+        s += law->phase[k] * q[k];
+        rate += law->phase[k] * v[k];
+    }
+    const lanes place = lanes_max(lanes_min(s, lanes_of(1)), lanes_of(0));
+    return (struct law_phase){place, s - place, rate};
+}
+
+/* Output i: error -h(s) in place of the set-point, row E, and the acceleration that the phase makes
+ * by itself. */
+static inline lanes law_output(const struct law *law, int i, const struct law_phase *at, lanes *row,
+                               lanes *bend)
+{
+    lanes h = law->along[i][STANCE_MAX_COEFFICIENTS - 1], slope = lanes_of(0), half = lanes_of(0);
+    for (int k = STANCE_MAX_COEFFICIENTS - 1; k-- > 0;) {
+        half = lanes_fma(half, at->place, slope);
+        slope = lanes_fma(slope, at->place, h);
+        h = lanes_fma(h, at->place, law->along[i][k]);
+    }
+    h = lanes_fma(lanes_fma(half, at->beyond, slope), at->beyond, h);
+    slope = lanes_fma(2 * half, at->beyond, slope);
+    for (int k = 0; k < SCENE_COORDINATES; k++)
+        row[k] = lanes_fnma(slope, law->phase[k], row[k]);
+    *bend = 2 * half * (at->rate * at->rate);
+    return h;
+}
+
+/* Errors r - q of the servos, the accelerations e that they ask for, the rows of what they control,
+ * and how these accelerate besides. q, v: the scene's own coordinates and their rates. */
+struct law_wish {
+    lanes error[ACTUATORS], wanted[ACTUATORS], bend[ACTUATORS];
+    lanes row[ACTUATORS][SCENE_COORDINATES];
+};
+static inline void law_servo(const struct law *law, lanes t, const lanes *q, const lanes *v,
+                             const lanes *integral, struct law_wish *wish)
+{
+    const mask follows = mask_less(lanes_of(0), law->follows);
+    struct law_phase phase = {lanes_of(0), lanes_of(0), lanes_of(0)};
+    if (mask_any(follows))
+        phase = law_phase_at(law, q, v);
     for (int i = 0; i < SCENE_ACTUATORS; i++) {
         const struct servo *const servo = &law->servo[i];
-        lanes position = lanes_of(0), rate = lanes_of(0);
+        lanes position = lanes_of(0), rate = lanes_of(0), row[SCENE_COORDINATES];
+        lanes aim = lanes_of(0), bend = lanes_of(0);
         for (int k = 0; k < SCENE_COORDINATES; k++) {
-            position += servo->pick[k] * q[k];
-            rate += servo->pick[k] * v[k];
+            row[k] = servo->pick[k];
+            position += row[k] * q[k];
         }
         const mask moves = mask_less(t, servo->duration);
-        const lanes reference = servo->setpoint + servo->ramp * lanes_min(t, servo->duration);
-        error[i] = reference - position;
-        wanted[i] = servo->kp * error[i] +
-                    servo->kd * (choose(moves, servo->ramp, lanes_of(0)) - rate) +
-                    servo->ki * integral[i];
+        if (mask_any(follows))
+            aim = law_output(law, i, &phase, row, &bend);
+        const lanes set = servo->setpoint + servo->ramp * lanes_min(t, servo->duration);
+        for (int k = 0; k < SCENE_COORDINATES; k++) {
+            wish->row[i][k] = row[k];
+            rate += row[k] * v[k];
+        }
+        wish->bend[i] = bend;
+        wish->error[i] = choose(follows, aim, set) - position;
+        wish->wanted[i] = servo->kp * wish->error[i] +
+                          servo->kd * (choose(moves, servo->ramp, lanes_of(0)) - rate) +
+                          servo->ki * integral[i];
     }
 }
+
+/* Torques of outputs whose accelerations are weighted. */
+static inline void law_constant(const struct law *law, const lanes *wanted, lanes *torque)
+{
+    for (int i = 0; i < LAW_OUTPUTS && i < SCENE_ACTUATORS; i++) {
+        torque[i] = lanes_of(0);
+        for (int j = 0; j < LAW_OUTPUTS; j++)
+            torque[i] = lanes_fma(law->torques[i][j], wanted[j], torque[i]);
+    }
+}
+
+#endif
 
 /* Rates of the integrals: the errors; zero where nothing reads them, and where the integral would
  * leave its range or grow while a torque is at its limit. */

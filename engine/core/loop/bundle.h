@@ -6,6 +6,7 @@
 
 #include "actuator.h"
 #include "engine/core/mode/between_events.h"
+#include "walking.h"
 
 /* A case that takes more evaluations than this is given up: so many at once, so many a step. */
 #define BUNDLE_WORK 1e7
@@ -80,6 +81,8 @@ struct bundle {
 
     lanes ahead[CONTACTS]; /* 1: lands only there, see feet.h */
     lanes foot;            /* that landed last; -1: none has */
+    lanes leg;             /* that stands, of stance_exchange: 0, 1 */
+    struct walking walk;
 
     struct gathered answer;
     lanes fell, fell_by; /* in the last step, before its end: see struct step_report */
@@ -141,6 +144,26 @@ static void bundle_load_linear(struct linear_law *law, int lane, const stance_ca
         lane_set(&law->target[j], lane, c->target[j] + scene_posture_origin(&of->body, j));
 }
 
+#ifdef SCENE_SERVOS
+/* Outputs as they are while a leg stands. */
+static void bundle_load_outputs(struct law *law, int lane, const stance_case *c, int leg)
+{
+    const stance_outputs *const of = &c->outputs;
+    const double scale = c->follows ? 1 / (of->to - of->from) : 0;
+    lane_set(&law->phase_from, lane, scale * of->from);
+    for (int k = 0; k < SCENE_COORDINATES; k++)
+        lane_set(&law->phase[k], lane, scale * of->phase[leg][k]);
+    for (int i = 0; i < SCENE_ACTUATORS; i++) {
+        const stance_output *const output = &of->output[leg][i];
+        for (int k = 0; k < SCENE_COORDINATES && c->follows; k++)
+            lane_set(&law->servo[i].pick[k], lane, output->row[k]);
+        set_all(law->along[i], STANCE_MAX_COEFFICIENTS, lane, output->along);
+        for (int j = 0; j < SCENE_ACTUATORS; j++)
+            lane_set(&law->torques[j][i], lane, output->torques[j]);
+    }
+}
+#endif
+
 static void bundle_load_law(struct law *law, int lane, const stance_case *c)
 {
     bundle_load_linear(&law->near, lane, c, &c->near);
@@ -161,6 +184,11 @@ static void bundle_load_law(struct law *law, int lane, const stance_case *c)
         lane_set(&law->limit[i], lane, fmin(fmin(c->body.limit[i], c->torque_limit), own));
     }
     lane_set(&law->decouples, lane, c->decouples);
+    lane_set(&law->follows, lane, c->follows);
+    lane_set(&law->constant, lane, c->follows && c->outputs.constant);
+#ifdef SCENE_SERVOS
+    bundle_load_outputs(law, lane, c, 0);
+#endif
     lane_set(&law->switches, lane, c->switches);
     for (int i = 0; i < SCENE_ACTUATORS; i++)
         lane_set(&law->push[i], lane, c->bends ? c->bend.push[i] : 0);
@@ -275,6 +303,8 @@ static void bundle_load(struct bundle *b, int lane, const stance_case *c, stance
                  c->lands_ahead && contact_grip(i) >= 0 && (c->contacts >> i & 1));
     }
     lane_set(&b->foot, lane, -1);
+    lane_set(&b->leg, lane, 0);
+    walking_load(&b->walk, lane, c);
     lane_set(&b->angle_scale, lane, 1 / c->settle_angle);
     lane_set(&b->rate_scale, lane, 1 / c->settle_rate);
     lane_set(&b->settle_steps, lane, nearbyint(c->settle_hold / c->step));

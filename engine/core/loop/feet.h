@@ -9,7 +9,7 @@
 #ifndef STANCE_CORE_LOOP_FEET_H
 #define STANCE_CORE_LOOP_FEET_H
 
-#include "bundle.h"
+#include "walk.h"
 
 #define FEET_DEEPEST 1e-9 /* m: what begins deeper in the ground is not in play */
 
@@ -20,6 +20,33 @@ static inline mask feet_down(const struct bundle *b, int c)
            mask_less_equal(b->now.gap[c], lanes_of(STEP_CLOSED));
 }
 
+/* Those that have landed there: what they struck is past. */
+#define FEET_REST 1e-9 /* m/s */
+static inline mask feet_landed(const struct bundle *b, int c)
+{
+    return feet_down(b, c) & mask_less_equal(lanes_of(-FEET_REST), b->now.approach[c]);
+}
+
+/* The leg that contact c belongs to stands from now on, in the lanes of `where`. */
+COLD void feet_stand(struct bundle *b, mask where, int c)
+{
+    for (int lane = 0; lane < LANES; lane++) {
+        const stance_case *const of = b->which[lane];
+        if (!of || !mask_get(where, lane))
+            continue;
+        SCENE_BEGIN(of);
+        const stance_exchange *const exchange = &of->scene->exchange;
+        const int leg = (int)(exchange->leg[1] >> c & 1);
+        if (!exchange->any || !((exchange->leg[0] | exchange->leg[1]) >> c & 1) ||
+            leg == (int)lane_get(&b->leg, lane))
+            continue;
+        lane_set(&b->leg, lane, leg);
+#ifdef SCENE_SERVOS
+        bundle_load_outputs(&b->set.law, lane, of, leg);
+#endif
+    }
+}
+
 /* At the beginning of the cases in `fresh`. */
 COLD void feet_begin(struct bundle *b, mask fresh)
 {
@@ -27,6 +54,11 @@ COLD void feet_begin(struct bundle *b, mask fresh)
         const mask under = fresh & mask_less(lanes_of(0), b->ahead[c]) &
                            mask_less(b->now.gap[c], lanes_of(-FEET_DEEPEST));
         b->set.may_touch[c] = choose(under, lanes_of(0), b->set.may_touch[c]);
+    }
+    for (int c = OWN_CONTACTS; c-- > 0;) { /* of feet on the ground the first stands */
+        const mask stands = contact_grip(c) < 0 ? MASK_NONE : fresh & feet_down(b, c);
+        feet_stand(b, stands, c);
+        b->walk.foot = choose(stands, lanes_of(c), b->walk.foot);
     }
 }
 
@@ -54,7 +86,7 @@ HOT void feet_choose(struct bundle *b, mask live)
     }
 }
 
-/* Counts the feet that have come to the ground since `before`, what feet_down said then. */
+/* Counts the feet that have come to the ground since `before`, what feet_landed said then. */
 COLD void feet_count(struct bundle *b, mask live, const mask *before)
 {
     EACH_CONTACT (c, 0) {
@@ -62,10 +94,14 @@ COLD void feet_count(struct bundle *b, mask live, const mask *before)
         if (foot < 0)
             continue;
         const mask other =
-            live & feet_down(b, c) & LANES_NOT(before[c]) &
+            live & feet_landed(b, c) & LANES_NOT(before[c]) &
             (mask_less(b->foot, lanes_of(foot)) | mask_less(lanes_of(foot), b->foot));
         b->answer.footfalls += choose(other, lanes_of(1), lanes_of(0));
         b->foot = choose(other, lanes_of(foot), b->foot);
+        if (mask_any(other)) {
+            feet_stand(b, other, c);
+            walk_footfall(b, other, c);
+        }
     }
 }
 

@@ -84,7 +84,7 @@ COLD void bundle_finish(struct bundle *b, int lane, stance_status status, stance
         .status = status,
         .outcome = outcome,
         .failure = failure,
-        .end_time = n * h,
+        .end_time = lane_get(&b->walk.ended, lane) >= 0 ? lane_get(&b->walk.ended, lane) : n * h,
         .settle_time = calm ? (since >= 0 ? since : n) * h : NAN,
         .fall_time = NAN,
         .steps = (int64_t)n,
@@ -95,6 +95,7 @@ COLD void bundle_finish(struct bundle *b, int lane, stance_status status, stance
     WHERE_GATHERED_##how(r->name = (type)record_finite(&b->answer.name, lane);)
     STANCE_ANSWERS(FINISH)
     r->excursion = c->has_target ? r->excursion : NAN;
+    walk_answer(b, lane, r);
     for (int i = 0; i < SCENE_COORDINATES; i++)
         s[i] = lane_get(&b->now.s[i], lane), w[i] = lane_get(&b->now.w[i], lane);
     scene_leave(&c->body, s, w, r->position, r->velocity);

@@ -158,13 +158,22 @@ COLD mask stream_join(struct bundle *b, mask ok, struct step_report *report)
 }
 #endif
 
+/* Ends the cases that a footfall ends, wherever in their steps they are. */
+COLD void stream_footfalls(struct bundle *b)
+{
+    const mask ended = b->live & mask_less_equal(lanes_of(0), b->walk.ended);
+    const struct verdict none = {0};
+    if (mask_any(ended))
+        bundle_end_lanes(b, ended, MASK_NONE, &none);
+}
+
 /* One step of all lanes, whatever happens in it. */
 COLD void stream_any(struct bundle *b, bool coupled)
 {
     struct step_report report;
     mask failed, down[CONTACTS];
     EACH_CONTACT (c, 0)
-        down[c] = feet_down(b, c);
+        down[c] = feet_landed(b, c);
     lanes h = b->h;
 #ifdef ADVANCE_PIECES
     if (SCENE_PUSHES > 0)
@@ -181,12 +190,15 @@ COLD void stream_any(struct bundle *b, bool coupled)
     const mask tired = ok & mask_less(b->most_work, b->answer.evaluations + report.evaluations);
     b->failure = choose(tired, lanes_of(STANCE_FAILURE_WORK), b->failure);
     failed |= tired;
-    if (!mask_any(ok | failed))
+    if (!mask_any(ok | failed)) {
+        stream_footfalls(b);
         return;
+    }
     if (coupled)
         for (int i = 0; i < SCENE_ACTUATORS; i++)
             b->torque[i] = choose(ok, report.torque[i], b->torque[i]);
     stream_follow(b, false, ok, failed, false, CONTACT_ALL, &report);
+    stream_footfalls(b);
 }
 
 /* Instants of pushes nearer to a lane's own than this part of a step are there already. */

@@ -55,16 +55,17 @@ static inline void decoupling_contacts(const struct setting *set, const struct d
 
 #ifdef SCENE_SERVOS
 
-/* The controlled rates of what moves the coordinates of the core by x. */
+/* The controlled rates, by their rows, of what moves the coordinates of the core by x. */
 static inline void decoupling_rates(const struct setting *set, const scene_trig *trig,
-                                    const lanes *x, lanes *out)
+                                    const lanes (*row)[SCENE_COORDINATES], const lanes *x,
+                                    lanes *out)
 {
     lanes rate[SCENE_COORDINATES];
     scene_coordinate_rates(&set->body, trig, x, rate);
     for (int j = 0; j < OWN_ACTUATORS; j++) {
         out[j] = lanes_of(0);
         for (int k = 0; k < SCENE_COORDINATES; k++)
-            out[j] += set->law.servo[j].pick[k] * rate[k];
+            out[j] += row[j][k] * rate[k];
     }
 }
 
@@ -162,6 +163,7 @@ static inline void decoupling_reach(const struct setting *set, const struct dyna
  * returns the lanes where none does. */
 static inline mask decoupling_react(const struct setting *set, mask where, contact_set touching,
                                     const struct contact_state *contact,
+                                    const lanes (*row)[SCENE_COORDINATES],
                                     lanes inverse[ACTUATORS][ACTUATORS], struct dynamics *e,
                                     lanes *torque)
 {
@@ -181,7 +183,7 @@ static inline mask decoupling_react(const struct setting *set, mask where, conta
                 answer[c][a][i] = lanes_of(0);
             if (!(touching >> c & 1))
                 continue;
-            decoupling_rates(set, &e->trig, e->response[c][a], rate);
+            decoupling_rates(set, &e->trig, row, e->response[c][a], rate);
             problem.free[c][a] = e->free[c][a];
             for (int i = 0; i < OWN_ACTUATORS; i++) {
                 problem.free[c][a] += reach[c][i][a] * torque[i];
@@ -235,19 +237,23 @@ static inline void decouple(const struct setting *set, mask where, lanes t, cons
                             const struct contact_state *contact, struct dynamics *e)
 {
     lanes q[SCENE_COORDINATES], v[SCENE_COORDINATES], curvature[SCENE_COORDINATES];
-    lanes error[ACTUATORS], wanted[ACTUATORS], rate[ACTUATORS], torque[ACTUATORS];
+    lanes wanted[ACTUATORS], rate[ACTUATORS], torque[ACTUATORS], weighted[ACTUATORS];
     lanes G[ACTUATORS][ACTUATORS], inverse[ACTUATORS][ACTUATORS];
     scene_coordinates(&set->body, &e->trig, s, w, q, v);
-    law_servo(&set->law, t, q, v, integral, error, wanted);
+    struct law_wish wish;
+    const lanes(*const row)[SCENE_COORDINATES] = (const lanes(*)[SCENE_COORDINATES])wish.row;
+    const mask constant = mask_less(lanes_of(0), set->law.constant);
+    law_servo(&set->law, t, q, v, integral, &wish);
+    law_constant(&set->law, wish.wanted, weighted);
     scene_coordinate_curvature(&set->body, &e->trig, w, curvature);
-    decoupling_rates(set, &e->trig, e->acceleration, rate);
+    decoupling_rates(set, &e->trig, row, e->acceleration, rate);
     for (int j = 0; j < OWN_ACTUATORS; j++) {
-        wanted[j] -= rate[j];
+        wanted[j] = wish.wanted[j] - rate[j] + wish.bend[j];
         for (int k = 0; k < SCENE_COORDINATES; k++)
-            wanted[j] -= set->law.servo[j].pick[k] * curvature[k];
+            wanted[j] -= row[j][k] * curvature[k];
     }
     for (int i = 0; i < OWN_ACTUATORS; i++) {
-        decoupling_rates(set, &e->trig, e->push[i], rate);
+        decoupling_rates(set, &e->trig, row, e->push[i], rate);
         for (int j = 0; j < OWN_ACTUATORS; j++)
             G[j][i] = rate[j];
     }
@@ -260,13 +266,14 @@ static inline void decouple(const struct setting *set, mask where, lanes t, cons
     mask stands = MASK_NONE;
     e->several = lanes_of(0);
     for (int c = 0; c < OWN_CONTACTS; c++)
-        stands |= where & contact->closed[c];
+        stands |= where & contact->closed[c] & LANES_NOT(constant);
     if (touching && mask_any(stands))
-        degraded |= decoupling_react(set, where, touching, contact, inverse, e, torque);
+        degraded |= decoupling_react(set, where & LANES_NOT(constant), touching, contact, row,
+                                     inverse, e, torque);
     for (int i = 0; i < SCENE_ACTUATORS; i++)
-        e->command[i] = torque[i];
-    law_integral_rate(&set->law, error, integral, torque, e->integral_rate);
-    e->degraded = choose(where & degraded, lanes_of(1), lanes_of(0));
+        e->command[i] = torque[i] = choose(constant, weighted[i], torque[i]);
+    law_integral_rate(&set->law, wish.error, integral, torque, e->integral_rate);
+    e->degraded = choose(where & degraded & LANES_NOT(constant), lanes_of(1), lanes_of(0));
 }
 
 /* Applies e->command, limited, in the lanes of `where`: torques, accelerations, contact terms. */

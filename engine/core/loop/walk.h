@@ -1,0 +1,139 @@
+/* walk.h - which footfalls are steps, and when steps are a gait.
+ *
+ * Feet that clatter on one spot make many footfalls: a step is one that lands a length away from
+ * the foot that stood, the same way as the last step, and not at once after it. The state just
+ * after a step, legs exchanged where the second one stands and the place along the ground left out,
+ * is a point of the return map; where points repeat, one, two or four steps after, as often as is
+ * asked and no less well than when they began to, the robot walks. What is no step, or not alike,
+ * begins the count anew.
+ *
+ * Footfalls are rare: a lane at a time. */
+#ifndef STANCE_CORE_LOOP_WALK_H
+#define STANCE_CORE_LOOP_WALK_H
+
+#include "bundle.h"
+
+/* Angles and rates of the posture as the user has them, by the leg that stands. */
+static void walk_section(const struct bundle *b, int lane, double section[2 * POSTURES])
+{
+    const stance_case *const c = b->which[lane];
+    double s[SCENE_COORDINATES], w[SCENE_COORDINATES], q[SCENE_COORDINATES], v[SCENE_COORDINATES];
+    const bool second = lane_get(&b->leg, lane) > 0;
+    for (int i = 0; i < SCENE_COORDINATES; i++)
+        s[i] = lane_get(&b->now.s[i], lane), w[i] = lane_get(&b->now.w[i], lane);
+    scene_leave(&c->body, s, w, q, v);
+    for (int j = 0; j < OWN_POSTURE; j++) {
+        const int own = c->scene->posture[j];
+        const int from = second ? c->scene->exchange.coordinate[own] : own;
+        section[j] = q[from], section[OWN_POSTURE + j] = v[from];
+    }
+}
+
+/* By how much the section is off that of some steps before, in units of what is admitted. */
+static double walk_off(const struct bundle *b, int lane, const double *section, int back)
+{
+    const stance_case *const c = b->which[lane];
+    double off = 0;
+    for (int j = 0; j < 2 * OWN_POSTURE; j++) {
+        const double is = fabs(section[j] - lane_get(&b->walk.section[back - 1][j], lane));
+        off = fmax(off, is / (j < OWN_POSTURE ? c->walk_angle : c->walk_rate));
+    }
+    return off;
+}
+
+#define WALK_FLOOR 0.1 /* of what is admitted: what is alike to it need not be more so */
+
+/* How the steps so far are alike, with one more at this section. */
+static void walk_compare(struct walking *w, struct bundle *b, int lane, const double *section)
+{
+    const double steps = lane_get(&w->steps, lane), wanted = lane_get(&w->wanted, lane);
+    for (int k = WALK_PERIODS; k-- > 0;) {
+        double alike = lane_get(&w->alike[k], lane), first = lane_get(&w->first[k], lane);
+        const double off =
+            steps > walk_period[k] ? walk_off(b, lane, section, walk_period[k]) : INFINITY;
+        alike = off <= 1 ? alike + 1 : 0;
+        first = alike == 1 ? off : first;
+        if (alike >= wanted && off > fmax(first, WALK_FLOOR)) /* it grows: again from here */
+            alike = 1, first = off;
+        else if (alike >= wanted)
+            lane_set(&w->period, lane, walk_period[k]); /* the shortest one last */
+        lane_set(&w->alike[k], lane, alike);
+        lane_set(&w->first[k], lane, first);
+    }
+}
+
+static void walk_step(struct walking *w, struct bundle *b, int lane, double t, double length)
+{
+    double section[2 * POSTURES];
+    lane_set(&w->steps, lane, lane_get(&w->steps, lane) + 1);
+    lane_set(&w->place, lane, lane_get(&w->place, lane) + length);
+    for (int k = WALK_KEPT; k > 0; k--) {
+        lane_set(&w->when[k], lane, lane_get(&w->when[k - 1], lane));
+        lane_set(&w->where[k], lane, lane_get(&w->where[k - 1], lane));
+    }
+    lane_set(&w->when[0], lane, t);
+    lane_set(&w->where[0], lane, lane_get(&w->place, lane));
+    walk_section(b, lane, section);
+    walk_compare(w, b, lane, section);
+    for (int k = WALK_KEPT; k-- > 0;)
+        for (int j = 0; j < 2 * OWN_POSTURE; j++)
+            lane_set(&w->section[k][j], lane,
+                     k > 0 ? lane_get(&w->section[k - 1][j], lane) : section[j]);
+}
+
+/* Contact c, of another foot than the one that stood, is on the ground in the lanes of `where`. */
+COLD void walk_footfall(struct bundle *b, mask where, int c)
+{
+    struct walking *const w = &b->walk;
+    for (int lane = 0; lane < LANES; lane++) {
+        const stance_case *const of = b->which[lane];
+        if (!of || !mask_get(where, lane))
+            continue;
+        SCENE_BEGIN(of);
+        const double t = lane_get(&b->now.t, lane), foot = lane_get(&w->foot, lane);
+        double length = 0;
+        if (foot >= 0) {
+            const lanes here = scene_along(&b->set.body, b->now.s, &b->now.trig, c),
+                        there = scene_along(&b->set.body, b->now.s, &b->now.trig, (int)foot);
+            length = lane_get(&here, lane) - lane_get(&there, lane);
+        }
+        const double before = lane_get(&w->where[0], lane) - lane_get(&w->where[1], lane);
+        const bool on = lane_get(&w->steps, lane) == 0 || length * before > 0;
+        lane_set(&w->foot, lane, c);
+        if (of->walk_steps > 0 && on && fabs(length) >= of->walk_length &&
+            t - lane_get(&w->last, lane) >= of->walk_time)
+            walk_step(w, b, lane, t, length);
+        else
+            for (int k = 0; k < WALK_PERIODS; k++)
+                lane_set(&w->alike[k], lane, 0);
+        lane_set(&w->last, lane, t);
+        if (of->footfalls > 0 && lane_get(&b->answer.footfalls, lane) >= (double)of->footfalls)
+            lane_set(&w->ended, lane, t);
+    }
+}
+
+/* Lanes that walk. */
+static inline mask walk_goes(const struct bundle *b)
+{
+    return mask_less(lanes_of(0), b->walk.period);
+}
+
+/* The answers, at the end of a case. */
+static void walk_answer(const struct bundle *b, int lane, stance_result *r)
+{
+    const struct walking *const w = &b->walk;
+    const int steps = (int)fmin(lane_get(&w->steps, lane), WALK_KEPT + 1), last = steps - 1;
+    r->walked_steps = r->gait_period = STANCE_NO_COUNT;
+    r->step_time = r->step_length = NAN;
+    if (lane_get(&w->wanted, lane) <= 0)
+        return;
+    r->walked_steps = (int64_t)lane_get(&w->steps, lane);
+    if (last > 0) {
+        r->step_time = (lane_get(&w->when[0], lane) - lane_get(&w->when[last], lane)) / last;
+        r->step_length = (lane_get(&w->where[0], lane) - lane_get(&w->where[last], lane)) / last;
+    }
+    if (lane_get(&w->period, lane) > 0)
+        r->gait_period = (int64_t)lane_get(&w->period, lane);
+}
+
+#endif

@@ -1,0 +1,39 @@
+/* walking.h - what is kept of a lane's last steps. */
+#ifndef STANCE_CORE_LOOP_WALKING_H
+#define STANCE_CORE_LOOP_WALKING_H
+
+#include "engine/core/mode/between_events.h"
+
+/* Steps back that a gait may repeat after, and how far back is kept. */
+enum { WALK_PERIODS = 3, WALK_KEPT = 4 };
+static const int walk_period[WALK_PERIODS] = {1, 2, 4};
+
+struct walking {
+    lanes wanted;        /* steps that are to be alike; 0: nobody asks */
+    lanes footfalls;     /* that end the case; 0: none do */
+    lanes foot;          /* contact that stood up to now; -1: none */
+    lanes last;          /* s, of the last footfall, be it a step */
+    lanes steps, period; /* so far; with which they are alike, 0: they are not */
+    lanes place;         /* m, walked so far */
+    /* Of the last steps, the newest first: when, where, with which angles and rates, legs exchanged
+     * where the second one stands. */
+    lanes when[WALK_KEPT + 1], where[WALK_KEPT + 1];
+    lanes section[WALK_KEPT][2 * POSTURES];
+    /* By period: how many in a row were alike, and how much so the first of them. */
+    lanes alike[WALK_PERIODS], first[WALK_PERIODS];
+    lanes ended; /* s, at which the last footfall ended the case; -1: none has */
+};
+
+static inline void walking_load(struct walking *w, int lane, const stance_case *c)
+{
+    lanes *const all = (lanes *)w;
+    for (size_t i = 0; i < sizeof *w / sizeof(lanes); i++)
+        lane_set(&all[i], lane, 0);
+    lane_set(&w->wanted, lane, (double)c->walk_steps);
+    lane_set(&w->footfalls, lane, (double)c->footfalls);
+    lane_set(&w->foot, lane, -1);
+    lane_set(&w->last, lane, -INFINITY);
+    lane_set(&w->ended, lane, -1);
+}
+
+#endif

@@ -1,0 +1,207 @@
+/* outputs.c - as many outputs as there are actuators are held at zero, each a row over the
+ * coordinates less a polynomial of a phase, so that what a robot does follows where it is instead
+ * of the clock: virtual constraints (Grizzle, Abba and Plestan, IEEE Trans. Autom. Control 46
+ * (2001) 51). What that takes stands in core/law/law.h and core/mode/decoupling.h.
+ *
+ * The polynomials are given by Bernstein's coefficients, h(s) = sum b_i C(n, i) s^i (1 - s)^(n - i)
+ * = sum_j s^j C(n, j) sum_i (-1)^(j - i) C(j, i) b_i. */
+#include "engine/stance.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { OF, FROM, TO, FIRST }; /* of the phase; then by output */
+enum { ROW, ALONG, KP, KD, TORQUES, OUTPUT_PARAMETERS };
+enum { PARAMETERS = FIRST + OUTPUT_PARAMETERS * STANCE_MAX_ACTUATORS };
+#define LARGE 1e9
+
+#define OUTPUT(i)                                                                                  \
+    {{"outputs.y" #i ".of", "1", "of output y" #i ": how much of %s", 0, -LARGE, LARGE},           \
+     .per = STANCE_PER_COORDINATE,                                                                 \
+     .output = i,                                                                                  \
+     .told = false,                                                                                \
+     .all = "the row of y" #i ": how much of each coordinate"},                                    \
+        {{"outputs.y" #i ".along", "rad", "what the row of y" #i " follows: a coefficient", NAN,   \
+          -LARGE, LARGE},                                                                          \
+         .per = STANCE_PER_TERM,                                                                   \
+         .output = i,                                                                              \
+         .told = true,                                                                             \
+         .all = "what its row follows along the phase: Bernstein coefficients; one: a constant"},  \
+        {{"outputs.y" #i ".proportional", "1/s^2", "proportional gain on y" #i, 100, 0, LARGE},    \
+         .output = i,                                                                              \
+         .told = true},                                                                            \
+        {{"outputs.y" #i ".derivative", "1/s", "derivative gain on y" #i, 20, 0, LARGE},           \
+         .output = i,                                                                              \
+         .told = true},                                                                            \
+    {                                                                                              \
+        {"outputs.y" #i ".torques",                                                                \
+         "kg m^2",                                                                                 \
+         "torque of %s by the acceleration asked of y" #i,                                         \
+         0,                                                                                        \
+         -LARGE,                                                                                   \
+         LARGE},                                                                                   \
+            .per = STANCE_PER_ACTUATOR, .output = i,                                               \
+            .all = "torques by the acceleration that is asked of y" #i ", in place of a model",    \
+            .more = "Of all outputs or of none: then torques are found with the reactions, as "    \
+                    "decoupling does."                                                             \
+    }
+
+static const stance_parameter parameters[PARAMETERS] = {
+    [OF] = {{"phase.of", "1", "of the phase: how much of %s", 0, -LARGE, LARGE},
+            .per = STANCE_PER_COORDINATE,
+            .all = "the row of the phase: how much of each coordinate",
+            .more = "That of the leg that stands at first; while the other one does, coordinates "
+                    "of the legs take each other's place here and in the outputs."},
+    [FROM] = {{"phase.from", "rad", "phase at which the polynomials begin", 0, -LARGE, LARGE},
+              .told = true},
+    [TO] = {{"phase.to", "rad", "phase at which they end", 1, -LARGE, LARGE}, .told = true},
+    OUTPUT(1),
+    OUTPUT(2),
+    OUTPUT(3),
+    OUTPUT(4),
+    OUTPUT(5),
+    OUTPUT(6),
+    OUTPUT(7),
+    OUTPUT(8),
+};
+_Static_assert(STANCE_MAX_ACTUATORS == 8, "a row for each output");
+
+static const char *const groups[][2] = {
+    {"phase", "what the outputs follow"},
+    {"outputs", "what is held at zero: y1, y2 ..., one for each actuator"},
+    {"outputs.*", "a row over the coordinates less a polynomial of the phase"},
+    {NULL, NULL},
+};
+
+/* Coefficients of powers from n of Bernstein's. */
+static void powers_of(const double *b, int n, double *power)
+{
+    double outer = 1; /* C(n - 1, j) */
+    for (int j = 0; j < n; j++) {
+        double inner = 1, sum = 0; /* C(j, i) */
+        for (int i = 0; i <= j; i++) {
+            sum += ((j - i) % 2 ? -1 : 1) * inner * b[i];
+            inner = inner * (j - i) / (i + 1);
+        }
+        power[j] = outer * sum;
+        outer = outer * (n - 1 - j) / (j + 1);
+    }
+}
+
+static bool is_zero(const double *v, int n)
+{
+    bool zero = true;
+    for (int i = 0; i < n; i++)
+        zero = zero && v[i] == 0;
+    return zero;
+}
+
+/* The rank of the rows and the phase together is that of all rows: else one follows from others. */
+static int rank_of(double (*row)[STANCE_MAX_COORDINATES], int rows, int n)
+{
+    int rank = 0;
+    for (int k = 0; k < n && rank < rows; k++) {
+        int best = rank;
+        for (int i = rank; i < rows; i++)
+            best = fabs(row[i][k]) > fabs(row[best][k]) ? i : best;
+        if (!(fabs(row[best][k]) > 1e-9))
+            continue;
+        for (int j = 0; j < n; j++) {
+            const double x = row[best][j];
+            row[best][j] = row[rank][j], row[rank][j] = x;
+        }
+        for (int i = rank + 1; i < rows; i++) {
+            const double factor = row[i][k] / row[rank][k];
+            for (int j = k; j < n; j++)
+                row[i][j] -= factor * row[rank][j];
+        }
+        rank++;
+    }
+    return rank;
+}
+
+static stance_error refuse(stance_message *message, const char *what, int output)
+{
+    if (output > 0)
+        snprintf(message->text, sizeof message->text, "controller.outputs.y%d: %s", output, what);
+    else
+        snprintf(message->text, sizeof message->text, "controller.%s", what);
+    return STANCE_BAD_ARGUMENT;
+}
+
+static stance_error set(const stance_scene *scene, const double *value, const double *begin,
+                        stance_linear_law *linear, stance_case *c, stance_message *message)
+{
+    stance_outputs *const of = &c->outputs;
+    const stance_exchange *const exchange = &scene->exchange;
+    const int n = scene->coordinates, m = scene->actuators;
+    double rows[STANCE_MAX_ACTUATORS + 1][STANCE_MAX_COORDINATES] = {{0}}, sum;
+    int weighted = 0, bends = 0;
+    (void)begin, (void)linear;
+    memset(of, 0, sizeof *of);
+    of->from = value[FROM * STANCE_LAW_ROOM], of->to = value[TO * STANCE_LAW_ROOM];
+    sum = of->from + of->to;
+    if (!(fabs(of->to - of->from) > 1e-9))
+        return refuse(message, "phase: from and to are the same", 0);
+    for (int k = 0; k < n; k++) {
+        sum += rows[m][k] = of->phase[0][k] = value[OF * STANCE_LAW_ROOM + k];
+        of->phase[1][exchange->coordinate[k]] = of->phase[0][k];
+    }
+    for (int i = 0; i < m; i++) {
+        const double *const own = &value[(FIRST + OUTPUT_PARAMETERS * i) * STANCE_LAW_ROOM];
+        const double *const along = &own[ALONG * STANCE_LAW_ROOM];
+        const double *const torques = &own[TORQUES * STANCE_LAW_ROOM];
+        stance_output *const output = &of->output[0][i], *const other = &of->output[1][i];
+        int terms = 0;
+        while (terms < STANCE_MAX_COEFFICIENTS && !isnan(along[terms]))
+            sum += along[terms++];
+        if (terms == 0)
+            return refuse(message, "along is missing: what its row follows", i + 1);
+        if (is_zero(&own[ROW * STANCE_LAW_ROOM], n))
+            return refuse(message, "of is missing: what it is a row of", i + 1);
+        powers_of(along, terms, output->along);
+        bends += terms > 1;
+        output->kp = own[KP * STANCE_LAW_ROOM], output->kd = own[KD * STANCE_LAW_ROOM];
+        sum += output->kp + output->kd;
+        weighted += !is_zero(torques, m);
+        *other = *output;
+        for (int k = 0; k < n; k++) {
+            sum += rows[i][k] = output->row[k] = own[ROW * STANCE_LAW_ROOM + k];
+            other->row[exchange->coordinate[k]] = output->row[k];
+        }
+        for (int k = 0; k < m; k++) {
+            sum += output->torques[k] = torques[k];
+            other->torques[exchange->actuator[k]] = output->torques[k];
+        }
+        c->servo[i] = (stance_servo){
+            .kp = output->kp, .kd = output->kd, .duration = INFINITY, .integral_limit = INFINITY};
+    }
+    if (!isfinite(sum))
+        return refuse(message, "outputs: a number is not finite", 0);
+    if (weighted != 0 && weighted != m)
+        return refuse(message, "outputs: torques of some outputs and not of all", 0);
+    if (bends && is_zero(of->phase[0], n))
+        return refuse(message, "phase.of is missing: what the outputs follow", 0);
+    if (rank_of(rows, bends ? m + 1 : m, n) < (bends ? m + 1 : m))
+        return refuse(message,
+                      bends
+                          ? "outputs: the rows and the phase depend on each other: no torques can "
+                            "hold them all"
+                          : "outputs: the rows depend on each other: no torques can hold them all",
+                      0);
+    of->constant = weighted > 0;
+    c->decouples = c->follows = true;
+    return STANCE_OK;
+}
+
+const stance_law stance_law_outputs = {
+    .name = "outputs",
+    .text = "as many outputs as actuators, each a row over the coordinates less a polynomial of a "
+            "phase, are held at zero; legs take each other's place at a footfall",
+    .servos = true,
+    .parameters = PARAMETERS,
+    .parameter = parameters,
+    .group = groups,
+    .set = set,
+};

@@ -1,0 +1,138 @@
+/* exchange.c - which parts of a mechanism take each other's place when the other leg stands. */
+#include "exchange.h"
+
+#include <string.h>
+
+static bool driven(const stance_mechanism *m, int body)
+{
+    bool is = false;
+    for (int a = 0; a < m->actuators; a++)
+        is |= m->actuator[a].body == body;
+    return is;
+}
+
+/* The next element of a body from e on; m->elements: none. */
+static int next_element(const stance_mechanism *m, int body, int e)
+{
+    while (e < m->elements && m->element[e].body != body)
+        e++;
+    return e;
+}
+
+static int next_child(const stance_mechanism *m, int parent, int b)
+{
+    while (b < m->bodies && m->body[b].parent != parent)
+        b++;
+    return b;
+}
+
+/* Pairs the subtrees of two bodies, body by body and element by element; false: they differ. */
+struct pairs {
+    int body[STANCE_MAX_BODIES], element[STANCE_MAX_ELEMENTS];
+    int elements;
+};
+static bool pair(const stance_mechanism *m, int a, int b, struct pairs *pairs)
+{
+    if (m->body[a].joint != m->body[b].joint || driven(m, a) != driven(m, b))
+        return false;
+    for (int side = 0; side < 2; side++)
+        if (stance_mechanism_stops(m, a, side) != stance_mechanism_stops(m, b, side))
+            return false;
+    pairs->body[a] = b, pairs->body[b] = a;
+    int e = next_element(m, a, 0), f = next_element(m, b, 0);
+    for (; e < m->elements && f < m->elements;
+         e = next_element(m, a, e + 1), f = next_element(m, b, f + 1)) {
+        if (m->element[e].sole != m->element[f].sole)
+            return false;
+        pairs->element[e] = f, pairs->element[f] = e;
+        pairs->elements++;
+    }
+    if (e < m->elements || f < m->elements)
+        return false;
+    int i = next_child(m, a, a + 1), j = next_child(m, b, b + 1);
+    for (; i < m->bodies && j < m->bodies; i = next_child(m, a, i + 1), j = next_child(m, b, j + 1))
+        if (!pair(m, i, j, pairs))
+            return false;
+    return i == m->bodies && j == m->bodies;
+}
+
+/* The lists from the pairs of bodies and elements; contacts in the scene's order. */
+static void write_lists(const stance_mechanism *m, const stance_scene *scene,
+                        const struct pairs *pairs, const bool *first, stance_exchange *exchange)
+{
+    int begin[STANCE_MAX_ELEMENTS + 1] = {0}, stop[STANCE_MAX_BODIES][2], c;
+    for (int e = 0; e < m->elements; e++)
+        begin[e + 1] = begin[e] + 1 + m->element[e].sole;
+    c = begin[m->elements];
+    for (int b = 0; b < m->bodies; b++)
+        for (int side = 0; side < 2; side++)
+            if (stance_mechanism_stops(m, b, side))
+                stop[b][side] = c++;
+    for (int e = 0; e < m->elements; e++)
+        for (int k = begin[e]; k < begin[e + 1]; k++) {
+            const int body = m->element[e].body;
+            exchange->contact[k] = begin[pairs->element[e]] + k - begin[e];
+            if (pairs->body[body] != body)
+                exchange->leg[!first[body]] |= 1u << k;
+        }
+    for (int b = 0; b < m->bodies; b++) {
+        for (int side = 0; side < 2; side++)
+            if (stance_mechanism_stops(m, b, side))
+                exchange->contact[stop[b][side]] = stop[pairs->body[b]][side];
+        if (b > 0 && m->body[b].joint != STANCE_FIXED)
+            exchange->coordinate[stance_mechanism_coordinate(m, b)] =
+                stance_mechanism_coordinate(m, pairs->body[b]);
+    }
+    for (int i = 0; i < m->actuators; i++)
+        for (int k = 0; k < m->actuators; k++)
+            if (scene->actuated[k] == exchange->coordinate[scene->actuated[i]])
+                exchange->actuator[i] = k;
+}
+
+static void mark(const stance_mechanism *m, int b, bool *first)
+{
+    first[b] = true;
+    for (int i = next_child(m, b, b + 1); i < m->bodies; i = next_child(m, b, i + 1))
+        mark(m, i, first);
+}
+
+void exchange_make(const stance_mechanism *m, const stance_scene *scene, stance_exchange *exchange)
+{
+    bool first[STANCE_MAX_BODIES] = {false};
+    struct pairs pairs = {{0}, {0}, 0};
+    int legs = 0;
+    bool several = false;
+    memset(exchange, 0, sizeof *exchange);
+    for (int i = 0; i < STANCE_MAX_COORDINATES; i++)
+        exchange->coordinate[i] = i;
+    for (int i = 0; i < STANCE_MAX_CONTACTS; i++)
+        exchange->contact[i] = i;
+    for (int i = 0; i < STANCE_MAX_ACTUATORS; i++)
+        exchange->actuator[i] = i;
+    for (int b = 0; b < STANCE_MAX_BODIES; b++)
+        pairs.body[b] = b;
+    for (int e = 0; e < STANCE_MAX_ELEMENTS; e++)
+        pairs.element[e] = e;
+    for (int a = 1; a < m->bodies; a++) {
+        int alike = 0;
+        struct pairs found = pairs;
+        for (int b = 1; b < m->bodies; b++) {
+            struct pairs with = pairs;
+            if (b == a || m->body[b].parent != m->body[a].parent ||
+                m->body[a].joint == STANCE_FIXED || !pair(m, a, b, &with))
+                continue;
+            alike++;
+            found = with;
+        }
+        if (alike == 0 || pairs.body[a] != a)
+            continue;
+        several |= alike > 1;
+        legs += found.elements > pairs.elements;
+        if (found.elements > pairs.elements)
+            mark(m, a, first);
+        pairs = found;
+    }
+    exchange->any = legs == 1 && !several;
+    if (exchange->any)
+        write_lists(m, scene, &pairs, first, exchange);
+}
