@@ -445,6 +445,8 @@ static stance_failure event_begin(struct advance *a, struct event_point *p, stru
             memcpy(p->y + SCENE_COORDINATES, now->w, sizeof now->w);
             *impact = true;
             memset(a->stood, 0, sizeof a->stood);
+            if (a->stops) /* another leg may stand from now on */
+                return STANCE_FAILURE_NONE;
             continue;
         }
         if (trouble.none || trouble.several)
@@ -535,7 +537,7 @@ static inline mask advance(struct advance *a, const struct setting *set, const l
         if (failure != STANCE_FAILURE_NONE)
             break;
         if (impact && a->stops) {
-            event_enter(a, here, now);
+            now->t = a->problem.begin + here->tau;
             a->sum = *report;
             a->within = true;
             return false;

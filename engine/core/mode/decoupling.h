@@ -20,12 +20,16 @@
  * torques together. Taking the reactions of the moment before instead is an iteration that diverges
  * wherever H Y K outweighs D. The limit of the torques is applied afterwards.
  *
- * The law degrades, and says so, in two cases. Where the condition number of G (SI units) is above
- * DECOUPLING_CONDITION its inverse is damped (Nakamura and Hanafusa, J. Dyn. Sys. Meas. Control
- * 108, 1986): G^T (G G^T + d I)^-1, with d growing from zero at that bound, so that torques stay
- * continuous and finite. And where no reactions fit the laws together with the torques - the
- * accelerations that are wanted would take a ground that pulls - the reactions are those without
- * torques.
+ * On feet that stand the robot's own G may be near singular where that of the robot that they hold
+ * is not: a straight knee carries it. Where the condition number of G (SI units) is above
+ * DECOUPLING_CONDITION and no contact slides the torques are those with which all contacts stick,
+ * if the reactions are inside their cones: then they obey the laws, too.
+ *
+ * The law degrades, and says so, in two cases. Where that does not help the inverse of G is damped
+ * (Nakamura and Hanafusa, J. Dyn. Sys. Meas. Control 108, 1986): G^T (G G^T + d I)^-1, with d
+ * growing from zero at that bound, so that torques stay continuous and finite. And where no
+ * reactions fit the laws together with the torques - the accelerations that are wanted would take a
+ * ground that pulls - the reactions are those without torques.
  */
 #ifndef STANCE_CORE_MODE_DECOUPLING_H
 #define STANCE_CORE_MODE_DECOUPLING_H
@@ -230,6 +234,60 @@ static inline mask decoupling_react(const struct setting *set, mask where, conta
     return none;
 }
 
+/* Torques with which the accelerations are as `wanted` while all closed contacts stick; returns the
+ * lanes of `where` where none slides, that is regular, and reactions are in their cones. */
+static inline mask decoupling_hold(const struct setting *set, mask where, contact_set touching,
+                                   const struct contact_state *contact,
+                                   const lanes (*row)[SCENE_COORDINATES], const lanes *wanted,
+                                   const struct dynamics *e, lanes *torque)
+{
+    const int m = OWN_ACTUATORS;
+    lanes reach[CONTACTS][ACTUATORS][2], r[CONTACTS][2], by[ACTUATORS][CONTACTS][2];
+    lanes G[ACTUATORS][ACTUATORS], inverse[ACTUATORS][ACTUATORS], rate[ACTUATORS], x[ACTUATORS];
+    mask rows[CONTACTS][2], sticks[CONTACTS];
+    for (int c = 0; c < OWN_CONTACTS; c++) {
+        sticks[c] = LANES_ALL;
+        where &=
+            LANES_NOT(contact->closed[c] & mask_less(lanes_of(0), lanes_abs(contact->slide[c])));
+    }
+    contact_mode_rows(contact->closed, sticks, rows);
+    decoupling_reach(set, e, touching, reach);
+    for (int i = -1; i < m; i++) { /* without torques, then by each of them */
+        lanes pull[CONTACTS][2], push[SCENE_COORDINATES], (*const force)[2] = i < 0 ? r : by[i];
+        for (int c = 0; c < OWN_CONTACTS; c++)
+            for (int a = 0; a < 2; a++)
+                pull[c][a] = i < 0 ? e->free[c][a] : reach[c][i][a];
+        contact_rest(touching, CONTACT_CAREFUL, (const lanes(*)[CONTACTS][2][2])e->D,
+                     (const lanes(*)[2])pull, (const mask(*)[2])rows, NULL, force);
+        for (int k = 0; k < SCENE_COORDINATES; k++) {
+            push[k] = i < 0 ? lanes_of(0) : e->push[i][k];
+            EACH_IN (c, touching)
+                for (int a = 0; a < contact_unknowns(c); a++)
+                    push[k] += choose(rows[c][a], e->response[c][a][k] * force[c][a], lanes_of(0));
+        }
+        decoupling_rates(set, &e->trig, row, push, rate);
+        for (int j = 0; j < m; j++)
+            if (i < 0)
+                x[j] = wanted[j] - rate[j];
+            else
+                G[j][i] = rate[j];
+    }
+    mask good = where & LANES_NOT(decoupling_inverse(G, inverse));
+    lanes with[ACTUATORS];
+    for (int i = 0; i < m; i++) {
+        with[i] = lanes_of(0);
+        for (int j = 0; j < m; j++)
+            with[i] += inverse[i][j] * x[j];
+        EACH_IN (c, touching)
+            for (int a = 0; a < contact_unknowns(c); a++)
+                r[c][a] = choose(rows[c][a], r[c][a] + with[i] * by[i][c][a], lanes_of(0));
+    }
+    good &= direct_obeys(set->friction, touching, (const lanes(*)[2])r);
+    for (int i = 0; i < m; i++)
+        torque[i] = choose(good, with[i], torque[i]);
+    return good;
+}
+
 /* The law in the lanes of `where`: e->command, e->integral_rate and e->degraded. *e was evaluated
  * with pushes and without torques in these lanes; `contact`: what each contact does. */
 static inline void decouple(const struct setting *set, mask where, lanes t, const lanes *s,
@@ -267,9 +325,13 @@ static inline void decouple(const struct setting *set, mask where, lanes t, cons
     e->several = lanes_of(0);
     for (int c = 0; c < OWN_CONTACTS; c++)
         stands |= where & contact->closed[c] & LANES_NOT(constant);
-    if (touching && mask_any(stands))
-        degraded |= decoupling_react(set, where & LANES_NOT(constant), touching, contact, row,
-                                     inverse, e, torque);
+    mask held = stands & degraded;
+    if (touching && mask_any(held))
+        held = decoupling_hold(set, held, touching, contact, row, wanted, e, torque);
+    if (touching && mask_any(stands & LANES_NOT(held)))
+        degraded |= decoupling_react(set, where & LANES_NOT(constant | held), touching, contact,
+                                     row, inverse, e, torque);
+    degraded &= LANES_NOT(held);
     for (int i = 0; i < SCENE_ACTUATORS; i++)
         e->command[i] = torque[i] = choose(constant, weighted[i], torque[i]);
     law_integral_rate(&set->law, wish.error, integral, torque, e->integral_rate);
