@@ -314,6 +314,8 @@ typedef struct stance_outputs {
     bool constant;
     double from, to;
     double phase[2][STANCE_MAX_COORDINATES]; /* by the leg that stands */
+    double clock[STANCE_MAX_COEFFICIENTS]; /* to be added: of the powers of the time since the last
+                                            * footfall, s */
     stance_output output[2][STANCE_MAX_ACTUATORS];
 } stance_outputs;
 

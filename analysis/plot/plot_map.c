@@ -170,7 +170,8 @@ static bool draw_times(const struct plot *plot)
     const bool good = gnuplot_needs(&map.g, results_answer(r, name, &values, plot->message)) &&
                       values && gnuplot_keep(&map.g, values);
     for (uint64_t i = 0; good && i < r->cases; i++)
-        if (r->kind[i] != RESULTS_STABILISED && r->kind[i] != RESULTS_RESTED)
+        if (r->kind[i] != RESULTS_STABILISED && r->kind[i] != RESULTS_RESTED &&
+            r->kind[i] != RESULTS_WALKS)
             values[i] = NAN;
     if (map.g.missing)
         return gnuplot_end(&map.g);

@@ -39,16 +39,17 @@ struct page {
 
 /* ---- shares against a parameter ----------------------------------------------------------- */
 
-/* Kinds whose shares are drawn: of stabilised and rested those that there are, or the first. */
+/* Kinds whose shares are drawn, two at most: of those that stand or walk what there is, or the
+ * first. */
 static int choose_kinds(const struct statistics_counts *counts, size_t n, enum results_kind *kinds)
 {
-    static const enum results_kind wanted[2] = {RESULTS_STABILISED, RESULTS_RESTED};
+    static const enum results_kind wanted[] = {RESULTS_STABILISED, RESULTS_WALKS, RESULTS_RESTED};
     int found = 0;
-    for (int k = 0; k < 2; k++) {
+    for (int k = 0; k < 3 && found < 2; k++) {
         bool any = false;
         for (size_t i = 0; i < n && !any; i++)
             any = counts[i].kind[wanted[k]] > 0;
-        if (any || (k == 1 && found == 0))
+        if (any || (k == 2 && found == 0))
             kinds[found++] = wanted[any ? k : 0];
     }
     return found;

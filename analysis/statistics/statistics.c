@@ -12,6 +12,8 @@ enum results_kind statistics_judged(const struct results *r)
 {
     struct statistics_counts counts;
     statistics_count(r, -1, 0, &counts);
+    if (counts.kind[RESULTS_WALKS] > 0)
+        return RESULTS_WALKS;
     return counts.kind[RESULTS_STABILISED] == 0 && counts.kind[RESULTS_RESTED] > 0
                ? RESULTS_RESTED
                : RESULTS_STABILISED;

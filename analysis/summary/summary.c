@@ -14,7 +14,9 @@
 
 enum results_kind summary_judged(const struct scenario *s)
 {
-    return scenario_law(&s->base)->designed ? RESULTS_STABILISED : RESULTS_RESTED;
+    return s->base.walk_steps > 0             ? RESULTS_WALKS
+           : scenario_law(&s->base)->designed ? RESULTS_STABILISED
+                                              : RESULTS_RESTED;
 }
 
 double summary_share(const struct summary *summary, const struct statistics_counts *counts)

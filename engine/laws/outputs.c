@@ -11,7 +11,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { OF, FROM, TO, FIRST }; /* of the phase; then by output */
+enum { OF, CLOCK, FROM, TO, FIRST }; /* of the phase; then by output */
 enum { ROW, ALONG, KP, KD, TORQUES, OUTPUT_PARAMETERS };
 enum { PARAMETERS = FIRST + OUTPUT_PARAMETERS * STANCE_MAX_ACTUATORS };
 #define LARGE 1e9
@@ -53,6 +53,14 @@ static const stance_parameter parameters[PARAMETERS] = {
             .all = "the row of the phase: how much of each coordinate",
             .more = "That of the leg that stands at first; while the other one does, coordinates "
                     "of the legs take each other's place here and in the outputs."},
+    [CLOCK] = {{"phase.clock", "1", "coefficient of the phase's polynomial of time", NAN, -LARGE,
+                LARGE},
+               .per = STANCE_PER_TERM,
+               .told = true,
+               .all = "in place of `of`: coefficients of the powers of the time since the last "
+                      "footfall, s",
+               .more = "What a robot is to do when, whatever it does: a gait that its own phase "
+                       "holds together may fall so."},
     [FROM] = {{"phase.from", "rad", "phase at which the polynomials begin", 0, -LARGE, LARGE},
               .told = true},
     [TO] = {{"phase.to", "rad", "phase at which they end", 1, -LARGE, LARGE}, .told = true},
@@ -136,12 +144,18 @@ static stance_error set(const stance_scene *scene, const double *value, const do
     stance_outputs *const of = &c->outputs;
     const stance_exchange *const exchange = &scene->exchange;
     const int n = scene->coordinates, m = scene->actuators;
-    double rows[STANCE_MAX_ACTUATORS + 1][STANCE_MAX_COORDINATES] = {{0}}, sum;
+    double rows[STANCE_MAX_ACTUATORS + 1][STANCE_MAX_COORDINATES] = {{0}}, sum = 0;
     int weighted = 0, bends = 0;
+    bool clocked = false;
     (void)begin, (void)linear;
     memset(of, 0, sizeof *of);
+    for (int k = 0; k < STANCE_MAX_COEFFICIENTS; k++) {
+        const double term = value[CLOCK * STANCE_LAW_ROOM + k];
+        clocked = clocked || !isnan(term);
+        sum += of->clock[k] = isnan(term) ? 0 : term;
+    }
     of->from = value[FROM * STANCE_LAW_ROOM], of->to = value[TO * STANCE_LAW_ROOM];
-    sum = of->from + of->to;
+    sum += of->from + of->to;
     if (!(fabs(of->to - of->from) > 1e-9))
         return refuse(message, "phase: from and to are the same", 0);
     for (int k = 0; k < n; k++) {
@@ -181,9 +195,12 @@ static stance_error set(const stance_scene *scene, const double *value, const do
         return refuse(message, "outputs: a number is not finite", 0);
     if (weighted != 0 && weighted != m)
         return refuse(message, "outputs: torques of some outputs and not of all", 0);
-    if (bends && is_zero(of->phase[0], n))
+    const bool phased = !is_zero(of->phase[0], n);
+    if (phased && clocked)
+        return refuse(message, "phase: give one of of and clock", 0);
+    if (bends && !phased && !clocked)
         return refuse(message, "phase.of is missing: what the outputs follow", 0);
-    if (rank_of(rows, bends ? m + 1 : m, n) < (bends ? m + 1 : m))
+    if (rank_of(rows, bends && phased ? m + 1 : m, n) < (bends && phased ? m + 1 : m))
         return refuse(message,
                       bends
                           ? "outputs: the rows and the phase depend on each other: no torques can "

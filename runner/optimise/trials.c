@@ -188,7 +188,8 @@ static void end_case(void *context, uint64_t row, const stance_result *result)
 {
     struct batch *const batch = context;
     struct trials *const t = batch->t;
-    if (result->status == STANCE_DONE && result->outcome == STANCE_STABILISED)
+    if (result->status == STANCE_DONE &&
+        (result->outcome == STANCE_STABILISED || result->outcome == STANCE_WALKS))
         t->worth[row / batch->starts] +=
             batch->weight[row % batch->starts] * worth_of(&t->scenario->search, result);
     batch->cases += result->failure != STANCE_FAILURE_INITIAL;

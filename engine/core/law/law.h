@@ -21,8 +21,10 @@
  *
  *   y' = E q',  E = row - h' ds/dq,     y'' = E q'' + row q''|_(no accelerations) - h'' s'^2,
  *
- * so that E is the row of a servo that asks for e = -kp y - kd y', and h'' s'^2 more. Rows and
- * phase are those of the leg that stands. Or torques are constants times e, without a model.
+ * * so that E is the row of a servo that asks for e = -kp y - kd y', and h'' s'^2 more. A phase may
+ * be a polynomial of the time since the last footfall, as well: then y' = E q' - h' s_t, and h'
+ * s_tt is asked for, too. Rows and phase are those of the leg that stands. Or torques are constants
+ * times e, without a model.
  *
  * A switching law is linear inside an ellipsoid about its target and something else outside: a
  * decoupling law, or a second linear one (`far`).
@@ -57,7 +59,8 @@ struct law {
     struct servo servo[ACTUATORS];
     lanes follows;  /* 1: servos are outputs, of the phase: */
     lanes constant; /* 1: ... whose accelerations are weighted by `torques` */
-    lanes phase[SCENE_COORDINATES], phase_from; /* s = phase q - phase_from */
+    lanes phase[SCENE_COORDINATES], phase_from;     /* s = phase q - phase_from ... */
+    lanes clock[STANCE_MAX_COEFFICIENTS], footfall; /* ... + a polynomial of the time since, s */
     lanes along[LAW_OUTPUTS][STANCE_MAX_COEFFICIENTS], torques[LAW_OUTPUTS][LAW_OUTPUTS];
     lanes decouples; /* 1: torques are those of the servos, where the law does not switch */
     lanes switches;  /* 1: `linear` inside the ellipsoid only */
@@ -174,25 +177,35 @@ static inline mask law_near(const struct law *law, const lanes *posture, const l
 }
 
 #ifdef SCENE_SERVOS
-/* Where the phase is, held to 0 ... 1, and how far beyond; its rate. */
+/* Where the phase is, held to 0 ... 1, and how far beyond; its rate, and of that what is the
+ * clock's; its acceleration by the clock. */
 struct law_phase {
-    lanes place, beyond, rate;
+    lanes place, beyond, rate, drift, pull;
 };
-static inline struct law_phase law_phase_at(const struct law *law, const lanes *q, const lanes *v)
+static inline struct law_phase law_phase_at(const struct law *law, lanes t, const lanes *q,
+                                            const lanes *v)
 {
-    lanes s = -law->phase_from, rate = lanes_of(0);
+    const lanes since = t - law->footfall;
+    lanes s = lanes_of(0), drift = lanes_of(0), half = lanes_of(0);
+    for (int k = STANCE_MAX_COEFFICIENTS; k-- > 0;) {
+        half = lanes_fma(half, since, drift);
+        drift = lanes_fma(drift, since, s);
+        s = lanes_fma(s, since, law->clock[k]);
+    }
+    lanes rate = drift;
+    s -= law->phase_from;
     for (int k = 0; k < SCENE_COORDINATES; k++) {
         s += law->phase[k] * q[k];
         rate += law->phase[k] * v[k];
     }
     const lanes place = lanes_max(lanes_min(s, lanes_of(1)), lanes_of(0));
-    return (struct law_phase){place, s - place, rate};
+    return (struct law_phase){place, s - place, rate, drift, 2 * half};
 }
 
-/* Output i: error -h(s) in place of the set-point, row E, and the acceleration that the phase makes
- * by itself. */
+/* Output i: h(s) in place of the set-point and, of its rate, what is the clock's; row E, and the
+ * acceleration that the phase makes by itself. */
 static inline lanes law_output(const struct law *law, int i, const struct law_phase *at, lanes *row,
-                               lanes *bend)
+                               lanes *drift, lanes *bend)
 {
     lanes h = law->along[i][STANCE_MAX_COEFFICIENTS - 1], slope = lanes_of(0), half = lanes_of(0);
     for (int k = STANCE_MAX_COEFFICIENTS - 1; k-- > 0;) {
@@ -204,7 +217,8 @@ static inline lanes law_output(const struct law *law, int i, const struct law_ph
     slope = lanes_fma(2 * half, at->beyond, slope);
     for (int k = 0; k < SCENE_COORDINATES; k++)
         row[k] = lanes_fnma(slope, law->phase[k], row[k]);
-    *bend = 2 * half * (at->rate * at->rate);
+    *drift = slope * at->drift;
+    *bend = lanes_fma(2 * half, at->rate * at->rate, slope * at->pull);
     return h;
 }
 
@@ -218,20 +232,20 @@ static inline void law_servo(const struct law *law, lanes t, const lanes *q, con
                              const lanes *integral, struct law_wish *wish)
 {
     const mask follows = mask_less(lanes_of(0), law->follows);
-    struct law_phase phase = {lanes_of(0), lanes_of(0), lanes_of(0)};
+    struct law_phase phase;
     if (mask_any(follows))
-        phase = law_phase_at(law, q, v);
+        phase = law_phase_at(law, t, q, v);
     for (int i = 0; i < SCENE_ACTUATORS; i++) {
         const struct servo *const servo = &law->servo[i];
         lanes position = lanes_of(0), rate = lanes_of(0), row[SCENE_COORDINATES];
-        lanes aim = lanes_of(0), bend = lanes_of(0);
+        lanes aim = lanes_of(0), drift = lanes_of(0), bend = lanes_of(0);
         for (int k = 0; k < SCENE_COORDINATES; k++) {
             row[k] = servo->pick[k];
             position += row[k] * q[k];
         }
         const mask moves = mask_less(t, servo->duration);
         if (mask_any(follows))
-            aim = law_output(law, i, &phase, row, &bend);
+            aim = law_output(law, i, &phase, row, &drift, &bend);
         const lanes set = servo->setpoint + servo->ramp * lanes_min(t, servo->duration);
         for (int k = 0; k < SCENE_COORDINATES; k++) {
             wish->row[i][k] = row[k];
@@ -239,9 +253,9 @@ static inline void law_servo(const struct law *law, lanes t, const lanes *q, con
         }
         wish->bend[i] = bend;
         wish->error[i] = choose(follows, aim, set) - position;
-        wish->wanted[i] = servo->kp * wish->error[i] +
-                          servo->kd * (choose(moves, servo->ramp, lanes_of(0)) - rate) +
-                          servo->ki * integral[i];
+        const lanes moved = choose(follows, drift, choose(moves, servo->ramp, lanes_of(0)));
+        wish->wanted[i] =
+            servo->kp * wish->error[i] + servo->kd * (moved - rate) + servo->ki * integral[i];
     }
 }
 

@@ -153,6 +153,8 @@ static void bundle_load_outputs(struct law *law, int lane, const stance_case *c,
     lane_set(&law->phase_from, lane, scale * of->from);
     for (int k = 0; k < SCENE_COORDINATES; k++)
         lane_set(&law->phase[k], lane, scale * of->phase[leg][k]);
+    for (int k = 0; k < STANCE_MAX_COEFFICIENTS; k++)
+        lane_set(&law->clock[k], lane, scale * of->clock[k]);
     for (int i = 0; i < SCENE_ACTUATORS; i++) {
         const stance_output *const output = &of->output[leg][i];
         for (int k = 0; k < SCENE_COORDINATES && c->follows; k++)
@@ -187,6 +189,7 @@ static void bundle_load_law(struct law *law, int lane, const stance_case *c)
     lane_set(&law->follows, lane, c->follows);
     lane_set(&law->constant, lane, c->follows && c->outputs.constant);
 #ifdef SCENE_SERVOS
+    lane_set(&law->footfall, lane, 0);
     bundle_load_outputs(law, lane, c, 0);
 #endif
     lane_set(&law->switches, lane, c->switches);

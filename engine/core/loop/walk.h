@@ -53,10 +53,13 @@ static void walk_compare(struct walking *w, struct bundle *b, int lane, const do
             steps > walk_period[k] ? walk_off(b, lane, section, walk_period[k]) : INFINITY;
         alike = off <= 1 ? alike + 1 : 0;
         first = alike == 1 ? off : first;
+        if (alike == 1)
+            lane_set(&w->since[k], lane, lane_get(&b->now.t, lane));
         if (alike >= wanted && off > fmax(first, WALK_FLOOR)) /* it grows: again from here */
             alike = 1, first = off;
         else if (alike >= wanted)
-            lane_set(&w->period, lane, walk_period[k]); /* the shortest one last */
+            lane_set(&w->period, lane, walk_period[k]), /* the shortest one last */
+                lane_set(&w->settled, lane, lane_get(&w->since[k], lane));
         lane_set(&w->alike[k], lane, alike);
         lane_set(&w->first[k], lane, first);
     }
@@ -132,6 +135,8 @@ static void walk_answer(const struct bundle *b, int lane, stance_result *r)
         r->step_time = (lane_get(&w->when[0], lane) - lane_get(&w->when[last], lane)) / last;
         r->step_length = (lane_get(&w->where[0], lane) - lane_get(&w->where[last], lane)) / last;
     }
+    if (r->outcome == STANCE_WALKS)
+        r->settle_time = lane_get(&w->settled, lane);
     if (lane_get(&w->period, lane) > 0)
         r->gait_period = (int64_t)lane_get(&w->period, lane);
 }

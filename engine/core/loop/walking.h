@@ -13,6 +13,7 @@ struct walking {
     lanes footfalls;     /* that end the case; 0: none do */
     lanes foot;          /* contact that stood up to now; -1: none */
     lanes last;          /* s, of the last footfall, be it a step */
+    lanes settled;       /* s, since when */
     lanes steps, period; /* so far; with which they are alike, 0: they are not */
     lanes place;         /* m, walked so far */
     /* Of the last steps, the newest first: when, where, with which angles and rates, legs exchanged
@@ -20,7 +21,7 @@ struct walking {
     lanes when[WALK_KEPT + 1], where[WALK_KEPT + 1];
     lanes section[WALK_KEPT][2 * POSTURES];
     /* By period: how many in a row were alike, and how much so the first of them. */
-    lanes alike[WALK_PERIODS], first[WALK_PERIODS];
+    lanes alike[WALK_PERIODS], first[WALK_PERIODS], since[WALK_PERIODS]; /* s */
     lanes ended; /* s, at which the last footfall ended the case; -1: none has */
 };
 
