@@ -107,13 +107,14 @@ typedef struct stance_workload {
 struct stance_mechanism;
 struct stance_tree;
 
-/* Two legs that are alike in structure: what takes whose place when the other one stands. Each list
- * is its own inverse. */
+/* Two legs that are alike in structure: how the robot reads while the other one stands, q' = M q of
+ * coordinates and rates, torque'[i] = sign[i] torque[actuator[i]]. */
 typedef struct stance_exchange {
-    bool any;        /* else there are no two, or more: every list is 0, 1, 2 ... */
-    uint32_t leg[2]; /* contacts of each, the first one's the lower; stops count */
-    int coordinate[STANCE_MAX_COORDINATES], contact[STANCE_MAX_CONTACTS],
-        actuator[STANCE_MAX_ACTUATORS];
+    bool any;        /* else there are no two, or more: M is 1 */
+    uint32_t leg[2]; /* contacts of each */
+    double coordinate[STANCE_MAX_COORDINATES][STANCE_MAX_COORDINATES]; /* M */
+    int actuator[STANCE_MAX_ACTUATORS];
+    double sign[STANCE_MAX_ACTUATORS];
 } stance_exchange;
 
 typedef struct stance_scene stance_scene;

@@ -93,7 +93,9 @@ bool summary_head(const struct summary *summary)
               {".name", as_text(r->title[0] ? r->title : r->name)},
               {".sampled", as_truth(r->sample >= 0)}, {".shards", as_whole(r->shard.count)},
               {".judged", as_text(results_kind_names[summary->judged])},
-              {".Judged", as_text(summary->judged == RESULTS_RESTED ? "Rested" : "Stabilised")},
+              {".Judged", as_text(summary->judged == RESULTS_RESTED  ? "Rested"
+                                  : summary->judged == RESULTS_WALKS ? "Walks"
+                                                                     : "Stabilised")},
               {".scenarios", as_whole(ancestry.scenarios)});
     if (r->shard.count > 0 && r->shard.count <= r->cases) {
         const struct shard shard = shard_of(&r->shard, r->cases);

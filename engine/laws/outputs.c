@@ -160,7 +160,8 @@ static stance_error set(const stance_scene *scene, const double *value, const do
         return refuse(message, "phase: from and to are the same", 0);
     for (int k = 0; k < n; k++) {
         sum += rows[m][k] = of->phase[0][k] = value[OF * STANCE_LAW_ROOM + k];
-        of->phase[1][exchange->coordinate[k]] = of->phase[0][k];
+        for (int j = 0; j < n; j++)
+            of->phase[1][j] += of->phase[0][k] * exchange->coordinate[k][j];
     }
     for (int i = 0; i < m; i++) {
         const double *const own = &value[(FIRST + OUTPUT_PARAMETERS * i) * STANCE_LAW_ROOM];
@@ -180,13 +181,15 @@ static stance_error set(const stance_scene *scene, const double *value, const do
         sum += output->kp + output->kd;
         weighted += !is_zero(torques, m);
         *other = *output;
+        memset(other->row, 0, sizeof other->row);
         for (int k = 0; k < n; k++) {
             sum += rows[i][k] = output->row[k] = own[ROW * STANCE_LAW_ROOM + k];
-            other->row[exchange->coordinate[k]] = output->row[k];
+            for (int j = 0; j < n; j++)
+                other->row[j] += output->row[k] * exchange->coordinate[k][j];
         }
         for (int k = 0; k < m; k++) {
             sum += output->torques[k] = torques[k];
-            other->torques[exchange->actuator[k]] = output->torques[k];
+            other->torques[exchange->actuator[k]] = exchange->sign[k] * output->torques[k];
         }
         c->servo[i] = (stance_servo){
             .kp = output->kp, .kd = output->kd, .duration = INFINITY, .integral_limit = INFINITY};

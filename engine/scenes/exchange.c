@@ -56,37 +56,71 @@ static bool pair(const stance_mechanism *m, int a, int b, struct pairs *pairs)
     return i == m->bodies && j == m->bodies;
 }
 
-/* The lists from the pairs of bodies and elements; contacts in the scene's order. */
-static void write_lists(const stance_mechanism *m, const stance_scene *scene,
-                        const struct pairs *pairs, const bool *first, stance_exchange *exchange)
+/* Contacts of the first legs and of the others. */
+static void write_legs(const stance_mechanism *m, const struct pairs *pairs, const bool *first,
+                       stance_exchange *exchange)
 {
-    int begin[STANCE_MAX_ELEMENTS + 1] = {0}, stop[STANCE_MAX_BODIES][2], c;
-    for (int e = 0; e < m->elements; e++)
-        begin[e + 1] = begin[e] + 1 + m->element[e].sole;
-    c = begin[m->elements];
-    for (int b = 0; b < m->bodies; b++)
-        for (int side = 0; side < 2; side++)
-            if (stance_mechanism_stops(m, b, side))
-                stop[b][side] = c++;
-    for (int e = 0; e < m->elements; e++)
-        for (int k = begin[e]; k < begin[e + 1]; k++) {
-            const int body = m->element[e].body;
-            exchange->contact[k] = begin[pairs->element[e]] + k - begin[e];
-            if (pairs->body[body] != body)
-                exchange->leg[!first[body]] |= 1u << k;
-        }
-    for (int b = 0; b < m->bodies; b++) {
-        for (int side = 0; side < 2; side++)
-            if (stance_mechanism_stops(m, b, side))
-                exchange->contact[stop[b][side]] = stop[pairs->body[b]][side];
-        if (b > 0 && m->body[b].joint != STANCE_FIXED)
-            exchange->coordinate[stance_mechanism_coordinate(m, b)] =
-                stance_mechanism_coordinate(m, pairs->body[b]);
-    }
+    for (int e = 0, c = 0; e < m->elements; e++)
+        for (int end = 0; end <= m->element[e].sole; end++, c++)
+            if (pairs->body[m->element[e].body] != m->element[e].body)
+                exchange->leg[!first[m->element[e].body]] |= 1u << c;
+}
+
+/* Legs that hang from one body: coordinates and torques take each other's place. */
+static void write_pairs(const stance_mechanism *m, const stance_scene *scene,
+                        const struct pairs *pairs, stance_exchange *exchange)
+{
+    int to[STANCE_MAX_COORDINATES];
+    for (int i = 0; i < STANCE_MAX_COORDINATES; i++)
+        to[i] = i;
+    for (int b = 1; b < m->bodies; b++)
+        if (m->body[b].joint != STANCE_FIXED)
+            to[stance_mechanism_coordinate(m, b)] = stance_mechanism_coordinate(m, pairs->body[b]);
+    for (int i = 0; i < STANCE_MAX_COORDINATES; i++)
+        exchange->coordinate[i][i] = 0, exchange->coordinate[i][to[i]] = 1;
     for (int i = 0; i < m->actuators; i++)
         for (int k = 0; k < m->actuators; k++)
-            if (scene->actuated[k] == exchange->coordinate[scene->actuated[i]])
+            if (scene->actuated[k] == to[scene->actuated[i]])
                 exchange->actuator[i] = k;
+}
+
+/* A leg that is the root, with the other one on it: the angle of the one is the sum, that between
+ * them turns its sign. False: they are no such two. */
+static bool write_root(const stance_mechanism *m, const stance_scene *scene,
+                       stance_exchange *exchange)
+{
+    struct pairs pairs = {{0}, {0}, 0};
+    bool first[STANCE_MAX_BODIES] = {false};
+    int leg = -1;
+    if (m->body[0].joint != STANCE_FREE)
+        return false;
+    for (int b = 0; b < m->bodies; b++) {
+        pairs.body[b] = b;
+        const bool stands = next_element(m, b, 0) < m->elements;
+        if (b == 0 || (m->body[b].joint == STANCE_FIXED && !stands))
+            continue;
+        if (leg >= 0 || m->body[b].joint != STANCE_HINGE || m->body[b].parent != 0)
+            return false;
+        leg = b;
+    }
+    if (leg < 0)
+        return false;
+    int e = next_element(m, 0, 0), f = next_element(m, leg, 0), count = 0;
+    for (; e < m->elements && f < m->elements;
+         e = next_element(m, 0, e + 1), f = next_element(m, leg, f + 1), count++)
+        if (m->element[e].sole != m->element[f].sole)
+            return false;
+    if (count == 0 || e < m->elements || f < m->elements)
+        return false;
+    pairs.body[0] = leg, pairs.body[leg] = 0;
+    first[0] = true;
+    write_legs(m, &pairs, first, exchange);
+    const int own = stance_mechanism_coordinate(m, 0), other = stance_mechanism_coordinate(m, leg);
+    exchange->coordinate[own][other] = 1;
+    exchange->coordinate[other][other] = -1;
+    for (int i = 0; i < m->actuators; i++)
+        exchange->sign[i] = scene->actuated[i] == other ? -1 : 1;
+    return true;
 }
 
 static void mark(const stance_mechanism *m, int b, bool *first)
@@ -104,11 +138,9 @@ void exchange_make(const stance_mechanism *m, const stance_scene *scene, stance_
     bool several = false;
     memset(exchange, 0, sizeof *exchange);
     for (int i = 0; i < STANCE_MAX_COORDINATES; i++)
-        exchange->coordinate[i] = i;
-    for (int i = 0; i < STANCE_MAX_CONTACTS; i++)
-        exchange->contact[i] = i;
+        exchange->coordinate[i][i] = 1;
     for (int i = 0; i < STANCE_MAX_ACTUATORS; i++)
-        exchange->actuator[i] = i;
+        exchange->actuator[i] = i, exchange->sign[i] = 1;
     for (int b = 0; b < STANCE_MAX_BODIES; b++)
         pairs.body[b] = b;
     for (int e = 0; e < STANCE_MAX_ELEMENTS; e++)
@@ -133,6 +165,10 @@ void exchange_make(const stance_mechanism *m, const stance_scene *scene, stance_
         pairs = found;
     }
     exchange->any = legs == 1 && !several;
-    if (exchange->any)
-        write_lists(m, scene, &pairs, first, exchange);
+    if (exchange->any) {
+        write_legs(m, &pairs, first, exchange);
+        write_pairs(m, scene, &pairs, exchange);
+    } else if (legs == 0) {
+        exchange->any = write_root(m, scene, exchange);
+    }
 }

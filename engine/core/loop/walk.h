@@ -24,8 +24,12 @@ static void walk_section(const struct bundle *b, int lane, double section[2 * PO
     scene_leave(&c->body, s, w, q, v);
     for (int j = 0; j < OWN_POSTURE; j++) {
         const int own = c->scene->posture[j];
-        const int from = second ? c->scene->exchange.coordinate[own] : own;
-        section[j] = q[from], section[OWN_POSTURE + j] = v[from];
+        const double *const row = c->scene->exchange.coordinate[own];
+        section[j] = second ? 0 : q[own], section[OWN_POSTURE + j] = second ? 0 : v[own];
+        for (int k = 0; k < OWN_COORDINATES && second; k++) {
+            section[j] += row[k] * q[k];
+            section[OWN_POSTURE + j] += row[k] * v[k];
+        }
     }
 }
 
