@@ -1,0 +1,211 @@
+/* command_gait.c - `stance gait`: the cycle that a walking robot comes to, and whether it holds. */
+#include "return_map.h"
+
+#include "analysis/table/table.h"
+#include "runner/plan/asked.h"
+#include "runner/plan/instruction_set.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+
+extern const struct command command_gait; /* below */
+
+struct request {
+    struct asked asked;
+    uint64_t steps, settle;
+    const char *path;
+    bool json;
+};
+
+static int fail(const struct scenario *s, const char *text)
+{
+    fprintf(stderr, "stance gait: %s: %s\n", s->file, text);
+    return EXIT_USAGE;
+}
+
+static const char text[] =
+    "[title:{title}\n]A gait of {steps} step{steps#s}, by {method}\n\n"
+    "  period       {period%.9g} s\n"
+    "  step length  {step_length%.9g} m\n"
+    "  speed        {speed%.6g} m/s\n\n"
+    "Just after a footfall, standing on {foot}[sampled: (samples begin there)]\n"
+    "[state*:  {key%-12s} {value%16.12f}\n]"
+    "\nMultipliers of [steps=1:a step|{steps} steps]: the gait is [stable:stable|NOT stable]\n"
+    "[multipliers*:  {modulus%.9f}  {.number%-26s}  +- {error%.1e}\n]"
+    "\nOn the way\n"
+    "[peak_torque:  largest torque {peak_torque%.4g} N m\n]"
+    "  friction used  {friction_used%.4g} of {friction%.4g}[.slips:; slips by {slip_distance%.3g} "
+    "m]\n"
+    "\nIt returns to within {residual%.1e}, after {iterations} iteration{iterations#s} of "
+    "Newton.\n";
+
+/* The gait as facts. */
+static json_t *facts_of(const struct scenario *s, const struct return_map *map,
+                        const struct gait *gait)
+{
+    const stance_scene *const scene = map->scene;
+    double position[STANCE_MAX_COORDINATES], velocity[STANCE_MAX_COORDINATES];
+    json_t *const state = json_object(), *const list = json_array();
+    char name[STANCE_NAME + 2], number[64];
+    return_map_state(map, gait->z, position, velocity);
+    for (int rate = 0; rate < 2; rate++)
+        for (int j = 0; j < scene->postures; j++) {
+            const int k = scene->posture[j];
+            snprintf(name, sizeof name, "%s%s", rate ? "v" : "", scene->coordinate[k].name);
+            table_put(state, name, as_number(rate ? velocity[k] : position[k]));
+        }
+    for (int i = 0; i < map->n; i++) {
+        if (gait->im[i] < 0)
+            continue;
+        snprintf(number, sizeof number, gait->im[i] > 0 ? "%.9f +- %.9fi" : "%.9f", gait->re[i],
+                 gait->im[i]);
+        TABLE_APPEND(list, {"re", as_number(gait->re[i])}, {"im", as_number(gait->im[i])},
+                     {"modulus", as_number(hypot(gait->re[i], gait->im[i]))},
+                     {"error", as_number(gait->error[i])}, {".number", as_text(number)});
+    }
+    const stance_result *const r = &gait->at.result;
+    return TABLE_OBJECT(
+        {"title", as_text(s->title[0] ? s->title : NULL)},
+        {"steps", as_whole((uint64_t)map->steps)}, {"method", as_text(map->kernel->method->name)},
+        {"period", as_number(gait->at.time)},
+        {"step_length", as_number(gait->at.length / map->steps)},
+        {"speed", as_number(gait->at.length / gait->at.time)},
+        {"foot", as_text(scene->contact_name[map->foot[0]])},
+        {"sampled", as_truth(map->base.sample_every > 0 && scene->actuators > 0)},
+        {"state", as_tree(state)}, {"multipliers", as_tree(list)},
+        {"stable", as_truth(gait->stable)},
+        {"peak_torque", scene->actuators > 0 ? as_number(r->peak_torque) : as_nothing(NULL)},
+        {"friction_used", as_number(r->friction_used)}, {"friction", as_number(map->base.friction)},
+        {"slip_distance", as_number(r->slip_distance)},
+        {".slips", as_truth(r->slip_distance > 1e-6)}, {"residual", as_number(gait->residual)},
+        {"iterations", as_whole((uint64_t)gait->iterations)});
+}
+
+/* The scenario's text, begun on the gait. NULL: no memory. */
+static char *begun(const struct scenario *s, const struct return_map *map, const struct gait *gait)
+{
+    static const char *const drop[] = {"initial", "sweep", "optimise"};
+    const stance_scene *const scene = map->scene;
+    double position[STANCE_MAX_COORDINATES], velocity[STANCE_MAX_COORDINATES];
+    char *set = NULL;
+    size_t size = 0;
+    FILE *const out = open_memstream(&set, &size);
+    if (!out)
+        return NULL;
+    return_map_state(map, gait->z, position, velocity);
+    fputs("initial={state: {", out);
+    for (int rate = 0; rate < 2; rate++)
+        for (int j = 0; j < scene->postures; j++) {
+            const int k = scene->posture[j];
+            fprintf(out, "%s%s%s: %.15g", rate + j ? ", " : "", rate ? "v" : "",
+                    scene->coordinate[k].name, rate ? velocity[k] : position[k]);
+        }
+    if (scenario_numbers_feet(scene))
+        fprintf(out, "}, support_foot: %d}", map->foot[0] + 1);
+    else
+        fprintf(out, "}, support: [%s]}", scene->contact_name[map->foot[0]]);
+    const bool written = fclose(out) == 0;
+    char *const result = written ? scenario_rewrite(s->text, drop, sizeof drop / sizeof *drop,
+                                                    (const char *const[]){set}, 1)
+                                 : NULL;
+    free(set);
+    return result;
+}
+
+static int write_scenario(const struct scenario *s, const char *path, const struct return_map *map,
+                          const struct gait *gait)
+{
+    char *const result = begun(s, map, gait);
+    FILE *const out = result ? fopen(path, "w") : NULL;
+    const bool written = out && fputs(result, out) >= 0;
+    const bool closed = out && fclose(out) == 0;
+    if (!written || !closed)
+        fprintf(stderr, "stance gait: cannot write %s: %s\n", path,
+                strerror(result ? errno : ENOMEM));
+    free(result);
+    return written && closed ? EXIT_DONE : EXIT_IO;
+}
+
+static int find(const struct scenario *s, const stance_case *c, void *asked)
+{
+    const struct request *const request = asked;
+    const stance_kernel *const kernel =
+        instruction_set_kernel(s->scene, stance_methods()[s->base.method]);
+    struct return_map *const map = malloc(sizeof *map);
+    struct gait *const gait = malloc(sizeof *gait);
+    double z[RETURN_MAP_MOST] = {0};
+    stance_message message = {""};
+    int code = EXIT_USAGE;
+    if (!map || !gait || !kernel)
+        fail(s, strerror(ENOMEM));
+    else if (!return_map_begin(map, c, kernel, (int)request->steps, (int)request->settle, z,
+                               &message) ||
+             !gait_find(map, z, gait, &message))
+        fail(s, message.text);
+    else if (request->path)
+        code = write_scenario(s, request->path, map, gait);
+    else
+        code = say_facts(facts_of(s, map, gait), request->json, text, stdout) ? EXIT_DONE : EXIT_IO;
+    free(map);
+    free(gait);
+    return code;
+}
+
+/* What is swept has the values that it has without the sweep. */
+static int gait(const struct scenario *s, void *asked)
+{
+    static const char *const drop[] = {"sweep", "optimise", "record"};
+    char *const plain = scenario_rewrite(s->text, drop, sizeof drop / sizeof *drop, NULL, 0);
+    struct scenario *const one = plain ? scenario_new(s->file, plain, NULL, 0, stderr) : NULL;
+    const int code = one ? asked_first(&command_gait, one, find, asked) : EXIT_USAGE;
+    scenario_drop(one);
+    free(plain);
+    return code;
+}
+
+static int run(int argc, char **argv)
+{
+    struct request request = {.steps = 1, .settle = 40};
+    return asked_run(&command_gait, argc, argv, gait, &request);
+}
+
+static const struct option options[] = {
+    {.rows = asked_options},
+    {"--steps", "COUNT", OPTION_TO(struct request, steps), .low = 1, .high = 16,
+     .text = "steps after which the gait repeats, 1 by default; 2 of one that limps"},
+    {"--settle", "COUNT", OPTION_TO(struct request, settle), .low = 1, .high = 10000,
+     .text =
+         "footfalls from the scenario's start until the search begins, 40 by default; few, where "
+         "the start is near a gait that does not hold"},
+    {"-o", "FILE", OPTION_TO(struct request, path),
+     .text = "instead of the report the scenario, begun on the gait and without its sweep"},
+    {"--json", OPTION_TO(struct request, json), .text = "as JSON", .without = "-o"},
+    {0},
+};
+
+const struct command command_gait = {
+    "gait",
+    "the cycle that a walking robot comes to: period, speed, multipliers",
+    run,
+    options,
+    "Lets a scenario, without its sweep, walk, and looks from there for the gait that returns to "
+    "itself "
+    "exactly, with its multipliers: by how much a small departure has changed a step later. It "
+    "holds where all are less than 1.",
+    "The section is the state just after a footfall, legs read as if the first one had landed. "
+    "Samples "
+    "of a controller begin there (the clock of a run goes on instead: the gait then locks to it, "
+    "or "
+    "wanders). Newton's derivative is of central differences of 1e-4; multipliers are of fourth "
+    "order at 1e-3 and 3e-4, and their error is by how much these differ. method.tolerance 1e-10 "
+    "makes them good to seven digits, method event-driven to nine. Of torques at their limits the "
+    "map "
+    "has kinks, and errors are larger.\n"
+    "  JSON: {title, steps, method, period, step_length, speed, foot, sampled, state: {name: "
+    "value}, "
+    "multipliers: [{re, im, modulus, error}] of conjugate ones that with im > 0, stable, "
+    "peak_torque, "
+    "friction_used, friction, slip_distance, residual, iterations}.\n"
+    "Exit codes: 0 found, 2 bad use or scenario, or no such gait, 3 FILE cannot be written.",
+};

@@ -1,0 +1,247 @@
+/* return_map.c - the section, and where cases return to it. */
+#include "return_map.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define LONGEST 100    /* s, until the last footfall */
+#define NEAR 1e-7      /* m: a foot on the ground */
+#define SYMMETRIC 1e-9 /* of the energy: legs that are alike */
+
+static bool refuse(stance_message *message, const char *text)
+{
+    snprintf(message->text, sizeof message->text, "%s", text);
+    return false;
+}
+
+/* Reads coordinates or rates as the other leg sees them. */
+static void exchange(const stance_scene *scene, const double *x, double *out)
+{
+    for (int i = 0; i < scene->coordinates; i++) {
+        double sum = 0;
+        for (int k = 0; k < scene->coordinates; k++)
+            sum += scene->exchange.coordinate[i][k] * x[k];
+        out[i] = sum;
+    }
+}
+
+/* The gap of the second leg's foot, of a robot that stands on the first one's. */
+static double gap_of(const struct return_map *map, const double *posture)
+{
+    double position[STANCE_MAX_COORDINATES], velocity[STANCE_MAX_COORDINATES] = {0};
+    double gap[STANCE_MAX_CONTACTS];
+    memcpy(position, posture, sizeof position);
+    map->scene->stand(map->scene, map->base.robot, 1u << map->foot[0], position, velocity);
+    map->scene->gaps(map->scene, map->base.robot, position, gap);
+    return gap[map->foot[1]];
+}
+
+/* Its derivative by coordinate i. */
+static double slope_of(const struct return_map *map, const double *posture, int i)
+{
+    const double d = 1e-6;
+    double q[STANCE_MAX_COORDINATES];
+    memcpy(q, posture, sizeof q);
+    q[i] = posture[i] + d;
+    const double above = gap_of(map, q);
+    q[i] = posture[i] - d;
+    return (above - gap_of(map, q)) / (2 * d);
+}
+
+bool return_map_state(const struct return_map *map, const double *z, double *position,
+                      double *velocity)
+{
+    const stance_scene *const scene = map->scene;
+    const int p = scene->postures, left = scene->posture[map->follows];
+    memcpy(position, map->posture, sizeof map->posture);
+    memset(velocity, 0, STANCE_MAX_COORDINATES * sizeof *velocity);
+    for (int j = 0, i = 0; j < p; j++) {
+        if (j != map->follows)
+            position[scene->posture[j]] = z[i++];
+        velocity[scene->posture[j]] = z[p - 1 + j];
+    }
+    double gap = 1;
+    for (int round = 0; round < 30 && fabs(gap) > 1e-15; round++) {
+        gap = gap_of(map, position);
+        const double slope = slope_of(map, position, left);
+        if (!(fabs(slope) > 1e-6))
+            return false;
+        position[left] -= gap / slope;
+    }
+    scene->stand(scene, map->base.robot, 1u << map->foot[0], position, velocity);
+    return fabs(gap) < 1e-12;
+}
+
+/* The section's coordinates of a state in which the second leg landed, or the first one. */
+static void section_of(const struct return_map *map, const double *position, const double *velocity,
+                       bool second, double *z, double *posture)
+{
+    const stance_scene *const scene = map->scene;
+    double q[STANCE_MAX_COORDINATES], v[STANCE_MAX_COORDINATES];
+    memcpy(q, position, sizeof q);
+    memcpy(v, velocity, sizeof v);
+    if (second) {
+        exchange(scene, position, q);
+        exchange(scene, velocity, v);
+    }
+    if (posture)
+        memcpy(posture, q, sizeof q);
+    for (int j = 0, i = 0; j < scene->postures; j++) {
+        if (j != map->follows)
+            z[i++] = q[scene->posture[j]];
+        z[scene->postures - 1 + j] = v[scene->posture[j]];
+    }
+}
+
+const char *return_map_name(const struct return_map *map, int i, char name[STANCE_NAME + 2])
+{
+    const int p = map->scene->postures, rate = i >= p - 1;
+    const int j = rate ? i - (p - 1) : i + (i >= map->follows);
+    snprintf(name, STANCE_NAME + 2, "%s%s", rate ? "v" : "",
+             map->scene->coordinate[map->scene->posture[j]].name);
+    return name;
+}
+
+static bool returned(const struct return_map *map, const stance_case *c, const stance_result *r,
+                     stance_message *message)
+{
+    const long made = r->footfalls == STANCE_NO_COUNT ? 0 : (long)r->footfalls;
+    if (r->status == STANCE_DONE && r->outcome != STANCE_FELL && made >= c->footfalls)
+        return true;
+    const char *const cause =
+        r->outcome == STANCE_FELL && r->fall_cause > 0 ? map->scene->cause[r->fall_cause - 1] : "";
+    snprintf(message->text, sizeof message->text,
+             r->status != STANCE_DONE ? "a run failed after %ld footfalls%s%s"
+             : r->outcome == STANCE_FELL
+                 ? "it falls after %ld footfalls%s%s; give a start that walks"
+                 : "it makes %ld footfalls in 100 s and no more%s%s",
+             made, cause[0] ? ", by " : "", cause);
+    return false;
+}
+
+bool return_map_take(const struct return_map *map, size_t count, const double (*z)[RETURN_MAP_MOST],
+                     struct return_point *point, stance_message *message)
+{
+    const stance_scene *const scene = map->scene;
+    stance_case *const cases = calloc(count, sizeof *cases);
+    stance_result *const results = malloc(count * sizeof *results);
+    bool good = (cases && results) || refuse(message, "out of memory");
+    for (size_t i = 0; good && i < count; i++) {
+        cases[i] = map->base;
+        cases[i].footfalls = map->steps;
+        good = return_map_state(map, z[i], cases[i].position, cases[i].velocity) ||
+               refuse(message, "both feet are not on the ground at once: no such posture is near");
+    }
+    if (good)
+        map->kernel->run(cases, results, count);
+    for (size_t i = 0; good && i < count; i++) {
+        double end[2], speed[2], sine, cosine;
+        good = returned(map, &cases[i], &results[i], message);
+        if (!good)
+            break;
+        const bool second = map->steps % 2;
+        section_of(map, results[i].position, results[i].velocity, second, point[i].z, NULL);
+        scene->contact_point(scene, map->base.robot, results[i].position, results[i].velocity,
+                             map->foot[second], end, speed);
+        stance_sincos(map->base.robot[STANCE_ROBOT_SLOPE], &sine, &cosine);
+        double from[2];
+        scene->contact_point(scene, map->base.robot, cases[i].position, cases[i].velocity,
+                             map->foot[0], from, speed);
+        point[i].time = results[i].end_time;
+        point[i].length = cosine * (end[0] - from[0]) - sine * (end[1] - from[1]);
+        point[i].result = results[i];
+    }
+    free(cases);
+    free(results);
+    return good;
+}
+
+/* The foot of a leg that is on the ground; -1: none, or several. */
+static int foot_of(const stance_scene *scene, uint32_t leg, const double *gap)
+{
+    int foot = -1, count = 0;
+    for (int c = 0; c < scene->contacts; c++)
+        if (scene->grip[c] >= 0 && leg >> c & 1 && fabs(gap[c]) < NEAR)
+            foot = c, count++;
+    return count == 1 ? foot : -1;
+}
+
+static bool alike(const stance_scene *scene, const stance_case *c)
+{
+    double q[2][STANCE_MAX_COORDINATES] = {{0}}, v[2][STANCE_MAX_COORDINATES] = {{0}};
+    for (int i = 0; i < scene->coordinates; i++) {
+        q[0][i] = 0.1 + 0.37 * i;
+        v[0][i] = 0.7 - 0.29 * i;
+    }
+    exchange(scene, q[0], q[1]);
+    exchange(scene, v[0], v[1]);
+    const double e = scene->energy(scene, c->robot, q[0], v[0]);
+    return fabs(scene->energy(scene, c->robot, q[1], v[1]) - e) <= SYMMETRIC * (1 + fabs(e));
+}
+
+static bool check(const stance_case *c, const stance_kernel *kernel, int steps,
+                  stance_message *message)
+{
+    const char *const method = kernel->method->name;
+    if (strcmp(method, "capturing") != 0 && strcmp(method, "event-driven") != 0) {
+        snprintf(message->text, sizeof message->text,
+                 "%s puts footfalls at the end of a step; give method.name capturing or "
+                 "event-driven",
+                 method);
+        return false;
+    }
+    if (c->noise != 0 || c->angle_noise != 0 || c->rate_noise != 0)
+        return refuse(message, "a gait with noise has no cycle: set controller.noise, angle_noise "
+                               "and rate_noise to 0");
+    if (c->delay > 0 || c->lag > 0 || (c->torque_rate > 0 && isfinite(c->torque_rate)))
+        return refuse(message, "controller.delay, lag and torque_rate remember the step before, "
+                               "which the section does not");
+    if (!c->scene->exchange.any)
+        return refuse(message, "no two legs of the robot are alike in structure");
+    return steps % 2 == 0 || alike(c->scene, c) ||
+           refuse(message, "the legs differ: a gait repeats after an even number of steps; give "
+                           "--steps 2");
+}
+
+bool return_map_begin(struct return_map *map, const stance_case *c, const stance_kernel *kernel,
+                      int steps, int settle, double *z, stance_message *message)
+{
+    const stance_scene *const scene = c->scene;
+    stance_case first = *c;
+    stance_result r;
+    double gap[STANCE_MAX_CONTACTS], largest = 0, speed[2][2], point[2];
+    if (!check(c, kernel, steps, message))
+        return false;
+    *map = (struct return_map){.scene = scene, .kernel = kernel, .steps = steps, .base = *c};
+    map->base.settle = false;
+    map->base.has_target = false;
+    map->base.walk_steps = 0;
+    map->base.trajectory = NULL;
+    map->base.steps = (int64_t)(LONGEST / c->step);
+    first = map->base;
+    first.footfalls = settle;
+    kernel->run(&first, &r, 1);
+    if (!returned(map, &first, &r, message))
+        return false;
+    scene->gaps(scene, c->robot, r.position, gap);
+    for (int leg = 0; leg < 2; leg++) {
+        map->foot[leg] = foot_of(scene, scene->exchange.leg[leg], gap);
+        if (map->foot[leg] < 0)
+            return refuse(message, "at the footfall a leg is not on the ground with one contact: "
+                                   "no gait on points or round feet");
+        scene->contact_point(scene, c->robot, r.position, r.velocity, map->foot[leg], point,
+                             speed[leg]);
+    }
+    const bool second = hypot(speed[1][0], speed[1][1]) < hypot(speed[0][0], speed[0][1]);
+    map->n = 2 * scene->postures - 1;
+    section_of(map, r.position, r.velocity, second, z, map->posture);
+    for (int j = 0; j < scene->postures; j++) {
+        const double slope = fabs(slope_of(map, map->posture, scene->posture[j]));
+        if (slope > largest)
+            largest = slope, map->follows = j;
+    }
+    section_of(map, r.position, r.velocity, second, z, NULL);
+    return largest > 1e-6 || refuse(message, "no angle lifts a foot");
+}
