@@ -104,11 +104,12 @@ const char *return_map_name(const struct return_map *map, int i, char name[STANC
     return name;
 }
 
+/* Whether a case made its footfalls, after `before` others. */
 static bool returned(const struct return_map *map, const stance_case *c, const stance_result *r,
-                     stance_message *message)
+                     long before, stance_message *message)
 {
-    const long made = r->footfalls == STANCE_NO_COUNT ? 0 : (long)r->footfalls;
-    if (r->status == STANCE_DONE && r->outcome != STANCE_FELL && made >= c->footfalls)
+    const long now = r->footfalls == STANCE_NO_COUNT ? 0 : (long)r->footfalls, made = before + now;
+    if (r->status == STANCE_DONE && r->outcome != STANCE_FELL && now >= c->footfalls)
         return true;
     const char *const cause =
         r->outcome == STANCE_FELL && r->fall_cause > 0 ? map->scene->cause[r->fall_cause - 1] : "";
@@ -121,8 +122,8 @@ static bool returned(const struct return_map *map, const stance_case *c, const s
     return false;
 }
 
-bool return_map_take(const struct return_map *map, size_t count, const double (*z)[RETURN_MAP_MOST],
-                     struct return_point *point, stance_message *message)
+static bool take(const struct return_map *map, size_t count, const double (*z)[RETURN_MAP_MOST],
+                 long before, struct return_point *point, stance_message *message)
 {
     const stance_scene *const scene = map->scene;
     stance_case *const cases = calloc(count, sizeof *cases);
@@ -138,7 +139,7 @@ bool return_map_take(const struct return_map *map, size_t count, const double (*
         map->kernel->run(cases, results, count);
     for (size_t i = 0; good && i < count; i++) {
         double end[2], speed[2], sine, cosine;
-        good = returned(map, &cases[i], &results[i], message);
+        good = returned(map, &cases[i], &results[i], before, message);
         if (!good)
             break;
         const bool second = map->steps % 2;
@@ -156,6 +157,12 @@ bool return_map_take(const struct return_map *map, size_t count, const double (*
     free(cases);
     free(results);
     return good;
+}
+
+bool return_map_take(const struct return_map *map, size_t count, const double (*z)[RETURN_MAP_MOST],
+                     struct return_point *point, stance_message *message)
+{
+    return take(map, count, z, 0, point, message);
 }
 
 /* The foot of a leg that is on the ground; -1: none, or several. */
@@ -221,9 +228,9 @@ bool return_map_begin(struct return_map *map, const stance_case *c, const stance
     map->base.trajectory = NULL;
     map->base.steps = (int64_t)(LONGEST / c->step);
     first = map->base;
-    first.footfalls = settle;
+    first.footfalls = 1;
     kernel->run(&first, &r, 1);
-    if (!returned(map, &first, &r, message))
+    if (!returned(map, &first, &r, 0, message))
         return false;
     scene->gaps(scene, c->robot, r.position, gap);
     for (int leg = 0; leg < 2; leg++) {
@@ -243,5 +250,15 @@ bool return_map_begin(struct return_map *map, const stance_case *c, const stance
             largest = slope, map->follows = j;
     }
     section_of(map, r.position, r.velocity, second, z, NULL);
-    return largest > 1e-6 || refuse(message, "no angle lifts a foot");
+    if (!(largest > 1e-6))
+        return refuse(message, "no angle lifts a foot");
+    for (int made = 1; made < settle; made += steps) {
+        struct return_point next;
+        double from[1][RETURN_MAP_MOST];
+        memcpy(from[0], z, sizeof from[0]);
+        if (!take(map, 1, (const double(*)[RETURN_MAP_MOST])from, made, &next, message))
+            return false;
+        memcpy(z, next.z, sizeof next.z);
+    }
+    return true;
 }

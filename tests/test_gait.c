@@ -1,0 +1,228 @@
+/* test_gait - gaits that another program knows: `stance gait`'s return map on shipped walkers.
+ *
+ * The numbers are an event-driven program's of its own (order 8, footfalls located to 1e-15 m, one
+ * foot pinned), those of the compass tests/compass_oracle.py's, too. That the largest multiplier of
+ * exact zero dynamics is delta^2, a number from posture and slopes at the footfall alone, is
+ * Westervelt, Grizzle and Koditschek's (IEEE Trans. Autom. Control 48 (2003) 42): 0.649552458326 of
+ * the gait `exactly`.
+ */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <jansson.h>
+
+#include "linear.h"
+
+#include "analysis/gait/return_map.h"
+#include "runner/plan/instruction_set.h"
+#include "runner/plan/plan.h"
+
+struct walker {
+    struct scenario scenario;
+    struct plan plan;
+    struct return_map map;
+    struct gait gait;
+    stance_message message;
+    bool found;
+};
+
+static void walk(struct walker *w, const char *file, int steps, int settle, const char *const *set,
+                 size_t sets)
+{
+    const struct parallel alone = parallel_alone();
+    struct plan_error error;
+    stance_case *const c = malloc(sizeof *c);
+    double z[RETURN_MAP_MOST] = {0};
+    int method;
+    assert_non_null(c);
+    assert_true(scenario_read(&w->scenario, file, NULL, set, sets, stderr));
+    assert_true(plan_make(&w->plan, &w->scenario, false, 0, false, &error));
+    assert_true(plan_compute_designs(&w->plan, &alone, &error));
+    assert_true(plan_resolve(&w->plan, 0, c, &method));
+    const stance_kernel *const kernel =
+        instruction_set_kernel(w->scenario.scene, stance_methods()[method]);
+    w->message.text[0] = '\0';
+    w->found = return_map_begin(&w->map, c, kernel, steps, settle, z, &w->message) &&
+               gait_find(&w->map, z, &w->gait, &w->message);
+    free(c);
+}
+static void leave(struct walker *w)
+{
+    plan_free(&w->plan);
+    scenario_free(&w->scenario);
+}
+
+struct truth {
+    const char *file;
+    const char *const *set;
+    size_t sets;
+    double period, length, largest[2], second[2], tolerance;
+};
+#define COMMON "method.step=0.005", "controller.sample_time=0", "sweep={}"
+#define EXACT "method.name=event-driven", "sweep={}"
+#define EVENTS "method.name=event-driven", COMMON
+static const char *const compass[] = {EXACT};
+static const char *const compass_capturing[] = {"method.tolerance=1e-10", "sweep={}"};
+static const char *const events[] = {EVENTS};
+static const char *const exactly[] = {
+    EVENTS, "controller.phase={of: {theta: -1, q1: -1}, from: -0.2889, to: 0.2889}",
+    "controller.outputs.y1={of: {theta: 1}, along: [-0.2229, -0.21072, -0.4708, -0.0725, -0.3009, "
+    "-0.26866, -0.2229], proportional: 64, derivative: 16}",
+    "controller.outputs.y2={of: {theta: 2, q1: 1, q2: 1}, along: [0, -0.17697, -0.2267, 0.325, "
+    "0.2529, 0.14436, 0], proportional: 64, derivative: 16}",
+    "initial.state={theta: -0.222900162, q1: 0.511800238, q2: -0.065999915, vtheta: 0.173933826, "
+    "vq1: -1.549628606, vq2: -1.326306837}"};
+static const char *const capturing[] = {"method.tolerance=1e-10", COMMON};
+static const char *const sampled[] = {"method.tolerance=1e-10", "method.step=0.005",
+                                      "controller.sample_time=0.01", "sweep={}"};
+#define SET(list) list, sizeof(list) / sizeof *(list)
+static const struct truth truths[] = {
+    {"scenarios/mechanisms/compass_gait.yaml",
+     SET(compass),
+     0.744928149724,
+     NAN,
+     {0.125283118, 0.508967315},
+     {0.176813641, 0},
+     2e-9},
+    {"scenarios/mechanisms/compass_gait.yaml",
+     SET(compass_capturing),
+     0.744928149724,
+     NAN,
+     {0.125283118, 0.508967315},
+     {0.176813641, 0},
+     1e-6},
+    {"scenarios/gaits/walks.yaml",
+     SET(events),
+     0.668882682,
+     0.278096898,
+     {0.318361883, 0},
+     {-0.0906436, 0},
+     5e-8},
+    {"scenarios/gaits/walks.yaml",
+     SET(capturing),
+     0.668882682,
+     0.278096898,
+     {0.318361883, 0},
+     {-0.0906436, 0},
+     2e-6},
+    {"scenarios/gaits/walks.yaml",
+     SET(exactly),
+     0.681557012,
+     0.304840921,
+     {0.6495514, 0},
+     {0.0091, 0},
+     1e-5},
+    {"scenarios/gaits/walks_without_model.yaml",
+     SET(events),
+     0.531542655,
+     0.313803018,
+     {0.1910338, 0.4428668},
+     {0.0528738, 0},
+     6e-8},
+    {"scenarios/gaits/walks.yaml", SET(sampled), 0.662081, NAN, {0.340, 0}, {NAN, 0}, 1e-3},
+    {"scenarios/gaits/rabbit_walks.yaml",
+     SET(events),
+     0.619220333,
+     0.431579080,
+     {0.637257321, 0},
+     {NAN, 0},
+     2e-9},
+};
+
+static void gaits_are_those_of_another_program(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < sizeof truths / sizeof *truths; i++) {
+        const struct truth *const t = &truths[i];
+        struct walker *const w = calloc(1, sizeof *w);
+        assert_non_null(w);
+        walk(w, t->file, 1, 40, t->set, t->sets);
+        if (!w->found)
+            fail_msg("%s: %s", t->file, w->message.text);
+        const struct gait *const g = &w->gait;
+        print_message(
+            "# %s, %s: period %.9f s, largest multiplier %.9f +- %.9fi, error %.1e, residual "
+            "%.1e\n",
+            t->file, w->map.kernel->method->name, g->at.time, g->re[0], g->im[0], g->error[0],
+            g->residual);
+        assert_true(g->stable);
+        assert_near(g->at.time, t->period, fmax(1e-3 * t->tolerance, 2e-9), t->file);
+        if (!isnan(t->length))
+            assert_near(g->at.length, t->length, 2e-9, t->file);
+        assert_near(g->re[0], t->largest[0], t->tolerance, t->file);
+        assert_near(fabs(g->im[0]), t->largest[1], t->tolerance, t->file);
+        const int next = t->largest[1] > 0 ? 2 : 1;
+        if (!isnan(t->second[0]))
+            assert_near(g->re[next], t->second[0], fmax(t->tolerance, 5e-7), t->file);
+        leave(w);
+        free(w);
+    }
+}
+
+/* Following the clock in place of the stance leg's angle is all that differs. */
+static void by_the_clock_it_does_not_hold(void **state)
+{
+    struct walker *const w = calloc(1, sizeof *w);
+    (void)state;
+    assert_non_null(w);
+    walk(w, "scenarios/gaits/walks_by_the_clock.yaml", 1, 1, events,
+         sizeof events / sizeof *events);
+    assert_true(w->found && !w->gait.stable);
+    assert_near(w->gait.re[0], -5.1, 0.05, "multiplier");
+    leave(w);
+    free(w);
+}
+
+static void what_has_no_gait_says_why(void **state)
+{
+    static const struct {
+        const char *file, *set[4], *says;
+    } wrong[] = {
+        {"scenarios/gaits/walks.yaml",
+         {"sweep={}", "method.name=midpoint"},
+         "midpoint puts footfalls"},
+        {"scenarios/gaits/walks.yaml", {"sweep={}", "controller.noise=0.1"}, "noise"},
+        {"scenarios/gaits/walks.yaml", {"sweep={}", "controller.delay=1"}, "controller.delay"},
+        {"scenarios/gaits/walks.yaml",
+         {"sweep={}", "initial.state.vq1=0"},
+         "it falls after 0 footfalls"},
+        {"scenarios/gaits/walks_by_the_clock.yaml",
+         {"sweep={}"},
+         "it falls after 4 footfalls, by hip"},
+        {"scenarios/mechanisms/hopper.yaml", {"sweep={}", "initial.state.z=1"}, "no two legs"},
+        {"scenarios/mechanisms/compass_gait.yaml",
+         {"sweep={}", "robot.bodies.leg2.mass=5.5"},
+         "the legs differ"},
+    };
+    (void)state;
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+        struct walker *const w = calloc(1, sizeof *w);
+        size_t sets = 0;
+        assert_non_null(w);
+        while (sets < 4 && wrong[i].set[sets])
+            sets++;
+        walk(w, wrong[i].file, 1, 40, wrong[i].set, sets);
+        assert_false(w->found);
+        if (!strstr(w->message.text, wrong[i].says))
+            fail_msg("'%s' does not say '%s'", w->message.text, wrong[i].says);
+        leave(w);
+        free(w);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(gaits_are_those_of_another_program),
+        cmocka_unit_test(by_the_clock_it_does_not_hold),
+        cmocka_unit_test(what_has_no_gait_says_why),
+    };
+    return cmocka_run_group_tests_name("gait", tests, NULL, NULL);
+}
