@@ -46,5 +46,6 @@ seven of the ten|[*] x-theta .*on a surface of postures
 1.03 iterations|flight +implicit .* 1\.0[23] 
 1 coordinate is left|^  A +trunk +vtrunk$
 1.05708|z 1\.05708
+0.278 m in 0.668 s|step length +0\.2779
 END
 echo "1..$count"
