@@ -95,19 +95,49 @@ static inline contact_set between_set(const mask *part)
 #endif
 }
 
+/* Lanes where accelerations in `rows` are more than rounding leaves of the free ones. */
+static inline mask between_moves(contact_set set, const mask (*rows)[2], const lanes (*free)[2],
+                                 const lanes (*left)[2])
+{
+    lanes scale = lanes_of(1), most = lanes_of(0);
+    EACH_IN (c, set)
+        EACH (a, 0, 2) {
+            scale = choose(rows[c][a], lanes_max(lanes_abs(free[c][a]), scale), scale);
+            most = choose(rows[c][a], lanes_max(lanes_abs(left[c][a]), most), most);
+        }
+    return mask_less(BETWEEN_START * scale, most);
+}
+
 /* Forces r of all contacts in their states that bring free[][] to rest; friction 0: what slides
- * does so freely. */
+ * does so freely.
+ *
+ * Blocks are inverted by their determinants. Where these are small - two feet at one place below
+ * legs that are all but stretched - rounding leaves accelerations that are as much larger: the feet
+ * drift, and what the legs then press against each other is soon more than the feet carry. There
+ * what is left is brought to rest once more. */
 COLD void between_forces(const struct contact_state *m, const lanes (*D)[CONTACTS][2][2],
                          const lanes (*free)[2], lanes friction, lanes (*r)[2])
 {
     mask sticks[CONTACTS], rows[CONTACTS][2];
-    lanes edge[CONTACTS];
+    lanes edge[CONTACTS], left[CONTACTS][2], more[CONTACTS][2];
     for (int c = 0; c < OWN_CONTACTS; c++) {
         sticks[c] = mask_less_equal(lanes_abs(m->slide[c]), lanes_of(0));
         edge[c] = -(friction * m->slide[c]);
     }
     contact_mode_rows(m->closed, sticks, rows);
-    contact_rest(between_set(m->closed), CONTACT_CAREFUL, D, free, (const mask(*)[2])rows, edge, r);
+    const contact_set set = between_set(m->closed);
+    const mask regular =
+        contact_rest(set, CONTACT_CAREFUL, D, free, (const mask(*)[2])rows, edge, r);
+    if (!mask_any(LANES_NOT(regular)))
+        return;
+    direct_velocities(D, free, set, (const lanes(*)[2])r, left);
+    const mask again = LANES_NOT(regular) &
+                       between_moves(set, (const mask(*)[2])rows, free, (const lanes(*)[2])left);
+    if (!mask_any(again))
+        return;
+    contact_rest(set, CONTACT_CAREFUL, D, (const lanes(*)[2])left, (const mask(*)[2])rows, edge,
+                 more);
+    direct_add(set, again, lanes_of(1), (const lanes(*)[2])more, r);
 }
 
 /* Adds what forces or impulses r of contacts in `part` do, by their responses, to x. */
