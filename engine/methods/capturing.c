@@ -23,6 +23,12 @@
  * another, without a collision) never let the two agree: where there is no smooth motion to begin
  * with, and in the interval nothing moves, the two half steps are taken as they are.
  *
+ * What is less than both can tell may go on for ever. Of two feet at one place each may carry what
+ * both do: by the implicit law the one that slides has left the ground, at a speed that counts as
+ * zero, and goes on sliding; by the accelerations it carries, and stops at once; and time goes on
+ * by one crossing after the other, each as short as a bound on the length makes it. After many
+ * without a smooth step between there is no smooth motion to begin with either.
+ *
  * Tolerances are absolute (m, rad, m/s, rad/s) where no rate is larger than 1, else they are of the
  * largest rate.
  *
@@ -65,6 +71,7 @@ static const int tableau_dip[METHOD_STAGES] = {0, -1, 1, 2, -1, -1};
 #define CAPTURE_ATTEMPTS 20000   /* in one step, then the case fails */
 #define CAPTURE_INSTANT 0x1p-10  /* of the tolerance: what moves less does not move */
 #define CAPTURE_GROWTH 64        /* an error this much smaller than the tolerance: twice as long */
+#define CAPTURE_CHATTER 256      /* crossings without a smooth step between: no events */
 #define CAPTURE_WAIT 16          /* attempts until a standing step is tried a third time */
 
 /* Where each lane is inside its step. */
@@ -74,6 +81,7 @@ struct advance {
     lanes part; /* s, next smooth step or, in a hunt, the interval that holds the event; 0: all */
     lanes hunting;         /* 1: an event is known to lie within `part` ... */
     lanes attempts;        /* in this step */
+    lanes crossings;       /* in this step since the last smooth one */
     lanes stood[CONTACTS]; /* see between_mode */
     lanes near;            /* 1: a standing step has to be watched, see inside_near */
     lanes ordinary;        /* 1: the last step was a standing one */
@@ -89,6 +97,7 @@ static void advance_load(struct advance *a, int lane, const stance_case *c)
     lane_set(&a->part, lane, INFINITY);
     lane_set(&a->hunting, lane, 0);
     lane_set(&a->attempts, lane, 0);
+    lane_set(&a->crossings, lane, 0);
     lane_set(&a->near, lane, 1);
     lane_set(&a->ordinary, lane, 0);
     lane_set(&a->wait, lane, 0);
@@ -420,7 +429,9 @@ static inline mask capture_attempt(struct advance *a, const struct setting *set,
     const mask inside = capture_smooth(set, now, torque, length, live, coupled, stood, &step,
                                        &stuck, &acceleration);
     const mask event = live & LANES_NOT(inside);
-    const mask cross = hunt & (stuck | mask_less_equal(acceleration * interval, tolerance));
+    const mask brief = mask_less_equal(acceleration * interval, tolerance);
+    const mask chatters = mask_less_equal(lanes_of(CAPTURE_CHATTER), a->crossings);
+    const mask cross = hunt & (stuck | brief | chatters);
     if (mask_any(cross)) {
         struct motion next;
         struct step_report over;
@@ -446,6 +457,7 @@ static inline mask capture_attempt(struct advance *a, const struct setting *set,
     capture_add(a, good, live, &step.report);
     for (int c = 0; c < OWN_CONTACTS; c++)
         a->stood[c] = choose(crossed, none, choose(good, stood[c], a->stood[c]));
+    a->crossings = choose(crossed, a->crossings + 1, choose(good, none, a->crossings));
     a->done = choose(crossed, a->done + interval, choose(good, a->done + length, a->done));
 
     /* Next: all of the rest after an event; longer where the error was small; what is left of the
@@ -472,6 +484,7 @@ static inline mask capture_attempt(struct advance *a, const struct setting *set,
     choose_all(arrived, &fresh, &a->sum, sizeof fresh);
     a->done = choose(arrived, none, a->done);
     a->attempts = choose(arrived, none, a->attempts);
+    a->crossings = choose(arrived, none, a->crossings);
     return arrived;
 }
 
