@@ -1,0 +1,85 @@
+#!/usr/bin/env bash
+# What a newcomer types to walk: a compass down a slope, its cycle, a scenario begun on it, other hips, the paper's
+# biped, its starts; and what is wrong, said in one line with its place.
+# Speaks TAP.
+# about: analysis/gait analysis/summary runner/run
+set -u
+. "$(dirname "$0")/scratch.sh"
+compass=$shipped/mechanisms/compass_gait.yaml
+walks=$shipped/gaits/walks.yaml
+exact=(--set method.name=event-driven)
+
+says() { # NAME PATTERN COMMAND...: its output has the pattern
+    local name=$1 pattern=$2
+    shift 2
+    "$@" >log 2>&1 </dev/null
+    grep -qE -- "$pattern" log
+    result $? "$name"
+}
+
+# ---- the first half hour -----------------------------------------------------------------------
+says "a compass has a gait" '^  period +0\.744928150? s$' "$stance" gait "$compass" "${exact[@]}"
+says "that holds" 'the gait is stable' "$stance" gait "$compass"
+expect "a scenario begun on it" 0 "$stance" gait "$compass" -o cycle.yaml
+says "walks by itself" '1 walks' "$stance" run cycle.yaml --set stop.walks.steps=10 --set stop.time=20 -o cycle.h5
+says "its cycle is where it began" '^  vleg1 +-1\.41932714' "$stance" gait cycle.yaml --settle 1 "${exact[@]}"
+says "a heavier hip walks otherwise" '^  period +0\.7[0-9]+ s$' "$stance" gait "$compass" --set robot.bodies.hip.mass=12
+says "steeper than 4.39 degrees it limps" 'NOT stable' "$stance" gait "$compass" --set robot.bodies.leg1.centre='[0, -0.5]' \
+    --set ground.slope=0.0785 --set 'robot.contacts={foot1: {body: leg1, at: [0, -1]}, foot2: {body: leg2, at: [0, -1]}}' \
+    --set 'initial.state={leg1: 0.2302, leg2: -0.6172, vleg1: -1.152995, vleg2: 1.0019}' --settle 1
+says "the paper's biped walks" '^  period +0\.66823[0-9]* s$' "$stance" gait "$walks"
+says "from one start in nine" '(3[0-9]|4[0-9]) walks' "$stance" run "$walks" --set 'sweep.grid[0].count=19' \
+    --set 'sweep.grid[1].count=19' -o map.h5
+expect "which is drawn" 0 "$stance" plot map.h5 --picture map
+says "a basin is measured" 'Starts that end as walks' "$stance" basin map.h5
+says "summaries tell of steps" '^  walks +[1-9]' "$stance" summary map.h5
+says "programs get it as JSON" '"stable": true' "$stance" gait "$walks" --json
+
+# ---- what is wrong -----------------------------------------------------------------------------
+outputs="controller.outputs"
+wrong() { # NAME SAYS SETS...
+    local name=$1 what=$2 sets=()
+    shift 2
+    for set; do sets+=(--set "$set"); done
+    "$stance" run "$walks" --set 'sweep={}' "${sets[@]}" -o wrong.h5 >log 2>&1 </dev/null
+    [ $? = 2 ] && grep -qF -- "$what" log && [ "$(wc -l <log)" = 1 ]
+    result $? "$name: $what"
+}
+wrong "three outputs for two actuators" "unknown key 'y3'; did you mean 'y1'? (known: y1, y2)" "$outputs.y3={of: {theta: 1}, along: [0]}"
+wrong "an unknown coordinate" "unknown key 'q3'" "$outputs.y1.of={q3: 1}"
+wrong "a row without coordinates" "y1: of is missing" "$outputs.y1={along: [0.1]}"
+wrong "nothing to follow" "y2: along is missing" "$outputs.y2={of: {q1: 1}}"
+wrong "ten coefficients" "expected" "$outputs.y1.along=[0, 1, 2, 3, 4, 5, 6, 7, 8, 9]"
+wrong "a coefficient that is none" "expected a number" "$outputs.y1.along=[0, x]"
+wrong "an output that is the phase" "depend on each other" "$outputs.y1.of={theta: 2, q1: 2}"
+wrong "outputs that are one" "depend on each other" "$outputs.y1.of={theta: 4, q1: 2, q2: 2}"
+wrong "a phase without length" "from and to are the same" controller.phase.to=-0.25
+wrong "no phase" "phase.of is missing" "controller.phase={from: 0, to: 1}"
+wrong "two phases" "give one of of and clock" "controller.phase.clock=[0, 1]"
+wrong "torques of one output" "torques of some outputs and not of all" "$outputs.y1.torques={q1: 1}"
+wrong "a negative gain" "out of range" "$outputs.y1.proportional=-1"
+wrong "keys of another law" "is used only with controller.kind outputs" 'controller={kind: none, phase: {to: 1}}'
+wrong "how steps are judged, of none" "is used only with stop.walks.steps above 0" "stop.walks={length: 0.1}"
+wrong "a fraction of a step" "expected a whole number" stop.walks.steps=2.5
+wrong "footfalls below nothing" "out of range" stop.footfalls=-1
+wrong "a step of no length" "out of range" stop.walks.length=0
+gait() { # NAME SAYS SETS...
+    local name=$1 what=$2
+    shift 2
+    "$stance" gait "$walks" "$@" >log 2>&1 </dev/null
+    [ $? = 2 ] && grep -qF -- "$what" log && [ "$(wc -l <log)" = 1 ]
+    result $? "$name: $what"
+}
+gait "a method that does not stop at footfalls" "midpoint puts footfalls at the end of a step" --set method.name=midpoint
+gait "noise" "a gait with noise has no cycle" --set controller.noise=0.1
+gait "late torques" "remember the step before" --set controller.delay=1
+gait "a start that falls" "it falls after 0 footfalls, by hip; give a start that walks" --set initial.state.vq1=0
+gait "a bad count" "--steps" --steps 0
+gait "a floor that is too slippery" "it falls after" --set ground.friction=0.05
+"$stance" gait "$shipped/mechanisms/compass_gait.yaml" --set robot.bodies.leg2.mass=5.5 >log 2>&1
+grep -q 'the legs differ.*--steps 2' log
+result $? "legs that differ are told"
+"$stance" gait "$walks" -o /nonexistent/file.yaml >log 2>&1
+[ $? = 3 ] && grep -q 'cannot write' log
+result $? "a file that cannot be written"
+echo "1..$count"
