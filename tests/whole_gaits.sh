@@ -27,6 +27,10 @@ says "a heavier hip walks otherwise" '^  period +0\.7[0-9]+ s$' "$stance" gait "
 says "steeper than 4.39 degrees it limps" 'NOT stable' "$stance" gait "$compass" --set robot.bodies.leg1.centre='[0, -0.5]' \
     --set ground.slope=0.0785 --set 'robot.contacts={foot1: {body: leg1, at: [0, -1]}, foot2: {body: leg2, at: [0, -1]}}' \
     --set 'initial.state={leg1: 0.2302, leg2: -0.6172, vleg1: -1.152995, vleg2: 1.0019}' --settle 1
+points=(--set 'robot.contacts={foot1: {body: leg1, at: [0, -1]}, foot2: {body: leg2, at: [0, -1]}}' --settle 1
+    --set 'initial.state={leg1: 0.2302, leg2: -0.6172, vleg1: -1.152995, vleg2: 1.0019}')
+says "where it begins to, by an independent program 0.0766356315753 rad" '^0\.07663563157[0-9]*,.*,flip' "$stance" gait \
+    "$compass" "${points[@]}" "${exact[@]}" --along ground.slope=0.076..0.077 --count 2 --csv
 says "the paper's biped walks" '^  period +0\.66823[0-9]* s$' "$stance" gait "$walks"
 says "from one start in nine" '(3[0-9]|4[0-9]) walks' "$stance" run "$walks" --set 'sweep.grid[0].count=19' \
     --set 'sweep.grid[1].count=19' -o map.h5
@@ -74,6 +78,8 @@ gait "a method that does not stop at footfalls" "midpoint puts footfalls at the 
 gait "noise" "a gait with noise has no cycle" --set controller.noise=0.1
 gait "late torques" "remember the step before" --set controller.delay=1
 gait "a start that falls" "it falls after 0 footfalls, by hip; give a start that walks" --set initial.state.vq1=0
+gait "a path that is none" "unknown key 'slop'" --along ground.slop=0..1
+gait "a path without an end" "takes PATH=FROM..TO" --along ground.slope=1
 gait "a bad count" "--steps" --steps 0
 gait "a floor that is too slippery" "it falls after" --set ground.friction=0.05
 "$stance" gait "$shipped/mechanisms/compass_gait.yaml" --set robot.bodies.leg2.mass=5.5 >log 2>&1

@@ -1,7 +1,6 @@
 /* command_gait.c - `stance gait`: the cycle that a walking robot comes to, and whether it holds. */
-#include "return_map.h"
+#include "along.h"
 
-#include "analysis/table/table.h"
 #include "runner/plan/asked.h"
 #include "runner/plan/instruction_set.h"
 
@@ -13,9 +12,9 @@ extern const struct command command_gait; /* below */
 
 struct request {
     struct asked asked;
-    uint64_t steps, settle;
-    const char *path;
-    bool json;
+    uint64_t steps, settle, count;
+    const char *path, *along;
+    enum table_form form;
 };
 
 static int fail(const struct scenario *s, const char *text)
@@ -146,15 +145,35 @@ static int find(const struct scenario *s, const stance_case *c, void *asked)
     else if (request->path)
         code = write_scenario(s, request->path, map, gait);
     else
-        code = say_facts(facts_of(s, map, gait), request->json, text, stdout) ? EXIT_DONE : EXIT_IO;
+        code = say_facts(facts_of(s, map, gait), request->form == TABLE_AS_JSON, text, stdout)
+                   ? EXIT_DONE
+                   : EXIT_IO;
     free(map);
     free(gait);
     return code;
 }
 
+static int follow(const struct scenario *s, const struct request *request)
+{
+    struct along along = {.count = (size_t)request->count,
+                          .steps = (int)request->steps,
+                          .settle = (int)request->settle};
+    char path[200];
+    snprintf(path, sizeof path, "%s", request->along);
+    if (!along_read(path, &along)) {
+        fprintf(stderr,
+                "stance gait: --along takes PATH=FROM..TO, two different numbers, not '%s'\n",
+                request->along);
+        return EXIT_USAGE;
+    }
+    return along_say(s, &along, request->form);
+}
+
 /* What is swept has the values that it has without the sweep. */
 static int gait(const struct scenario *s, void *asked)
 {
+    if (((const struct request *)asked)->along)
+        return follow(s, asked);
     static const char *const drop[] = {"sweep", "optimise", "record"};
     char *const plain = scenario_rewrite(s->text, drop, sizeof drop / sizeof *drop, NULL, 0);
     struct scenario *const one = plain ? scenario_new(s->file, plain, NULL, 0, stderr) : NULL;
@@ -166,7 +185,7 @@ static int gait(const struct scenario *s, void *asked)
 
 static int run(int argc, char **argv)
 {
-    struct request request = {.steps = 1, .settle = 40};
+    struct request request = {.steps = 1, .settle = 40, .count = 11};
     return asked_run(&command_gait, argc, argv, gait, &request);
 }
 
@@ -180,7 +199,13 @@ static const struct option options[] = {
          "the start is near a gait that does not hold"},
     {"-o", "FILE", OPTION_TO(struct request, path),
      .text = "instead of the report the scenario, begun on the gait and without its sweep"},
-    {"--json", OPTION_TO(struct request, json), .text = "as JSON", .without = "-o"},
+    {"--along", "PATH=FROM..TO", OPTION_TO(struct request, along), .without = "-o",
+     .text = "the gait followed along a number of the scenario, and where it flips (a multiplier "
+             "passes -1: steps begin to alternate) or folds (1: it ends)"},
+    {"--count", "COUNT", OPTION_TO(struct request, count), .low = 2, .high = 10000,
+     .text = "values along it, 11 by default (with --along)"},
+    {TABLE_CSV(struct request, form), .text = "as comma-separated values (with --along)"},
+    {TABLE_JSON(struct request, form), .text = "as JSON"},
     {0},
 };
 
@@ -206,6 +231,9 @@ const struct command command_gait = {
     "value}, "
     "multipliers: [{re, im, modulus, error}] of conjugate ones that with im > 0, stable, "
     "peak_torque, "
-    "friction_used, friction, slip_distance, residual, iterations}.\n"
+    "friction_used, friction, slip_distance, residual, iterations}; with --along {title, path, "
+    "stopped, "
+    "rows: [{value, period, step_length, speed, re, im, modulus, holds, place}]}, the largest "
+    "multiplier of each, place flip or fold.\n"
     "Exit codes: 0 found, 2 bad use or scenario, or no such gait, 3 FILE cannot be written.",
 };

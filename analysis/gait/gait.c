@@ -150,7 +150,7 @@ static bool judge(const struct return_map *map, struct gait *gait, struct work *
 bool gait_find(const struct return_map *map, const double *z, struct gait *gait,
                stance_message *message)
 {
-    struct work *const w = malloc(sizeof *w);
+    struct work *const w = calloc(1, sizeof *w);
     if (!w) {
         snprintf(message->text, sizeof message->text, "out of memory");
         return false;

@@ -212,6 +212,24 @@ static bool check(const stance_case *c, const stance_kernel *kernel, int steps,
                            "--steps 2");
 }
 
+static void take_case(struct return_map *map, const stance_case *c)
+{
+    map->base = *c;
+    map->base.settle = map->base.has_target = false;
+    map->base.walk_steps = 0;
+    map->base.trajectory = NULL;
+    map->base.steps = (int64_t)(LONGEST / c->step);
+}
+
+bool return_map_change(struct return_map *map, const stance_case *c, stance_message *message)
+{
+    if (!check(c, map->kernel, map->steps, message))
+        return false;
+    map->scene = c->scene;
+    take_case(map, c);
+    return true;
+}
+
 bool return_map_begin(struct return_map *map, const stance_case *c, const stance_kernel *kernel,
                       int steps, int settle, double *z, stance_message *message)
 {
@@ -221,12 +239,8 @@ bool return_map_begin(struct return_map *map, const stance_case *c, const stance
     double gap[STANCE_MAX_CONTACTS], largest = 0, speed[2][2], point[2];
     if (!check(c, kernel, steps, message))
         return false;
-    *map = (struct return_map){.scene = scene, .kernel = kernel, .steps = steps, .base = *c};
-    map->base.settle = false;
-    map->base.has_target = false;
-    map->base.walk_steps = 0;
-    map->base.trajectory = NULL;
-    map->base.steps = (int64_t)(LONGEST / c->step);
+    *map = (struct return_map){.scene = scene, .kernel = kernel, .steps = steps};
+    take_case(map, c);
     first = map->base;
     first.footfalls = 1;
     kernel->run(&first, &r, 1);

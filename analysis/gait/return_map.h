@@ -35,6 +35,9 @@ struct return_point {
  * with a message: it has none, or does not come so far. */
 bool return_map_begin(struct return_map *map, const stance_case *c, const stance_kernel *kernel,
                       int steps, int settle, double *z, stance_message *message);
+/* The same robot, numbers and law changed: the map of that case, its section as it was. False, with
+ * a message, as above. */
+bool return_map_change(struct return_map *map, const stance_case *c, stance_message *message);
 /* Position and velocity at a point of the section, standing on the first leg's foot. */
 bool return_map_state(const struct return_map *map, const double *z, double *position,
                       double *velocity);

@@ -347,7 +347,7 @@ static bool draw_forces(const struct plot_case *c)
     const struct results_trajectory *t = c->t;
     const size_t count = grounded(c);
     struct page page = {.c = c, .of = FORCES};
-    stance_tree_numbers number;
+    stance_tree_numbers number = {0};
     char text[300];
     bool rough = false;
 

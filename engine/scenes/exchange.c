@@ -61,7 +61,7 @@ static void write_legs(const stance_mechanism *m, const struct pairs *pairs, con
                        stance_exchange *exchange)
 {
     for (int e = 0, c = 0; e < m->elements; e++)
-        for (int end = 0; end <= m->element[e].sole; end++, c++)
+        for (int end = 0; end < (m->element[e].sole ? 2 : 1); end++, c++)
             if (pairs->body[m->element[e].body] != m->element[e].body)
                 exchange->leg[!first[m->element[e].body]] |= 1u << c;
 }
@@ -130,7 +130,8 @@ static void mark(const stance_mechanism *m, int b, bool *first)
         mark(m, i, first);
 }
 
-void exchange_make(const stance_mechanism *m, const stance_scene *scene, stance_exchange *exchange)
+void stance_exchange_make(const stance_mechanism *m, const stance_scene *scene,
+                          stance_exchange *exchange)
 {
     bool first[STANCE_MAX_BODIES] = {false};
     struct pairs pairs = {{0}, {0}, 0};

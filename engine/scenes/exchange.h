@@ -8,6 +8,7 @@
  * order are a pair; of what carries contacts there must be one pair, of other kinds (arms) may be
  * more. Or the root is a leg and the other one hangs from it. Numbers do not count: a leg may be
  * heavier. */
-void exchange_make(const stance_mechanism *m, const stance_scene *scene, stance_exchange *exchange);
+void stance_exchange_make(const stance_mechanism *m, const stance_scene *scene,
+                          stance_exchange *exchange);
 
 #endif

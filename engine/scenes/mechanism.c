@@ -1,8 +1,8 @@
 /* mechanism.c - the scene of a described mechanism: names, units, ranges, and what belongs to what.
  */
-#include "exchange.h"
 #include "engine/scenes/mechanism_pose.h"
 #include "engine/tree.h"
+#include "exchange.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -336,7 +336,7 @@ stance_error stance_mechanism_scene(const stance_mechanism *m, stance_scene **sc
         d->actuator_name[a] = d->m.actuator[a].name;
         d->actuated[a] = stance_mechanism_coordinate(m, m->actuator[a].body);
     }
-    exchange_make(&d->m, &d->scene, &d->scene.exchange);
+    stance_exchange_make(&d->m, &d->scene, &d->scene.exchange);
     *scene = &d->scene;
     return STANCE_OK;
 }

@@ -1,0 +1,226 @@
+/* along.c - continuation: each gait begins where a straight line through the last two leads.
+ *
+ * Where the least real multiplier passes -1 or the largest one 1 between two values the place is
+ * found by the Illinois method (Dowell and Jarratt, BIT 11 (1971) 168), gaits between included,
+ * down to what the multipliers' error leaves. A step along the path that finds no gait is halved.
+ */
+#include "along.h"
+
+#include "runner/plan/asked.h"
+#include "runner/plan/instruction_set.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+extern const struct command command_gait;
+
+enum { HALVINGS = 5, PLACES = 40 };
+
+struct follow {
+    const struct along *along;
+    char *plain; /* the scenario's text without its sweep */
+    const char *file;
+    struct return_map map;
+    bool begun;
+    double guess[RETURN_MAP_MOST], value;
+    struct gait gait; /* the last one that was found ... */
+    double last;      /* ... at this value; and the one before */
+    double before[RETURN_MAP_MOST], last_before;
+    int found;
+    stance_message message;
+};
+
+static int take(const struct scenario *s, const stance_case *c, void *context)
+{
+    struct follow *const f = context;
+    const stance_kernel *const kernel =
+        instruction_set_kernel(s->scene, stance_methods()[s->base.method]);
+    bool good = f->begun ? return_map_change(&f->map, c, &f->message)
+                         : return_map_begin(&f->map, c, kernel, f->along->steps, f->along->settle,
+                                            f->guess, &f->message);
+    f->begun |= good;
+    struct gait *const gait = calloc(1, sizeof *gait);
+    good = good && gait && gait_find(&f->map, f->guess, gait, &f->message);
+    if (good)
+        f->gait = *gait;
+    free(gait);
+    return good ? EXIT_DONE : EXIT_USAGE;
+}
+
+/* The gait at a value; false, with f->message: none is found. */
+static bool find(struct follow *f, double value)
+{
+    char set[160];
+    snprintf(set, sizeof set, "%.100s=%.17g", f->along->path, value);
+    const char *const sets[] = {set};
+    f->message.text[0] = '\0';
+    struct scenario *const s = scenario_new(f->file, f->plain, sets, 1, stderr);
+    if (!s)
+        return false;
+    if (f->found > 1)
+        for (int i = 0; i < f->map.n; i++) {
+            const double slope = (f->gait.z[i] - f->before[i]) / (f->last - f->last_before);
+            f->guess[i] = f->gait.z[i] + slope * (value - f->last);
+        }
+    else if (f->found == 1)
+        memcpy(f->guess, f->gait.z, sizeof f->guess);
+    double from[RETURN_MAP_MOST];
+    memcpy(from, f->gait.z, sizeof from);
+    const bool good = asked_first(&command_gait, s, take, f) == EXIT_DONE;
+    scenario_drop(s);
+    if (good) {
+        memcpy(f->before, from, sizeof from);
+        f->last_before = f->last;
+        f->last = value;
+        f->found++;
+    }
+    return good;
+}
+
+/* How far the least real multiplier is from -1 (sign -1), the largest one from 1. */
+static double room(const struct follow *f, int sign)
+{
+    double most = -INFINITY;
+    for (int i = 0; i < f->map.n; i++)
+        if (f->gait.im[i] == 0)
+            most = fmax(most, sign * f->gait.re[i]);
+    return 1 - most;
+}
+
+static void tell(const struct follow *f, struct table *t, const char *what)
+{
+    const struct gait *const g = &f->gait;
+    TABLE_FACTS(
+        t,
+        {{.name = "value", .heading = f->along->path, .format = "%.12g", .width = 16},
+         as_number(f->last)},
+        {{"period", "period (s)", "%.9f", .width = 13}, as_number(g->at.time)},
+        {{"step_length", "step (m)", "%.7f", .width = 11}, as_number(g->at.length / f->map.steps)},
+        {{"speed", "speed (m/s)", "%.6f", .width = 12}, as_number(g->at.length / g->at.time)},
+        {{"re", "multiplier", "%.6f", .width = 11}, as_number(g->re[0])},
+        {{"im", "+- i", "%.6f", .width = 9}, as_number(g->im[0])},
+        {{"modulus", "modulus", "%.6f", .width = 9}, as_number(hypot(g->re[0], g->im[0]))},
+        {{"holds", "", .left = true, .width = 5}, as_text(g->stable ? "holds" : "")},
+        {{"place", "", .left = true, .width = 4, .empty = ""}, as_text(what)});
+    table_end_row(t);
+}
+
+/* Between two gaits, at values a and b with so much room there, where there is none. */
+static bool meet(struct follow *f, int sign, double a, double at_a, double b, double at_b)
+{
+    for (int k = 0; k < PLACES && fabs(b - a) > 1e-13 * (fabs(a) + fabs(b)); k++) {
+        const double c = b - at_b * (b - a) / (at_b - at_a);
+        if (c == a || c == b || !find(f, c))
+            return c == a || c == b;
+        const double at_c = room(f, sign);
+        if (fabs(at_c) < 1e-12)
+            return true;
+        if ((at_c < 0) != (at_b < 0))
+            a = b, at_a = at_b;
+        else
+            at_a *= 0.5;
+        b = c, at_b = at_c;
+        if (fabs(at_c) < f->gait.error[0] * 1e-3)
+            return true;
+    }
+    return true;
+}
+
+/* The gait at a value, from the last one on, by shorter steps where that is too far. */
+static bool reach(struct follow *f, double value)
+{
+    for (int halved = 0; halved <= HALVINGS; halved++) {
+        const double step = (value - f->last) / (1 << halved);
+        bool good = true;
+        while (good && f->last != value)
+            good =
+                find(f, halved == 0 || fabs(value - f->last) < 1.5 * fabs(step) ? value
+                                                                                : f->last + step);
+        if (good)
+            return true;
+    }
+    return false;
+}
+
+static int follow(struct follow *f, struct table *t)
+{
+    const struct along *const a = f->along;
+    if (!find(f, a->from))
+        return EXIT_USAGE;
+    tell(f, t, NULL);
+    for (size_t k = 1; k < a->count; k++) {
+        const double begin = f->last, at[2] = {room(f, 1), room(f, -1)};
+        const double end = k + 1 == a->count
+                               ? a->to
+                               : a->from + (a->to - a->from) * (double)k / (double)(a->count - 1);
+        if (!reach(f, end))
+            return EXIT_USAGE;
+        struct gait *const there = malloc(sizeof *there);
+        if (!there)
+            return EXIT_USAGE;
+        *there = f->gait;
+        for (int kind = 0; kind < 2; kind++) {
+            const int sign = kind == 0 ? 1 : -1;
+            f->gait = *there, f->last = end;
+            const double now = room(f, sign);
+            if ((at[kind] < 0) == (now < 0) || !isfinite(at[kind]) || !isfinite(now))
+                continue;
+            if (meet(f, sign, begin, at[kind], end, now))
+                tell(f, t, kind == 0 ? "fold" : "flip");
+        }
+        f->gait = *there, f->last = end;
+        memcpy(f->before, there->z, sizeof f->before);
+        f->found = 1; /* the line begins anew behind a place */
+        free(there);
+        tell(f, t, NULL);
+    }
+    return EXIT_DONE;
+}
+
+bool along_read(char *text, struct along *along)
+{
+    char *const equals = strchr(text, '='), *const dots = equals ? strstr(equals, "..") : NULL;
+    char *end;
+    if (!dots)
+        return false;
+    *equals = *dots = '\0';
+    along->path = text;
+    along->from = strtod(equals + 1, &end);
+    bool good = end != equals + 1 && *end == '\0';
+    along->to = strtod(dots + 2, &end);
+    good = good && end != dots + 2 && *end == '\0';
+    return good && isfinite(along->from) && isfinite(along->to) && along->from != along->to;
+}
+
+int along_say(const struct scenario *s, const struct along *along, enum table_form form)
+{
+    static const char *const drop[] = {"sweep", "optimise", "record"};
+    static const char text[] = "[title:{title}\n]{.rows}[stopped:it goes no further: {stopped}\n]";
+    struct follow *const f = calloc(1, sizeof *f);
+    struct table t = {0};
+    if (!f)
+        return EXIT_USAGE;
+    f->along = along;
+    f->file = s->file;
+    f->plain = scenario_rewrite(s->text, drop, sizeof drop / sizeof *drop, NULL, 0);
+    int code = f->plain ? follow(f, &t) : EXIT_USAGE;
+    if (table_rows(&t) == 0) {
+        if (f->message.text[0])
+            fprintf(stderr, "stance gait: %s: %s\n", s->file, f->message.text);
+        table_free(&t);
+    } else {
+        json_t *const facts = TABLE_OBJECT(
+            {"title", as_text(s->title[0] ? s->title : NULL)}, {"path", as_text(along->path)},
+            {"stopped", as_text(code == EXIT_DONE ? NULL : f->message.text)});
+        const bool said =
+            table_say(form,
+                      table_show(facts, "rows", &t,
+                                 "value period step_length speed re im modulus holds place", 0),
+                      text, &t);
+        code = said ? EXIT_DONE : EXIT_IO;
+    }
+    free(f->plain);
+    free(f);
+    return code;
+}

@@ -1,0 +1,25 @@
+/* along.h - a gait followed along a number of its scenario. */
+#ifndef STANCE_GAIT_ALONG_H
+#define STANCE_GAIT_ALONG_H
+
+#include "return_map.h"
+
+#include "analysis/table/table.h"
+
+/* What is asked for: the gait at `count` values of a path, evenly from the first to the last, and
+ * between them where a multiplier passes -1 (flip: steps begin to alternate) or 1 (fold: the gait
+ * ends). */
+struct along {
+    const char *path;
+    double from, to;
+    size_t count;
+    int steps, settle; /* as of return_map_begin */
+};
+
+/* Reads "PATH=FROM..TO"; the path is in *text from then on. False: it is none. */
+bool along_read(char *text, struct along *along);
+
+/* Follows it, from the values of `s` but for the path's, and says so; returns an exit code. */
+int along_say(const struct scenario *s, const struct along *along, enum table_form form);
+
+#endif
