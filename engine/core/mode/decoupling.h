@@ -303,6 +303,13 @@ static inline void decouple(const struct setting *set, mask where, lanes t, cons
     const mask constant = mask_less(lanes_of(0), set->law.constant);
     law_servo(&set->law, t, q, v, integral, &wish);
     law_constant(&set->law, wish.wanted, weighted);
+    if (!mask_any(where & LANES_NOT(constant))) { /* no model is asked */
+        for (int i = 0; i < SCENE_ACTUATORS; i++)
+            e->command[i] = weighted[i];
+        law_integral_rate(&set->law, wish.error, integral, weighted, e->integral_rate);
+        e->degraded = e->several = lanes_of(0);
+        return;
+    }
     scene_coordinate_curvature(&set->body, &e->trig, w, curvature);
     decoupling_rates(set, &e->trig, row, e->acceleration, rate);
     for (int j = 0; j < OWN_ACTUATORS; j++) {
@@ -401,7 +408,8 @@ static inline mask law_command(const struct setting *set, mask due, lanes t, con
     if (!mask_any(servos))
         return servos;
     const contact_set all = CONTACT_ALL;
-    dynamics_evaluate(set, t, s, w, none, all, true, e);
+    if (mask_any(servos & mask_less_equal(law->constant, lanes_of(0))))
+        dynamics_evaluate(set, t, s, w, none, all, true, e);
     decouple(set, servos, t, s, w, integral, all, contact, e);
     for (int i = 0; i < OWN_ACTUATORS; i++)
         command[i] = choose(servos, e->command[i], command[i]);
