@@ -600,10 +600,10 @@ static bool is_upright(const stance_tree *tree, int joint)
 /* Numbers of contacts, in the order of tables_contacts; returns the longest arm. */
 static double number_contacts(const stance_tree *tree, const stance_mechanism *m,
                               const stance_mechanism_numbers *v, const struct frames *f,
-                              const struct lumps *l, const double slope[3], double (*end)[3],
-                              double *rough)
+                              const struct lumps *l, stance_tree_numbers *number)
 {
-    double arm = 0;
+    const double *const slope = number->slope;
+    double(*const end)[3] = number->end, arm = 0;
     int c = 0;
     for (int e = 0; e < m->elements; e++) {
         const stance_element_numbers *const at = &v->element[e];
@@ -613,15 +613,14 @@ static double number_contacts(const stance_tree *tree, const stance_mechanism *m
             if (f->of[b] < 0)
                 lay(slope[1], slope[2], end[c], end[c]);
             end[c][2] = at->radius;
-            rough[c] = m->element[e].rough ? at->friction_factor : 1;
+            number->rough[c] = m->element[e].rough ? at->friction_factor : 1;
             arm = fmax(arm, longest_arm(tree, m, v, f, l, c, end[c]) + end[c][2]);
         }
     }
     for (int b = 0; b < m->bodies; b++) {
         for (int side = 0; side < 2; side++)
             if (stance_mechanism_stops(m, b, side))
-                end[c++][0] =
-                    v->body[b].limits[side] + (is_upright(tree, f->joint[b]) ? slope[0] : 0);
+                end[c++][0] = v->body[b].limits[side] + is_upright(tree, f->joint[b]) * slope[0];
     }
     return arm;
 }
@@ -697,7 +696,5 @@ void stance_tree_numbers_make(const stance_tree *tree, const stance_mechanism *m
         number->push[k][5] = m->point[p].pushed == STANCE_IMPULSE ? point->from : point->to;
         number->push[k++][6] = point->frequency;
     }
-    const double arm =
-        number_contacts(tree, m, &v, &f, &l, number->slope, number->end, number->rough);
-    lumps_curvature(m, &v, &f, &l, arm, number->curvature);
+    lumps_curvature(m, &v, &f, &l, number_contacts(tree, m, &v, &f, &l, number), number->curvature);
 }

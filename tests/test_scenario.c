@@ -52,12 +52,11 @@ static const char full[] =
     "record: {every: 0.02, cases: [5, 3, 5], answers: [outcome, steps, final_state]}\n"
     "seed: 9223372036854775807\n";
 
-static const char holds[] = "stance: 1\n"
-                            "scene: biped\n"
-                            "initial: {state: {z: 1.5, theta: -0.5, q1: 0.9, q2: -1, vx: 2}}\n"
-                            "controller: {kind: hold, kp: 500, kd: 50, target: {q2: -0.9}}\n"
-                            "stop: {time: 1.5, settle: off}\n"
-                            "record: {cases: all}\n";
+static const uint64_t one = 1;
+static const char holds[] =
+    "stance: 1\nscene: biped\ninitial: {state: {z: 1.5, theta: -0.5, q1: 0.9, q2: -1, vx: 2}}\n"
+    "controller: {kind: hold, kp: 500, kd: 50, target: {q2: -0.9}}\n"
+    "stop: {time: 1.5, settle: off}\nrecord: {cases: all}\n";
 
 static const char decouples[] =
     "stance: 1\nscene: biped\ninitial: {state: {z: 1.1}}\nstop: {time: 1}\n"
@@ -88,14 +87,10 @@ static const char gives_gains[] = "stance: 1\n"
                                   "  sample_time: 0.001\n"
                                   "stop: {time: 8}\n";
 
-static const char places[] = "stance: 1\n"
-                             "scene: biped\n"
-                             "initial: {equilibrium: {theta: -0.41, q2: 0.82}}\n"
-                             "controller:\n"
-                             "  kind: state-feedback\n"
-                             "  poles: [-3, -3.3, -3.6, -3.9, -4.2, -4.6]\n"
-                             "  torque_limits: [10, none]\n"
-                             "stop: {time: 8}\n";
+static const char places[] =
+    "stance: 1\nscene: biped\ninitial: {equilibrium: {theta: -0.41, q2: 0.82}}\nstop: {time: 8}\n"
+    "controller: {kind: state-feedback, poles: [-3, -3.3, -3.6, -3.9, -4.2, -4.6],\n"
+    "  torque_limits: [10, none]}\n";
 
 static const char regulates[] = "stance: 1\n"
                                 "scene: biped\n"
@@ -182,9 +177,8 @@ static void every_key_is_read(void **state)
     assert_int_equal(s.record_cases, RECORD_LIST);
     assert_int_equal(s.record_count, 2);
     assert_true(s.record_list[0] == 3 && s.record_list[1] == 5);
-    assert_int_equal(s.answers, UINT64_C(1) << STANCE_ANSWER_outcome |
-                                    UINT64_C(1) << STANCE_ANSWER_steps |
-                                    UINT64_C(1) << SCENARIO_FINAL_STATE);
+    assert_int_equal(s.answers, one << STANCE_ANSWER_outcome | one << STANCE_ANSWER_steps |
+                                    one << SCENARIO_FINAL_STATE);
     int line = 0, column = 0;
     assert_true(scenario_place(&s, "initial: a message", &line, &column));
     assert_int_equal(line, 6);
@@ -366,9 +360,8 @@ static void other_scenes_are_read(void **state)
     assert_false(s.axis[0].design || s.axis[1].design);
     scenario_case_values(&s, 9, &v);
     assert_true(v.tolerance == 1e-5 && v.robot[0] == 2);
-    assert_int_equal(s.answers, UINT64_C(1) << STANCE_ANSWER_events |
-                                    UINT64_C(1) << STANCE_ANSWER_energy_gain |
-                                    UINT64_C(1) << STANCE_ANSWER_dissipation_residual);
+    assert_int_equal(s.answers, one << STANCE_ANSWER_events | one << STANCE_ANSWER_energy_gain |
+                                    one << STANCE_ANSWER_dissipation_residual);
     scenario_free(&s);
     for (size_t i = 0; i < sizeof plain / sizeof plain[0]; i++) {
         read_good(&s, plain[i].text, NULL, 0);
