@@ -64,7 +64,7 @@ static const char decouples[] =
 
 static const char follows[] =
     "stance: 1\nscene: biped\ninitial: {state: {z: 1.1}}\nstop: {time: 1, walks: {steps: 10}}\n"
-    "controller: {kind: outputs, phase: {of: {theta: -1, q1: -1}},\n"
+    "controller: {kind: outputs, phase: {of: {theta: -1}, clock: [0, 1]},\n"
     "  outputs: {y1: {of: {theta: 1}, along: [0, 1]}, y2: {of: {q1: 1, q2: 1}, along: [0, 1]}}}\n";
 
 static const char switches[] =
