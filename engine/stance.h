@@ -520,7 +520,8 @@ void stance_case_robot(const stance_scene *scene, stance_case *c);
     X(footfalls, int64_t, SUM, own, "1", "landings of another foot than the one that landed last") \
     X(walked_steps, int64_t, END, own, "1", "footfalls that are steps, see stop.walks")            \
     X(step_time, double, END, own, "s", "mean time of the last four of them")                      \
-    X(step_length, double, END, own, "m", "mean length of the last four of them, along +x")        \
+    X(step_length, double, END, own, "m",                                                          \
+      "mean length of the last four of them, along the ground")                                    \
     X(gait_period, int64_t, END, own, "1", "steps after which the gait repeats: 1, 2 or 4")        \
     X(excursion, double, MAX, each, "rad", "largest angle off its target on the way")              \
     X(peak_torque, double, MAX, each, "N m", "largest torque applied")                             \

@@ -1,9 +1,10 @@
 /* along.c - continuation: each gait begins where a straight line through the last two leads.
  *
  * Where the least real multiplier passes -1 or the largest one 1 between two values the place is
- * found by the Illinois method (Dowell and Jarratt, BIT 11 (1971) 168), gaits between included,
- * down to what the multipliers' error leaves. A step along the path that finds no gait is halved.
- */
+ * * found by the Illinois method (Dowell and Jarratt, BIT 11 (1971) 168), gaits between included,
+ * down to what the multipliers' error leaves. Where it ends without one the gaits on both sides
+ * belong to different branches, which is said as `jump`. A step along the path that finds no gait
+ * is halved. */
 #include "along.h"
 
 #include "runner/plan/asked.h"
@@ -15,6 +16,7 @@
 
 extern const struct command command_gait;
 
+#define PLACE 1e-4 /* of a multiplier that is at -1 or 1 */
 enum { HALVINGS = 5, PLACES = 40 };
 
 struct follow {
@@ -28,6 +30,7 @@ struct follow {
     double last;      /* ... at this value; and the one before */
     double before[RETURN_MAP_MOST], last_before;
     int found;
+    bool refused; /* the scenario does not admit a value */
     stance_message message;
 };
 
@@ -56,8 +59,11 @@ static bool find(struct follow *f, double value)
     const char *const sets[] = {set};
     f->message.text[0] = '\0';
     struct scenario *const s = scenario_new(f->file, f->plain, sets, 1, stderr);
-    if (!s)
+    if (!s) {
+        f->refused = true;
+        snprintf(f->message.text, sizeof f->message.text, "the scenario does not admit %.60s", set);
         return false;
+    }
     if (f->found > 1)
         for (int i = 0; i < f->map.n; i++) {
             const double slope = (f->gait.z[i] - f->before[i]) / (f->last - f->last_before);
@@ -137,8 +143,8 @@ static bool reach(struct follow *f, double value)
             good =
                 find(f, halved == 0 || fabs(value - f->last) < 1.5 * fabs(step) ? value
                                                                                 : f->last + step);
-        if (good)
-            return true;
+        if (good || f->refused)
+            return good;
     }
     return false;
 }
@@ -167,7 +173,10 @@ static int follow(struct follow *f, struct table *t)
             if ((at[kind] < 0) == (now < 0) || !isfinite(at[kind]) || !isfinite(now))
                 continue;
             if (meet(f, sign, begin, at[kind], end, now))
-                tell(f, t, kind == 0 ? "fold" : "flip");
+                tell(f, t,
+                     fabs(room(f, sign)) > PLACE + f->gait.error[0] ? "jump"
+                     : kind == 0                                    ? "fold"
+                                                                    : "flip");
         }
         f->gait = *there, f->last = end;
         memcpy(f->before, there->z, sizeof f->before);
@@ -206,7 +215,7 @@ int along_say(const struct scenario *s, const struct along *along, enum table_fo
     f->plain = scenario_rewrite(s->text, drop, sizeof drop / sizeof *drop, NULL, 0);
     int code = f->plain ? follow(f, &t) : EXIT_USAGE;
     if (table_rows(&t) == 0) {
-        if (f->message.text[0])
+        if (f->message.text[0] && !f->refused) /* else it has been said */
             fprintf(stderr, "stance gait: %s: %s\n", s->file, f->message.text);
         table_free(&t);
     } else {

@@ -203,8 +203,9 @@ static const struct option options[] = {
      .text = "the gait followed along a number of the scenario, and where it flips (a multiplier "
              "passes -1: steps begin to alternate) or folds (1: it ends)"},
     {"--count", "COUNT", OPTION_TO(struct request, count), .low = 2, .high = 10000,
-     .text = "values along it, 11 by default (with --along)"},
-    {TABLE_CSV(struct request, form), .text = "as comma-separated values (with --along)"},
+     .needs = "--along", .text = "values along it, 11 by default (with --along)"},
+    {TABLE_CSV(struct request, form), .needs = "--along",
+     .text = "as comma-separated values (with --along)"},
     {TABLE_JSON(struct request, form), .text = "as JSON"},
     {0},
 };
@@ -224,7 +225,8 @@ const struct command command_gait = {
     "or "
     "wanders). Newton's derivative is of central differences of 1e-4; multipliers are of fourth "
     "order at 1e-3 and 3e-4, and their error is by how much these differ. method.tolerance 1e-10 "
-    "makes them good to seven digits, method event-driven to nine. Of torques at their limits the "
+    "makes the largest good to about six digits, method event-driven to eight. Of torques at their "
+    "limits the "
     "map "
     "has kinks, and errors are larger.\n"
     "  JSON: {title, steps, method, period, step_length, speed, foot, sampled, state: {name: "
@@ -234,6 +236,6 @@ const struct command command_gait = {
     "friction_used, friction, slip_distance, residual, iterations}; with --along {title, path, "
     "stopped, "
     "rows: [{value, period, step_length, speed, re, im, modulus, holds, place}]}, the largest "
-    "multiplier of each, place flip or fold.\n"
+    "multiplier of each, place flip, fold or jump (to another gait).\n"
     "Exit codes: 0 found, 2 bad use or scenario, or no such gait, 3 FILE cannot be written.",
 };

@@ -58,6 +58,17 @@ static double residual(const struct return_map *map, const double *z, const doub
     return largest;
 }
 
+/* Says of a point on Newton's way that it is not of the start. */
+static bool strayed(const struct gait *gait, stance_message *message)
+{
+    char why[sizeof message->text];
+    snprintf(why, sizeof why, "%s", message->text);
+    snprintf(message->text, sizeof message->text,
+             "no gait is near: the nearest returns to within %.3g, and further on %.140s",
+             gait->residual, why);
+    return false;
+}
+
 static bool newton(const struct return_map *map, struct gait *gait, struct work *w,
                    stance_message *message)
 {
@@ -72,7 +83,8 @@ static bool newton(const struct return_map *map, struct gait *gait, struct work 
         double move[RETURN_MAP_MOST];
         const size_t count = place(map, z, NEWTON_STEP, apart, 2, w);
         if (!return_map_take(map, count, (const double(*)[RETURN_MAP_MOST])w->z, w->point, message))
-            return gait->residual <= NEWTON_GOOD;
+            return gait->residual <= NEWTON_GOOD ||
+                   (gait->iterations > 0 && strayed(gait, message));
         const double now = residual(map, z, w->point[0].z);
         const bool better = now < gait->residual, stuck = !(now < 0.5 * gait->residual);
         if (better) {

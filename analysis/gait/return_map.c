@@ -1,6 +1,8 @@
 /* return_map.c - the section, and where cases return to it. */
 #include "return_map.h"
 
+#include "engine/tree.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -8,7 +10,8 @@
 
 #define LONGEST 100    /* s, until the last footfall */
 #define NEAR 1e-7      /* m: a foot on the ground */
-#define SYMMETRIC 1e-9 /* of the energy: legs that are alike */
+#define SYMMETRIC 1e-9 /* of the energy, and so on: legs that are alike */
+#define SLIDES 1e-6    /* m/s */
 
 static bool refuse(stance_message *message, const char *text)
 {
@@ -114,11 +117,11 @@ static bool returned(const struct return_map *map, const stance_case *c, const s
     const char *const cause =
         r->outcome == STANCE_FELL && r->fall_cause > 0 ? map->scene->cause[r->fall_cause - 1] : "";
     snprintf(message->text, sizeof message->text,
-             r->status != STANCE_DONE ? "a run failed after %ld footfalls%s%s"
+             r->status != STANCE_DONE ? "a run failed after %ld footfall%s%s%s"
              : r->outcome == STANCE_FELL
-                 ? "it falls after %ld footfalls%s%s; give a start that walks"
-                 : "it makes %ld footfalls in 100 s and no more%s%s",
-             made, cause[0] ? ", by " : "", cause);
+                 ? "it falls after %ld footfall%s%s%s; give a start that walks"
+                 : "it makes %ld footfall%s in 100 s and no more%s%s",
+             made, made == 1 ? "" : "s", cause[0] ? ", by " : "", cause);
     return false;
 }
 
@@ -146,6 +149,12 @@ static bool take(const struct return_map *map, size_t count, const double (*z)[R
         section_of(map, results[i].position, results[i].velocity, second, point[i].z, NULL);
         scene->contact_point(scene, map->base.robot, results[i].position, results[i].velocity,
                              map->foot[second], end, speed);
+        if (hypot(speed[0], speed[1]) > SLIDES) {
+            good =
+                refuse(message, "the foot that lands slides: no gait on feet that stick; give more "
+                                "ground.friction");
+            break;
+        }
         stance_sincos(map->base.robot[STANCE_ROBOT_SLOPE], &sine, &cosine);
         double from[2];
         scene->contact_point(scene, map->base.robot, cases[i].position, cases[i].velocity,
@@ -175,6 +184,61 @@ static int foot_of(const stance_scene *scene, uint32_t leg, const double *gap)
     return count == 1 ? foot : -1;
 }
 
+/* Where the torques of a linear law do not depend on which leg is which. */
+static bool law_alike(const stance_scene *scene, const stance_case *c,
+                      const double (*q)[STANCE_MAX_COORDINATES],
+                      const double (*v)[STANCE_MAX_COORDINATES])
+{
+    const stance_exchange *const e = &scene->exchange;
+    double torque[2][STANCE_MAX_ACTUATORS], limit[STANCE_MAX_ACTUATORS], off = 0, size = 1;
+    stance_torque_limits(scene, c->robot, c->torque_limit, c->torque_limits, limit);
+    for (int i = 0; i < scene->actuators; i++)
+        if (limit[i] != limit[e->actuator[i]])
+            return false;
+    if (c->follows)
+        return true;
+    if (c->decouples || c->switches || c->bends)
+        return scene->actuators == 0;
+    for (int side = 0; side < 2; side++)
+        for (int i = 0; i < scene->actuators; i++) {
+            torque[side][i] = c->near.feedforward[i];
+            for (int j = 0; j < scene->postures; j++) {
+                const int k = scene->posture[j];
+                torque[side][i] -= c->near.gain[i][j] * (q[side][k] - c->near.target[j]) +
+                                   c->near.gain[i][scene->postures + j] * v[side][k];
+            }
+        }
+    for (int i = 0; i < scene->actuators; i++) {
+        off = fmax(off, fabs(torque[1][i] - e->sign[i] * torque[0][e->actuator[i]]));
+        size = fmax(size, fabs(torque[0][i]));
+    }
+    return off <= SYMMETRIC * size;
+}
+
+/* The contacts of one leg are to the ground what those of the other one are, legs exchanged. */
+static bool feet_alike(const stance_scene *scene, const stance_case *c,
+                       const double (*q)[STANCE_MAX_COORDINATES])
+{
+    double gap[2][STANCE_MAX_CONTACTS];
+    bool same = true;
+    for (int side = 0; side < 2; side++)
+        scene->gaps(scene, c->robot, q[side], gap[side]);
+    for (int a = 0, b = -1; a < scene->contacts; a++) {
+        if (!(scene->exchange.leg[0] >> a & 1))
+            continue;
+        do /* its counterpart: the legs have them in the same order */
+            b++;
+        while (b < scene->contacts && !(scene->exchange.leg[1] >> b & 1));
+        if (b >= scene->contacts)
+            return false;
+        same = same && fabs(gap[0][a] - gap[1][b]) <= SYMMETRIC &&
+               fabs(gap[0][b] - gap[1][a]) <= SYMMETRIC && c->body.rough[a] == c->body.rough[b] &&
+               (c->contacts >> a & 1) == (c->contacts >> b & 1);
+    }
+    return same;
+}
+
+/* Nothing tells one leg from the other: energy, feet, law. */
 static bool alike(const stance_scene *scene, const stance_case *c)
 {
     double q[2][STANCE_MAX_COORDINATES] = {{0}}, v[2][STANCE_MAX_COORDINATES] = {{0}};
@@ -185,7 +249,21 @@ static bool alike(const stance_scene *scene, const stance_case *c)
     exchange(scene, q[0], q[1]);
     exchange(scene, v[0], v[1]);
     const double e = scene->energy(scene, c->robot, q[0], v[0]);
-    return fabs(scene->energy(scene, c->robot, q[1], v[1]) - e) <= SYMMETRIC * (1 + fabs(e));
+    return fabs(scene->energy(scene, c->robot, q[1], v[1]) - e) <= SYMMETRIC * (1 + fabs(e)) &&
+           feet_alike(scene, c, (const double(*)[STANCE_MAX_COORDINATES])q) &&
+           law_alike(scene, c, (const double(*)[STANCE_MAX_COORDINATES])q,
+                     (const double(*)[STANCE_MAX_COORDINATES])v);
+}
+
+/* Does anything happen at a time of its own? */
+static bool timed(const stance_case *c)
+{
+    bool any = false;
+    for (int p = 0; p < c->tree->pushes; p++)
+        any |= c->body.push[p][2] != 0 || c->body.push[p][3] != 0;
+    for (int i = 0; i < c->scene->actuators && c->decouples && !c->follows; i++)
+        any |= c->servo[i].ki != 0 || c->servo[i].ramp != 0;
+    return any;
 }
 
 static bool check(const stance_case *c, const stance_kernel *kernel, int steps,
@@ -205,11 +283,18 @@ static bool check(const stance_case *c, const stance_kernel *kernel, int steps,
     if (c->delay > 0 || c->lag > 0 || (c->torque_rate > 0 && isfinite(c->torque_rate)))
         return refuse(message, "controller.delay, lag and torque_rate remember the step before, "
                                "which the section does not");
+    if (c->restitution > 0)
+        return refuse(message, "a foot that rebounds is not on the ground after its footfall: set "
+                               "ground.restitution to 0");
+    if (timed(c))
+        return refuse(message,
+                      "a gait has no time of its own: pushes, ramps and integrals of a run "
+                      "begin once, not at each footfall");
     if (!c->scene->exchange.any)
         return refuse(message, "no two legs of the robot are alike in structure");
     return steps % 2 == 0 || alike(c->scene, c) ||
-           refuse(message, "the legs differ: a gait repeats after an even number of steps; give "
-                           "--steps 2");
+           refuse(message, "the legs, or what drives them, differ: a gait repeats after an even "
+                           "number of steps; give --steps 2");
 }
 
 static void take_case(struct return_map *map, const stance_case *c)
@@ -230,32 +315,48 @@ bool return_map_change(struct return_map *map, const stance_case *c, stance_mess
     return true;
 }
 
+/* Which leg landed: its foot on the ground is the slowest one there. */
+static bool lands_second(const stance_scene *scene, const stance_case *c, const stance_result *r)
+{
+    double gap[STANCE_MAX_CONTACTS], point[2], speed[2], least[2] = {INFINITY, INFINITY};
+    scene->gaps(scene, c->robot, r->position, gap);
+    for (int k = 0; k < scene->contacts; k++)
+        for (int leg = 0; leg < 2; leg++)
+            if (scene->grip[k] >= 0 && scene->exchange.leg[leg] >> k & 1 && fabs(gap[k]) < NEAR) {
+                scene->contact_point(scene, c->robot, r->position, r->velocity, k, point, speed);
+                least[leg] = fmin(least[leg], hypot(speed[0], speed[1]));
+            }
+    return least[1] < least[0];
+}
+
 bool return_map_begin(struct return_map *map, const stance_case *c, const stance_kernel *kernel,
                       int steps, int settle, double *z, stance_message *message)
 {
     const stance_scene *const scene = c->scene;
     stance_case first = *c;
     stance_result r;
-    double gap[STANCE_MAX_CONTACTS], largest = 0, speed[2][2], point[2];
+    double gap[STANCE_MAX_CONTACTS], largest = 0;
     if (!check(c, kernel, steps, message))
         return false;
     *map = (struct return_map){.scene = scene, .kernel = kernel, .steps = steps};
     take_case(map, c);
     first = map->base;
     first.footfalls = 1;
-    kernel->run(&first, &r, 1);
-    if (!returned(map, &first, &r, 0, message))
-        return false;
+    for (bool again = true; again; first.footfalls++) { /* legs that differ keep their places */
+        kernel->run(&first, &r, 1);
+        if (!returned(map, &first, &r, 0, message))
+            return false;
+        again = steps % 2 == 0 && first.footfalls == 1 && lands_second(scene, c, &r);
+    }
     scene->gaps(scene, c->robot, r.position, gap);
     for (int leg = 0; leg < 2; leg++) {
         map->foot[leg] = foot_of(scene, scene->exchange.leg[leg], gap);
         if (map->foot[leg] < 0)
-            return refuse(message, "at the footfall a leg is not on the ground with one contact: "
-                                   "no gait on points or round feet");
-        scene->contact_point(scene, c->robot, r.position, r.velocity, map->foot[leg], point,
-                             speed[leg]);
+            return refuse(message,
+                          "at a footfall one contact of each leg, no more, has to be on the "
+                          "ground");
     }
-    const bool second = hypot(speed[1][0], speed[1][1]) < hypot(speed[0][0], speed[0][1]);
+    const bool second = lands_second(scene, c, &r);
     map->n = 2 * scene->postures - 1;
     section_of(map, r.position, r.velocity, second, z, map->posture);
     for (int j = 0; j < scene->postures; j++) {

@@ -51,8 +51,8 @@ static const stance_parameter parameters[PARAMETERS] = {
     [OF] = {{"phase.of", "1", "of the phase: how much of %s", 0, -LARGE, LARGE},
             .per = STANCE_PER_COORDINATE,
             .all = "the row of the phase: how much of each coordinate",
-            .more = "That of the leg that stands at first; while the other one does, coordinates "
-                    "of the legs take each other's place here and in the outputs."},
+            .more = "While the first leg stands; while the other one does, coordinates of the legs "
+                    "take each other's place here and in the outputs."},
     [CLOCK] = {{"phase.clock", "1", "coefficient of the phase's polynomial of time", NAN, -LARGE,
                 LARGE},
                .per = STANCE_PER_TERM,
@@ -203,7 +203,8 @@ static stance_error set(const stance_scene *scene, const double *value, const do
         return refuse(message, "phase: give one of of and clock", 0);
     if (bends && !phased && !clocked)
         return refuse(message, "phase.of is missing: what the outputs follow", 0);
-    if (rank_of(rows, bends && phased ? m + 1 : m, n) < (bends && phased ? m + 1 : m))
+    if (weighted == 0 &&
+        rank_of(rows, bends && phased ? m + 1 : m, n) < (bends && phased ? m + 1 : m))
         return refuse(message,
                       bends
                           ? "outputs: the rows and the phase depend on each other: no torques can "

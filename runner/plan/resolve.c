@@ -507,7 +507,7 @@ bool resolve_selection(const stance_scene *scene, const stance_case *start, stan
     double condition;
     int selection = 0, coordinate[STANCE_MAX_ACTUATORS];
     char name[SCENARIO_NAME];
-    if (!start->decouples)
+    if (!start->decouples || start->follows)
         return true;
     for (bool same = false; !same && stance_selection(scene, selection, coordinate); selection++) {
         same = true;

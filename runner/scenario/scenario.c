@@ -187,6 +187,10 @@ static bool read_items(struct reader *r, const struct scenario_field *field,
         field->fewer && node->kind == TREE_LIST && node->count > 0 && node->count < field->items
             ? node->count
             : field->items;
+    if (field->fewer && field->type == FIELD_NUMBERS && items == field->items &&
+        (node->kind != TREE_LIST || node->count != items))
+        return problem_add(&r->problems, node->mark, "%s: expected a list of 1 to %zu numbers",
+                           field->path, items);
     const bool states = field->items == 2 * (size_t)r->s->scene->postures && !matrix;
     bool good = !(states && misfits(r, field->path, node, items, poles ? "poles" : "numbers")) &&
                 field_items(&r->problems, field->path, node, items,

@@ -357,7 +357,7 @@ const struct row schema_rows[] = {
     {0, {.path = "stop.footfalls", .type = FIELD_INTEGER, VALUE(footfalls), .unit = "1",
          .fallback = 0, RANGE(0, 1e9), .quiet = true,
          .text = "footfalls after which the run ends, just after the last; 0: it goes on",
-         .more = "capturing and event-driven end where it falls, the others at the end of its step. "
+         .more = "capturing, event-driven and lagrange end where it falls, the others at the end of " "its step. "
                  "A footfall is the landing of another foot than the one that landed last."}},
     {0, {.path = "stop.fall_height", .type = FIELD_NUMBER, .sweep = true,
          VALUE(robot[STANCE_ROBOT_FALL_HEIGHT]), .unit = "1", .fallback = STANCE_FALL_HEIGHT,

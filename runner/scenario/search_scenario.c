@@ -450,7 +450,7 @@ void search_check(struct reader *r)
 
     if (!search->given || r->axes_bad || search->stages == 0 || r->problems.count > 0)
         return;
-    if (!s->base.settle)
+    if (!s->base.settle && s->base.walk_steps == 0)
         reader_refuse(r, "stop.settle",
                       " off has no meaning with optimise: stabilised starts are to end");
     if (search->aim == AIM_ANSWER && stance_answers[search->answer].type == STANCE_UINT8)

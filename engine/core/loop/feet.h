@@ -55,11 +55,17 @@ COLD void feet_begin(struct bundle *b, mask fresh)
                            mask_less(b->now.gap[c], lanes_of(-FEET_DEEPEST));
         b->set.may_touch[c] = choose(under, lanes_of(0), b->set.may_touch[c]);
     }
-    for (int c = OWN_CONTACTS; c-- > 0;) { /* of feet on the ground the first stands */
-        const mask stands = contact_grip(c) < 0 ? MASK_NONE : fresh & feet_down(b, c);
-        feet_stand(b, stands, c);
-        b->walk.foot = choose(stands, lanes_of(c), b->walk.foot);
-    }
+    /* Of feet on the ground one that neither lifts nor falls stands, of these the first. */
+    for (int rests = 0; rests < 2; rests++)
+        for (int c = OWN_CONTACTS; c-- > 0;) {
+            if (contact_grip(c) < 0)
+                continue;
+            mask stands = fresh & feet_down(b, c);
+            if (rests)
+                stands &= mask_less_equal(lanes_abs(b->now.approach[c]), lanes_of(FEET_REST));
+            feet_stand(b, stands, c);
+            b->walk.foot = choose(stands, lanes_of(c), b->walk.foot);
+        }
 }
 
 /* Which are in play from now on, in the lanes of `live`. */

@@ -4,7 +4,7 @@
  * the foot that stood, the same way as the last step, and not at once after it. The state just
  * after a step, legs exchanged where the second one stands and the place along the ground left out,
  * is a point of the return map; where points repeat, one, two or four steps after, as often as is
- * asked and no less well than when they began to, the robot walks. What is no step, or not alike,
+ * asked and at last as well as ever, the robot walks. What is no step, or not alike,
  * begins the count anew.
  *
  * Footfalls are rare: a lane at a time. */
@@ -56,7 +56,7 @@ static void walk_compare(struct walking *w, struct bundle *b, int lane, const do
         const double off =
             steps > walk_period[k] ? walk_off(b, lane, section, walk_period[k]) : INFINITY;
         alike = off <= 1 ? alike + 1 : 0;
-        first = alike == 1 ? off : first;
+        first = alike == 1 ? off : fmin(first, off);
         if (alike == 1)
             lane_set(&w->since[k], lane, lane_get(&b->now.t, lane));
         if (alike >= wanted && off > fmax(first, WALK_FLOOR)) /* it grows: again from here */
@@ -69,17 +69,17 @@ static void walk_compare(struct walking *w, struct bundle *b, int lane, const do
     }
 }
 
-static void walk_step(struct walking *w, struct bundle *b, int lane, double t, double length)
+static void walk_step(struct walking *w, struct bundle *b, int lane, double t, double place)
 {
     double section[2 * POSTURES];
     lane_set(&w->steps, lane, lane_get(&w->steps, lane) + 1);
-    lane_set(&w->place, lane, lane_get(&w->place, lane) + length);
+
     for (int k = WALK_KEPT; k > 0; k--) {
         lane_set(&w->when[k], lane, lane_get(&w->when[k - 1], lane));
         lane_set(&w->where[k], lane, lane_get(&w->where[k - 1], lane));
     }
     lane_set(&w->when[0], lane, t);
-    lane_set(&w->where[0], lane, lane_get(&w->place, lane));
+    lane_set(&w->where[0], lane, place);
     walk_section(b, lane, section);
     walk_compare(w, b, lane, section);
     for (int k = WALK_KEPT; k-- > 0;)
@@ -99,17 +99,16 @@ COLD void walk_footfall(struct bundle *b, mask where, int c)
         SCENE_BEGIN(of);
         const double t = lane_get(&b->now.t, lane), foot = lane_get(&w->foot, lane);
         double length = 0;
+        const lanes here = scene_along(&b->set.body, b->now.s, &b->now.trig, c);
         if (foot >= 0) {
-            const lanes here = scene_along(&b->set.body, b->now.s, &b->now.trig, c),
-                        there = scene_along(&b->set.body, b->now.s, &b->now.trig, (int)foot);
+            const lanes there = scene_along(&b->set.body, b->now.s, &b->now.trig, (int)foot);
             length = lane_get(&here, lane) - lane_get(&there, lane);
         }
-        const double before = lane_get(&w->where[0], lane) - lane_get(&w->where[1], lane);
-        const bool on = lane_get(&w->steps, lane) == 0 || length * before > 0;
+        const bool on = lane_get(&w->steps, lane) == 0 || length * lane_get(&w->length, lane) > 0;
         lane_set(&w->foot, lane, c);
         if (of->walk_steps > 0 && on && fabs(length) >= of->walk_length &&
             t - lane_get(&w->last, lane) >= of->walk_time)
-            walk_step(w, b, lane, t, length);
+            walk_step(w, b, lane, t, lane_get(&here, lane)), lane_set(&w->length, lane, length);
         else
             for (int k = 0; k < WALK_PERIODS; k++)
                 lane_set(&w->alike[k], lane, 0);

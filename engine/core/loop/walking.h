@@ -15,7 +15,7 @@ struct walking {
     lanes last;          /* s, of the last footfall, be it a step */
     lanes settled;       /* s, since when */
     lanes steps, period; /* so far; with which they are alike, 0: they are not */
-    lanes place;         /* m, walked so far */
+    lanes length;        /* m, of the last one, from foot to foot */
     /* Of the last steps, the newest first: when, where, with which angles and rates, legs exchanged
      * where the second one stands. */
     lanes when[WALK_KEPT + 1], where[WALK_KEPT + 1];
