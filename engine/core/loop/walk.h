@@ -4,8 +4,9 @@
  * the foot that stood, the same way as the last step, and not at once after it. The state just
  * after a step, legs exchanged where the second one stands and the place along the ground left out,
  * is a point of the return map; where points repeat, one, two or four steps after, as often as is
- * asked and at last as well as ever, the robot walks. What is no step, or not alike,
- * begins the count anew.
+ * asked and in the second half of them no less well than in the first, the robot walks. That says
+ * what it does, not for ever: a gait that wanders takes more steps to be sure of. What is no step,
+ * or not alike, begins the count anew.
  *
  * Footfalls are rare: a lane at a time. */
 #ifndef STANCE_CORE_LOOP_WALK_H
@@ -45,27 +46,33 @@ static double walk_off(const struct bundle *b, int lane, const double *section, 
     return off;
 }
 
-#define WALK_FLOOR 0.1 /* of what is admitted: what is alike to it need not be more so */
+#define WALK_FLOOR 0.1 /* of what is admitted: so little may grow, as by a clock that goes on */
 
 /* How the steps so far are alike, with one more at this section. */
 static void walk_compare(struct walking *w, struct bundle *b, int lane, const double *section)
 {
     const double steps = lane_get(&w->steps, lane), wanted = lane_get(&w->wanted, lane);
     for (int k = WALK_PERIODS; k-- > 0;) {
-        double alike = lane_get(&w->alike[k], lane), first = lane_get(&w->first[k], lane);
+        double alike = lane_get(&w->alike[k], lane);
+        double first = lane_get(&w->first[k], lane), later = lane_get(&w->later[k], lane);
         const double off =
             steps > walk_period[k] ? walk_off(b, lane, section, walk_period[k]) : INFINITY;
         alike = off <= 1 ? alike + 1 : 0;
-        first = alike == 1 ? off : fmin(first, off);
-        if (alike == 1)
+        if (alike >= wanted && fmax(later, off) > fmax(first, WALK_FLOOR))
+            alike = 1; /* it grows: again from here */
+        if (alike == 1) {
             lane_set(&w->since[k], lane, lane_get(&b->now.t, lane));
-        if (alike >= wanted && off > fmax(first, WALK_FLOOR)) /* it grows: again from here */
-            alike = 1, first = off;
-        else if (alike >= wanted)
-            lane_set(&w->period, lane, walk_period[k]), /* the shortest one last */
-                lane_set(&w->settled, lane, lane_get(&w->since[k], lane));
+            first = later = 0;
+        }
+        first = 2 * alike <= wanted ? fmax(first, off) : first;
+        later = 2 * alike <= wanted ? later : fmax(later, off);
+        if (alike >= wanted) {
+            lane_set(&w->period, lane, walk_period[k]); /* the shortest one last */
+            lane_set(&w->settled, lane, lane_get(&w->since[k], lane));
+        }
         lane_set(&w->alike[k], lane, alike);
         lane_set(&w->first[k], lane, first);
+        lane_set(&w->later[k], lane, later);
     }
 }
 

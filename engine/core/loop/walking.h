@@ -20,8 +20,9 @@ struct walking {
      * where the second one stands. */
     lanes when[WALK_KEPT + 1], where[WALK_KEPT + 1];
     lanes section[WALK_KEPT][2 * POSTURES];
-    /* By period: how many in a row were alike, and how much so the first of them. */
-    lanes alike[WALK_PERIODS], first[WALK_PERIODS], since[WALK_PERIODS]; /* s */
+    /* By period: how many in a row were alike, since when, s; the largest difference of the first
+     * half of those that are wanted, and of the others. */
+    lanes alike[WALK_PERIODS], since[WALK_PERIODS], first[WALK_PERIODS], later[WALK_PERIODS];
     lanes ended; /* s, at which the last footfall ended the case; -1: none has */
 };
 
