@@ -181,9 +181,10 @@ says "... is told" "--time-limit takes a duration such as 90s, 55m or 1h30m, not
 "$python" - "$map" <<'PY'
 import os, pty, re, subprocess, sys
 ours, theirs = pty.openpty()
-command = [os.environ["STANCE"], "ranges", sys.argv[1], "--set", "method.step=2e-5", "--set", "controller.sample_time=0.01"]
+command = [os.environ["STANCE"], "ranges", sys.argv[1], "--set", "method.step=2e-6", "--set", "controller.sample_time=0.01"]
 said = ""
 with subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=theirs) as ran:
+    os.close(theirs) # so that its end is one of what is read
     while not re.search(r"[0-9]+ of about [0-9]+ simulations(, about [^ ]+ (s|min|h) left)?\x1b", said):
         assert ran.poll() is None, said
         said += os.read(ours, 4000).decode()

@@ -2,6 +2,7 @@
 // What the map is drawn from stands before the script, all else behind it: the map is there while that is being read.
 // A block is base64 of a zlib stream of little-endian numbers, those of more than one byte shuffled: all first bytes, then
 // all second ones, ...
+import { numberKinds } from './layers';
 import type { FileAxis, Head } from './format';
 import { spacing, type Spacing } from './numbers';
 
@@ -65,6 +66,7 @@ export class Data {
     if (!text) throw new Error('the page carries no data; stance view FILE writes pages that do');
     this.head = { ...absent, ...(JSON.parse(text) as Head) };
     if (this.head.format !== 1) throw new Error(`the data of the page have format ${this.head.format}, the page reads format 1`);
+    numberKinds(this.head.kinds);
     let stride = this.head.axes.reduce((n, a) => n * a.count, 1);
     this.axes = this.head.axes.map((a) => {
       stride /= a.count;

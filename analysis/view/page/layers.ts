@@ -5,8 +5,11 @@ import type { Scale } from './scales';
 import type { View } from './state';
 
 export const unknown = 255; // kind of a case that is not there yet
-export const pending = 6; // of one that the file has not
-const done = 4; // of one that has no outcome, or whose file has not kept it
+// Of one that the file has not; of one that has no outcome, or whose file has not kept it: behind the outcomes.
+const others = { pending: -1, done: -1 };
+export function numberKinds(kinds: { name: string }[]): void {
+  for (const name of ['pending', 'done'] as const) others[name] = kinds.findIndex((k) => k.name === name);
+}
 
 export type Get = (n: number) => number;
 
@@ -129,7 +132,7 @@ export function differences(file: Layer, now: Layer): { of: Uint8Array; counts: 
     }
     const from = file.kinds[m];
     const to = now.kinds[n];
-    if (from === unknown || to === unknown || from === pending || to === pending || (from === done && to < done)) continue;
+    if (from === unknown || to === unknown || from === others.pending || to === others.pending || (from === others.done && to < others.done)) continue;
     compared++;
     if (from === to) continue;
     of[n] = from * 16 + to;
