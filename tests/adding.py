@@ -117,11 +117,11 @@ ADDITIONS = {
     ],
     "law": [
         ("engine/laws/damped.c", None, LAW),
-        ("engine/stance.h", r"^#define STANCE_LAWS\(X\) X\(none\)", " X(damped)"),
+        ("engine/stance.h", r"^    X\(none\)", " X(damped)"),
     ],
     "outcome": [
         ("engine/stance.h", r"^    X\(UNDECIDED, undecided,.*$",
-         " \\\n    X(FLEW, flew, 5, \"left the ground for good\")"),
+         " \\\n    X(FLEW, flew, 6, \"left the ground for good\")"),
         ("engine/core/loop/judge.h", r"^    v\.fell = .*$",
          "\n    v.flew = live & mask_less(lanes_of(2.9), b->now.gap[0]);"),
         ("analysis/draw/style.gp", r"^colour_fell = .*$", "\ncolour_flew = 0x123456"),

@@ -66,7 +66,7 @@ check "the summary counts the outcome" says "flew *2 " ./stance summary ball.h5
 check "the outcome is in files as its number and name" "$python" -c "
 import h5py
 outcome = h5py.File('ball.h5')['outcome']
-assert outcome[...].tolist() == [4, 4, 5, 5] and outcome.attrs['flag_meanings'].split()[5] == b'flew'"
+assert outcome[...].tolist() == [4, 4, 6, 6] and outcome.attrs['flag_meanings'].split()[6] == b'flew'"
 check "the answer is in the file" "$python" -c "
 import h5py
 highest = h5py.File('ball.h5')['highest'][...]

@@ -248,7 +248,7 @@ did you mean 'settle_time'?
 
 stance basin map.h5 --of stabilized
 stance basin map.h5 --of stabilised
-takes one of stabilised, rested, fell, undecided, not 'stabilized'
+takes one of stabilised, walks, rested, fell, undecided, not 'stabilized'
 
 stance basin map.h5 --level 95
 stance basin map.h5 --level 0.95
@@ -264,7 +264,7 @@ did you mean 'outcome'?
 
 stance table map.h5 --of stable
 stance table map.h5 --of stabilised
-takes one of stabilised, rested, fell
+takes one of stabilised, walks, rested, fell
 
 stance compare ball.h5 ball.h5 --tolerance 1%
 stance compare ball.h5 ball.h5 --tolerance 0.01

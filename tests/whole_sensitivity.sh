@@ -131,7 +131,7 @@ refused "a file that is not there" 3 'No such file' nowhere.h5
 refused "an axis that is none" 2 "did you mean 'method.name'" ishigami.h5 --by method.nam
 refused "the sample as an axis" 2 'not a grid axis' ishigami.h5 --by sample
 refused "an answer that is none" 2 'takes one of end_time' ishigami.h5 --answer end
-refused "an outcome that is none" 2 'takes one of stabilised, rested, fell, undecided, not .fallen.' ishigami.h5 --of fallen
+refused "an outcome that is none" 2 'takes one of stabilised, walks, rested, fell, undecided, not .fallen.' ishigami.h5 --of fallen
 refused "an answer of failed cases" 2 'has no meaning with --answer' ishigami.h5 --answer steps --failed fallen
 refused "a level beyond" 2 'takes a number from 0.5' ishigami.h5 --level 95
 refused "a level that is none" 2 'takes a number from 0.5' ishigami.h5 --level nan

@@ -90,8 +90,10 @@ static const char *kind_text(const struct scenario_field *field, char *buffer, s
         break;
     case FIELD_POLES:
     case FIELD_NUMBERS:
-        snprintf(buffer, size, "list of %s numbers, %s%s%s", count_text(field->items, count[0]),
-                 field->unit, words[0] ? text[FIELD_NUMBER].after : "", words);
+        snprintf(buffer, size, "list of %s%s numbers, %s%s%s",
+                 field->fewer && field->type == FIELD_NUMBERS ? "up to " : "",
+                 count_text(field->items, count[0]), field->unit,
+                 words[0] ? text[FIELD_NUMBER].after : "", words);
         break;
     case FIELD_MATRIX:
         snprintf(buffer, size, "%s lists of %s numbers, %s", count_text(field->items, count[0]),
@@ -314,8 +316,10 @@ static json_t *type_schema(const struct schema *schema, const struct scenario_fi
     case FIELD_NUMBERS: {
         char item[sizeof field->path + 2];
         snprintf(item, sizeof item, "%s[]", field->path);
-        return or_named(schema, field,
-                        list_schema(number_schema(schema_find(schema, item)), field->items));
+        json_t *const list = list_schema(number_schema(schema_find(schema, item)), field->items);
+        if (field->fewer)
+            json_object_set_new(list, "minItems", json_integer(1));
+        return or_named(schema, field, list);
     }
     case FIELD_MATRIX:
         return or_named(
