@@ -98,11 +98,17 @@ static bool add_number(struct schema *schema, const struct scenario_field *row, 
     return true;
 }
 
+/* As many outputs as actuators; of any mechanism as many as may be. */
+static int outputs_of(const struct schema *schema)
+{
+    return !schema->scene ? 0 : schema->pattern ? STANCE_MAX_ACTUATORS : schema->scene->actuators;
+}
+
 /* The rows of the mappings that hold a law's parameters. */
 static bool add_groups(struct schema *schema, const struct scenario_field *row, int law)
 {
     const stance_law *const of = stance_laws()[law];
-    const int outputs = schema->scene ? schema->scene->actuators : 0;
+    const int outputs = outputs_of(schema);
     for (int g = 0; of->group && of->group[g][0]; g++) {
         const char *const name = of->group[g][0], *const star = strchr(name, '*');
         for (int i = 1; i <= (star ? outputs : 1); i++) {
@@ -129,7 +135,7 @@ static bool add_parameter(struct schema *schema, const struct scenario_field *ro
     const stance_scene *const scene = schema->scene;
     const stance_per per = stance_laws()[law]->parameter[parameter].per;
     const int output = stance_laws()[law]->parameter[parameter].output;
-    if (output > (scene ? scene->actuators : 0))
+    if (output > outputs_of(schema))
         return true;
     const int count = !scene                         ? 0
                       : per == STANCE_PER_ACTUATOR   ? scene->actuators
