@@ -249,7 +249,8 @@ static const struct option options[] = {
     {"--answer", "NAME", OPTION_TO(struct request, answers), .word = answer_name,
      .most = MOST_COLUMNS, .text = "these answers alone, in this order; may be repeated"},
     {"--of", "OUTCOME", OPTION_TO(struct request, of), .word = results_kind_word,
-     .text = "only cases that were stabilised, walk, rested, fell, are undecided, failed or pending"},
+     .text =
+         "only cases that were stabilised, walk, rested, fell, are undecided, failed or pending"},
     {0},
 };
 
