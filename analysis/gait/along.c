@@ -25,7 +25,7 @@ struct follow {
     const char *file;
     struct return_map map;
     bool begun;
-    double guess[RETURN_MAP_MOST], value;
+    double guess[RETURN_MAP_MOST];
     struct gait gait; /* the last one that was found ... */
     double last;      /* ... at this value; and the one before */
     double before[RETURN_MAP_MOST], last_before;
