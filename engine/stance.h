@@ -463,9 +463,10 @@ typedef struct stance_case {
     bool settle;
     int64_t footfalls; /* ends at so many of them, where they fall; 0: does not */
     /* `walks` ends the case, too, where walk_steps > 0: so many in a row are like the one 1, 2 or 4
-     * steps before, within walk_angle and walk_rate (rad, rad/s) just after the footfall, and no
-     * less so. A step is a footfall that is walk_length (m) or more away from the foot that stood,
-     * the way the last one went, and comes walk_time (s) or more after the last: core/loop/walk.h.
+     * steps before, within walk_angle and walk_rate (rad, rad/s) just after the footfall, the
+     * second half of them no less than the first. A step is a footfall that is walk_length (m) or
+     * more away from the foot that stood, the way the last one went, and comes walk_time (s) or
+     * more after the last: core/loop/walk.h.
      */
     int64_t walk_steps;
     double walk_length, walk_time, walk_angle, walk_rate;

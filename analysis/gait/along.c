@@ -1,7 +1,7 @@
 /* along.c - continuation: each gait begins where a straight line through the last two leads.
  *
  * Where the least real multiplier passes -1 or the largest one 1 between two values the place is
- * * found by the Illinois method (Dowell and Jarratt, BIT 11 (1971) 168), gaits between included,
+ * found by the Illinois method (Dowell and Jarratt, BIT 11 (1971) 168), gaits between included,
  * down to what the multipliers' error leaves. Where it ends without one the gaits on both sides
  * belong to different branches, which is said as `jump`. A step along the path that finds no gait
  * is halved. */
@@ -202,9 +202,14 @@ bool along_read(char *text, struct along *along)
     return good && isfinite(along->from) && isfinite(along->to) && along->from != along->to;
 }
 
-int along_say(const struct scenario *s, const struct along *along, enum table_form form)
+char *along_plain(const struct scenario *s)
 {
     static const char *const drop[] = {"sweep", "optimise", "record"};
+    return scenario_rewrite(s->text, drop, sizeof drop / sizeof *drop, NULL, 0);
+}
+
+int along_say(const struct scenario *s, const struct along *along, enum table_form form)
+{
     static const char text[] = "[title:{title}\n]{.rows}[stopped:it goes no further: {stopped}\n]";
     struct follow *const f = calloc(1, sizeof *f);
     struct table t = {0};
@@ -212,7 +217,7 @@ int along_say(const struct scenario *s, const struct along *along, enum table_fo
         return EXIT_USAGE;
     f->along = along;
     f->file = s->file;
-    f->plain = scenario_rewrite(s->text, drop, sizeof drop / sizeof *drop, NULL, 0);
+    f->plain = along_plain(s);
     int code = f->plain ? follow(f, &t) : EXIT_USAGE;
     if (table_rows(&t) == 0) {
         if (f->message.text[0] && !f->refused) /* else it has been said */

@@ -19,6 +19,10 @@ struct along {
 /* Reads "PATH=FROM..TO"; the path is in *text from then on. False: it is none. */
 bool along_read(char *text, struct along *along);
 
+/* The scenario's text without what makes cases of it, to be freed by the caller; NULL: no memory.
+ */
+char *along_plain(const struct scenario *s);
+
 /* Follows it, from the values of `s` but for the path's, and says so; returns an exit code. */
 int along_say(const struct scenario *s, const struct along *along, enum table_form form);
 

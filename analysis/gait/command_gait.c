@@ -174,8 +174,7 @@ static int gait(const struct scenario *s, void *asked)
 {
     if (((const struct request *)asked)->along)
         return follow(s, asked);
-    static const char *const drop[] = {"sweep", "optimise", "record"};
-    char *const plain = scenario_rewrite(s->text, drop, sizeof drop / sizeof *drop, NULL, 0);
+    char *const plain = along_plain(s);
     struct scenario *const one = plain ? scenario_new(s->file, plain, NULL, 0, stderr) : NULL;
     const int code = one ? asked_first(&command_gait, one, find, asked) : EXIT_USAGE;
     scenario_drop(one);

@@ -198,7 +198,7 @@ static bool law_alike(const stance_scene *scene, const stance_case *c,
     if (c->follows)
         return true;
     if (c->decouples || c->switches || c->bends)
-        return scene->actuators == 0;
+        return false;
     for (int side = 0; side < 2; side++)
         for (int i = 0; i < scene->actuators; i++) {
             torque[side][i] = c->near.feedforward[i];
@@ -333,7 +333,7 @@ bool return_map_begin(struct return_map *map, const stance_case *c, const stance
                       int steps, int settle, double *z, stance_message *message)
 {
     const stance_scene *const scene = c->scene;
-    stance_case first = *c;
+    stance_case first;
     stance_result r;
     double gap[STANCE_MAX_CONTACTS], largest = 0;
     if (!check(c, kernel, steps, message))

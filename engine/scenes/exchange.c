@@ -26,11 +26,26 @@ static int next_child(const stance_mechanism *m, int parent, int b)
     return b;
 }
 
-/* Pairs the subtrees of two bodies, body by body and element by element; false: they differ. */
 struct pairs {
-    int body[STANCE_MAX_BODIES], element[STANCE_MAX_ELEMENTS];
-    int elements;
+    int body[STANCE_MAX_BODIES];
+    int elements; /* how many pairs of contacts */
 };
+
+/* Pairs the elements of two bodies in their order; false: they differ. */
+static bool pair_elements(const stance_mechanism *m, int a, int b, struct pairs *pairs)
+{
+    int e = next_element(m, a, 0), f = next_element(m, b, 0);
+    pairs->body[a] = b, pairs->body[b] = a;
+    for (; e < m->elements && f < m->elements;
+         e = next_element(m, a, e + 1), f = next_element(m, b, f + 1)) {
+        if (m->element[e].sole != m->element[f].sole)
+            return false;
+        pairs->elements++;
+    }
+    return e == m->elements && f == m->elements;
+}
+
+/* Pairs the subtrees of two bodies, body by body; false: they differ. */
 static bool pair(const stance_mechanism *m, int a, int b, struct pairs *pairs)
 {
     if (m->body[a].joint != m->body[b].joint || driven(m, a) != driven(m, b))
@@ -38,16 +53,7 @@ static bool pair(const stance_mechanism *m, int a, int b, struct pairs *pairs)
     for (int side = 0; side < 2; side++)
         if (stance_mechanism_stops(m, a, side) != stance_mechanism_stops(m, b, side))
             return false;
-    pairs->body[a] = b, pairs->body[b] = a;
-    int e = next_element(m, a, 0), f = next_element(m, b, 0);
-    for (; e < m->elements && f < m->elements;
-         e = next_element(m, a, e + 1), f = next_element(m, b, f + 1)) {
-        if (m->element[e].sole != m->element[f].sole)
-            return false;
-        pairs->element[e] = f, pairs->element[f] = e;
-        pairs->elements++;
-    }
-    if (e < m->elements || f < m->elements)
+    if (!pair_elements(m, a, b, pairs))
         return false;
     int i = next_child(m, a, a + 1), j = next_child(m, b, b + 1);
     for (; i < m->bodies && j < m->bodies; i = next_child(m, a, i + 1), j = next_child(m, b, j + 1))
@@ -89,7 +95,7 @@ static void write_pairs(const stance_mechanism *m, const stance_scene *scene,
 static bool write_root(const stance_mechanism *m, const stance_scene *scene,
                        stance_exchange *exchange)
 {
-    struct pairs pairs = {{0}, {0}, 0};
+    struct pairs pairs = {{0}, 0};
     bool first[STANCE_MAX_BODIES] = {false};
     int leg = -1;
     if (m->body[0].joint != STANCE_FREE)
@@ -105,14 +111,8 @@ static bool write_root(const stance_mechanism *m, const stance_scene *scene,
     }
     if (leg < 0)
         return false;
-    int e = next_element(m, 0, 0), f = next_element(m, leg, 0), count = 0;
-    for (; e < m->elements && f < m->elements;
-         e = next_element(m, 0, e + 1), f = next_element(m, leg, f + 1), count++)
-        if (m->element[e].sole != m->element[f].sole)
-            return false;
-    if (count == 0 || e < m->elements || f < m->elements)
+    if (!pair_elements(m, 0, leg, &pairs) || pairs.elements == 0)
         return false;
-    pairs.body[0] = leg, pairs.body[leg] = 0;
     first[0] = true;
     write_legs(m, &pairs, first, exchange);
     const int own = stance_mechanism_coordinate(m, 0), other = stance_mechanism_coordinate(m, leg);
@@ -134,7 +134,7 @@ void stance_exchange_make(const stance_mechanism *m, const stance_scene *scene,
                           stance_exchange *exchange)
 {
     bool first[STANCE_MAX_BODIES] = {false};
-    struct pairs pairs = {{0}, {0}, 0};
+    struct pairs pairs = {{0}, 0};
     int legs = 0;
     bool several = false;
     memset(exchange, 0, sizeof *exchange);
@@ -144,8 +144,6 @@ void stance_exchange_make(const stance_mechanism *m, const stance_scene *scene,
         exchange->actuator[i] = i, exchange->sign[i] = 1;
     for (int b = 0; b < STANCE_MAX_BODIES; b++)
         pairs.body[b] = b;
-    for (int e = 0; e < STANCE_MAX_ELEMENTS; e++)
-        pairs.element[e] = e;
     for (int a = 1; a < m->bodies; a++) {
         int alike = 0;
         struct pairs found = pairs;

@@ -338,8 +338,8 @@ const struct row schema_rows[] = {
     {0, {.path = "stop.walks.steps", .type = FIELD_INTEGER, VALUE(walk_steps), .unit = "1",
          .fallback = 0, RANGE(0, 1000), .quiet = true,
          .text = "steps in a row that are like the one 1, 2 or 4 before; 0: nobody walks",
-         .more = "Alike in angles and rates just after the footfall, legs exchanged, and no less "
-                 "so from first to last; see the answers walked_steps, step_time, step_length and "
+         .more = "Alike in angles and rates just after the footfall, legs exchanged, in the second "
+                 "half of them no less than in the first; see the answers walked_steps, step_time, step_length and "
                  "gait_period."}},
     {0, {.path = "stop.walks.length", .type = FIELD_NUMBER, .use = USE_WALKS, .sweep = true,
          VALUE(walk_length), .unit = "m", .fallback = 0.05, ABOVE(0, LARGE), .quiet = true,
@@ -357,8 +357,8 @@ const struct row schema_rows[] = {
     {0, {.path = "stop.footfalls", .type = FIELD_INTEGER, VALUE(footfalls), .unit = "1",
          .fallback = 0, RANGE(0, 1e9), .quiet = true,
          .text = "footfalls after which the run ends, just after the last; 0: it goes on",
-         .more = "capturing, event-driven and lagrange end where it falls, the others at the end of " "its step. "
-                 "A footfall is the landing of another foot than the one that landed last."}},
+         .more = "capturing, event-driven and lagrange end where it falls, the others at the end of "
+                 "its step. A footfall is the landing of another foot than the one that landed last."}},
     {0, {.path = "stop.fall_height", .type = FIELD_NUMBER, .sweep = true,
          VALUE(robot[STANCE_ROBOT_FALL_HEIGHT]), .unit = "1", .fallback = STANCE_FALL_HEIGHT,
          RANGE(0, 1),

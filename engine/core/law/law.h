@@ -21,7 +21,7 @@
  *
  *   y' = E q',  E = row - h' ds/dq,     y'' = E q'' + row q''|_(no accelerations) - h'' s'^2,
  *
- * * so that E is the row of a servo that asks for e = -kp y - kd y', and h'' s'^2 more. A phase may
+ * so that E is the row of a servo that asks for e = -kp y - kd y', and h'' s'^2 more. A phase may
  * be a polynomial of the time since the last footfall, as well: then y' = E q' - h' s_t, and h'
  * s_tt is asked for, too. Rows and phase are those of the leg that stands. Or torques are constants
  * times e, without a model.

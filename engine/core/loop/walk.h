@@ -80,7 +80,6 @@ static void walk_step(struct walking *w, struct bundle *b, int lane, double t, d
 {
     double section[2 * POSTURES];
     lane_set(&w->steps, lane, lane_get(&w->steps, lane) + 1);
-
     for (int k = WALK_KEPT; k > 0; k--) {
         lane_set(&w->when[k], lane, lane_get(&w->when[k - 1], lane));
         lane_set(&w->where[k], lane, lane_get(&w->where[k - 1], lane));
@@ -114,11 +113,13 @@ COLD void walk_footfall(struct bundle *b, mask where, int c)
         const bool on = lane_get(&w->steps, lane) == 0 || length * lane_get(&w->length, lane) > 0;
         lane_set(&w->foot, lane, c);
         if (of->walk_steps > 0 && on && fabs(length) >= of->walk_length &&
-            t - lane_get(&w->last, lane) >= of->walk_time)
-            walk_step(w, b, lane, t, lane_get(&here, lane)), lane_set(&w->length, lane, length);
-        else
+            t - lane_get(&w->last, lane) >= of->walk_time) {
+            walk_step(w, b, lane, t, lane_get(&here, lane));
+            lane_set(&w->length, lane, length);
+        } else {
             for (int k = 0; k < WALK_PERIODS; k++)
                 lane_set(&w->alike[k], lane, 0);
+        }
         lane_set(&w->last, lane, t);
         if (of->footfalls > 0 && lane_get(&b->answer.footfalls, lane) >= (double)of->footfalls)
             lane_set(&w->ended, lane, t);

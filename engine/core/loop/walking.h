@@ -10,7 +10,6 @@ static const int walk_period[WALK_PERIODS] = {1, 2, 4};
 
 struct walking {
     lanes wanted;        /* steps that are to be alike; 0: nobody asks */
-    lanes footfalls;     /* that end the case; 0: none do */
     lanes foot;          /* contact that stood up to now; -1: none */
     lanes last;          /* s, of the last footfall, be it a step */
     lanes settled;       /* s, since when */
@@ -32,7 +31,6 @@ static inline void walking_load(struct walking *w, int lane, const stance_case *
     for (size_t i = 0; i < sizeof *w / sizeof(lanes); i++)
         lane_set(&all[i], lane, 0);
     lane_set(&w->wanted, lane, (double)c->walk_steps);
-    lane_set(&w->footfalls, lane, (double)c->footfalls);
     lane_set(&w->foot, lane, -1);
     lane_set(&w->last, lane, -INFINITY);
     lane_set(&w->ended, lane, -1);
