@@ -523,10 +523,16 @@ void stance_case_robot(const stance_scene *scene, stance_case *c);
     X(step_time, double, END, own, "s", "mean time of the last four of them")                      \
     X(step_length, double, END, own, "m",                                                          \
       "mean length of the last four of them, along the ground")                                    \
+    X(walking_speed, double, END, own, "m/s", "mean speed of the last four of them")               \
+    X(cost_of_transport, double, END, own, "1",                                                    \
+      "of the last four of them: sum of |work| of each actuator, over weight and way")             \
     X(gait_period, int64_t, END, own, "1", "steps after which the gait repeats: 1, 2 or 4")        \
+    X(gait_change, double, END, own, "1",                                                          \
+      "how unlike the last step is to one 1, 2 or 4 before, in what stop.walks admits")            \
     X(excursion, double, MAX, each, "rad", "largest angle off its target on the way")              \
     X(peak_torque, double, MAX, each, "N m", "largest torque applied")                             \
     X(friction_used, double, MAX, touching, "1", "largest ratio |rT|/rN of a contact")             \
+    X(impact_friction, double, MAX, rare, "1", "largest ratio |PT|/PN of impulses at an impact")   \
     X(least_normal_force, double, MIN, own, "N", "smallest normal force on the support foot")      \
     X(impact_energy, double, MAX, rare, "J",                                                       \
       "largest kinetic energy added by contact impulses in one step")                              \

@@ -27,7 +27,9 @@ import xarray
 COUNTS = ["steps", "iterations", "ambiguous_steps", "unranked_steps", "subdivided_steps", "degraded_samples", "footfalls", "walked_steps", "gait_period", "limited_impacts",
           "events", "evaluations"]
 MEASURES = {"end_time": "s", "settle_time": "s", "fall_time": "s", "max_penetration": "m",
-            "through_ground": "m", "slip_distance": "m", "step_time": "s", "step_length": "m", "excursion": "rad", "peak_torque": "N m", "friction_used": "1", "least_normal_force": "N",
+            "through_ground": "m", "slip_distance": "m", "step_time": "s", "step_length": "m",
+            "walking_speed": "m/s", "cost_of_transport": "1", "gait_change": "1", "excursion": "rad", "peak_torque": "N m",
+            "friction_used": "1", "impact_friction": "1", "least_normal_force": "N",
             "impact_energy": "J", "projection_energy": "J", "energy_gain": "J", "energy_drift": "J",
             "signorini_residual": "m/s", "coulomb_residual": "1", "dissipation_residual": "m/s"}
 FLAGS = {"status": "pending done failed",

@@ -20,8 +20,8 @@ PROVENANCE = {"program_version", "git_revision", "compiler", "library_versions",
               "instruction_set", "ranks", "hosts", "date"}
 # The answers in the order in which the checksum takes them.
 ANSWERS = """outcome evidence failure end_time settle_time fall_time fall_cause steps iterations
-    ambiguous_steps unranked_steps subdivided_steps degraded_samples max_penetration through_ground slip_distance footfalls walked_steps step_time step_length gait_period excursion peak_torque
-    friction_used least_normal_force
+    ambiguous_steps unranked_steps subdivided_steps degraded_samples max_penetration through_ground slip_distance footfalls walked_steps step_time step_length
+    walking_speed cost_of_transport gait_period gait_change excursion peak_torque friction_used impact_friction least_normal_force
     impact_energy limited_impacts projection_energy events evaluations energy_gain energy_drift signorini_residual
     coulomb_residual dissipation_residual final_state scenario_number status""".split()
 
@@ -90,7 +90,8 @@ def age(name, pending):
     answers, and counts of which 0 is what there is none of, as of cases that were inferred."""
     with h5py.File(name, "r+") as file:
         none = (file["evidence"][...] == 2) & numpy.isnan(file["end_time"][...])
-        for answer in {"through_ground", "energy_drift", "walked_steps", "step_time", "step_length", "gait_period"} & set(file):
+        for answer in {"through_ground", "energy_drift", "walked_steps", "step_time", "step_length", "walking_speed", "cost_of_transport",
+                       "gait_period", "gait_change", "impact_friction"} & set(file):
             del file[answer]
         for answer in ANSWERS:
             if answer in file and file[answer].dtype == numpy.int64:

@@ -20,7 +20,8 @@
 
 #include "linear.h"
 
-#include "analysis/gait/return_map.h"
+#include "analysis/gait/margins.h"
+#include "analysis/gait/sensitivity.h"
 #include "runner/plan/instruction_set.h"
 #include "runner/plan/plan.h"
 
@@ -217,9 +218,90 @@ static void what_has_no_gait_says_why(void **state)
     }
 }
 
+/* Costs, frictions and clearances of an independent program: of the paper's biped, P1 and P3, and
+ * RABBIT, to the digits that it has. */
+static void gaits_have_margins(void **state)
+{
+    static const struct {
+        const char *file;
+        double cost, impact_friction, lift, clearance, under, least_force;
+    } truth[] = {
+        {"scenarios/gaits/walks.yaml", 0.0615, 0.565, 0.28, 0.0107, 0.0004, NAN},
+        {"scenarios/gaits/walks_without_model.yaml", 0.257, 0.354, 0.39, 0.031, 0.0073, NAN},
+        {"scenarios/gaits/rabbit_walks.yaml", 0.176, 0.550, 0.50, 0.045, 0, 207},
+    };
+    static const char *const fine[] = {"method.tolerance=1e-10", "method.step=0.0002",
+                                       "controller.sample_time=0", "sweep={}"};
+    (void)state;
+    for (size_t i = 0; i < sizeof truth / sizeof *truth; i++) {
+        struct walker *const w = calloc(1, sizeof *w);
+        struct gait_margins m;
+        assert_non_null(w);
+        walk(w, truth[i].file, 1, 40, SET(fine));
+        assert_true(w->found);
+        assert_true(gait_margins_find(&w->map, &w->gait, &m, &w->message));
+        assert_true(fabs(m.cost - truth[i].cost) < 6e-4);
+        assert_true(fabs(m.impact_friction - truth[i].impact_friction) < 6e-4);
+        assert_true(fabs(m.lift - truth[i].lift) < 6e-3);
+        assert_true(fabs(m.clearance - truth[i].clearance) < 6e-4);
+        assert_true(fabs(m.under - truth[i].under) < 6e-5);
+        if (isfinite(truth[i].least_force))
+            assert_true(fabs(m.least_normal_force - truth[i].least_force) < 2);
+        leave(w);
+        free(w);
+    }
+}
+
+/* Of a slope that is one of two at random in each step, by the return map itself: the standard
+ * deviations over 4000 steps are as the norm says, to what so many steps tell. */
+static void slopes_at_random_vary_a_gait_as_the_norm_says(void **state)
+{
+    static const char *const slope[2][4] = {
+        {"method.tolerance=1e-10", "method.step=0.005", "sweep={}", "ground.slope=-0.0005"},
+        {"method.tolerance=1e-10", "method.step=0.005", "sweep={}", "ground.slope=0.0005"}};
+    const char *const level[] = {"method.tolerance=1e-10", "method.step=0.005", "sweep={}"};
+    enum { STEPS = 4000 };
+    struct walker *const w = calloc(3, sizeof *w);
+    const struct along along = {.path = "ground.slope", .from = -0.0005, .to = 0.0005};
+    struct gait_sensitivity is;
+    double z[RETURN_MAP_MOST], sum[2] = {0}, square[2] = {0};
+    uint64_t random = 12345;
+    (void)state;
+    assert_non_null(w);
+    walk(&w[2], "scenarios/gaits/walks.yaml", 1, 40, SET(level));
+    assert_true(w[2].found);
+    assert_true(
+        gait_sensitivity_find(&w[2].scenario, &w[2].map, &w[2].gait, &along, &is, &w[2].message));
+    for (int k = 0; k < 2; k++)
+        walk(&w[k], "scenarios/gaits/walks.yaml", 1, 40, slope[k], 4);
+    memcpy(z, w[2].gait.z, sizeof z);
+    for (int k = 0; k < STEPS; k++) {
+        struct return_point p;
+        random = random * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
+        assert_true(return_map_take(&w[random >> 63].map, 1, (const double(*)[RETURN_MAP_MOST])z,
+                                    &p, &w[2].message));
+        memcpy(z, p.z, sizeof z);
+        const double g[2] = {p.time, p.length};
+        for (int m = 0; m < 2; m++)
+            sum[m] += g[m], square[m] += g[m] * g[m];
+    }
+    const double two = sqrt(3); /* of one of two values, by that of evenly between */
+    for (int m = 0; m < 2; m++) {
+        const double mean = sum[m] / STEPS, variance = square[m] / STEPS - mean * mean;
+        const double says = two * (m == 0 ? is.time : is.length);
+        if (!(fabs(sqrt(variance) / says - 1) < 0.04))
+            fail_msg("measure %d varies by %g, not %g", m, sqrt(variance), says);
+    }
+    for (int k = 0; k < 3; k++)
+        leave(&w[k]);
+    free(w);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(gaits_have_margins),
+        cmocka_unit_test(slopes_at_random_vary_a_gait_as_the_norm_says),
         cmocka_unit_test(gaits_are_those_of_another_program),
         cmocka_unit_test(by_the_clock_it_does_not_hold),
         cmocka_unit_test(what_has_no_gait_says_why),

@@ -16,6 +16,7 @@
 
 extern const struct command command_gait;
 
+#define CLEAR 0.02 /* m: a foot so far off the ground is not inside a changed one */
 #define PLACE 1e-4 /* of a multiplier that is at -1 or 1 */
 enum { HALVINGS = 5, PLACES = 40 };
 
@@ -54,14 +55,13 @@ static int take(const struct scenario *s, const stance_case *c, void *context)
 /* The gait at a value; false, with f->message: none is found. */
 static bool find(struct follow *f, double value)
 {
-    char set[160];
-    snprintf(set, sizeof set, "%.100s=%.17g", f->along->path, value);
-    const char *const sets[] = {set};
     f->message.text[0] = '\0';
-    struct scenario *const s = scenario_new(f->file, f->plain, sets, 1, stderr);
+    struct scenario *const s =
+        along_at(f->file, f->plain, f->along->path, value, f->begun ? &f->map : NULL, f->gait.z);
     if (!s) {
         f->refused = true;
-        snprintf(f->message.text, sizeof f->message.text, "the scenario does not admit %.60s", set);
+        snprintf(f->message.text, sizeof f->message.text, "the scenario does not admit %.60s=%.17g",
+                 f->along->path, value);
         return false;
     }
     if (f->found > 1)
@@ -200,6 +200,46 @@ bool along_read(char *text, struct along *along)
     along->to = strtod(dots + 2, &end);
     good = good && end != dots + 2 && *end == '\0';
     return good && isfinite(along->from) && isfinite(along->to) && along->from != along->to;
+}
+
+char *along_initial(const struct return_map *map, const double *z, double height)
+{
+    const stance_scene *const scene = map->scene;
+    double position[STANCE_MAX_COORDINATES], velocity[STANCE_MAX_COORDINATES];
+    char *set = NULL;
+    size_t size = 0;
+    FILE *const out = open_memstream(&set, &size);
+    if (!out)
+        return NULL;
+    return_map_state(map, z, position, velocity);
+    return_map_lift(map, height, position);
+    fputs("initial={state: {", out);
+    for (int rate = 0; rate < 2; rate++)
+        for (int j = 0; j < scene->postures; j++) {
+            const int k = scene->posture[j];
+            fprintf(out, "%s%s%s: %.15g", rate + j ? ", " : "", rate ? "v" : "",
+                    scene->coordinate[k].name, rate ? velocity[k] : position[k]);
+        }
+    if (scenario_numbers_feet(scene))
+        fprintf(out, "}, support_foot: %d}", map->foot[0] + 1);
+    else
+        fprintf(out, "}, support: [%s]}", scene->contact_name[map->foot[0]]);
+    if (fclose(out) == 0)
+        return set;
+    free(set);
+    return NULL;
+}
+
+struct scenario *along_at(const char *file, const char *plain, const char *path, double value,
+                          const struct return_map *map, const double *z)
+{
+    char set[160];
+    char *const initial = map ? along_initial(map, z, CLEAR) : NULL;
+    snprintf(set, sizeof set, "%.100s=%.17g", path, value);
+    const char *const sets[] = {initial ? initial : set, set};
+    struct scenario *const s = scenario_new(file, plain, sets, 2, stderr);
+    free(initial);
+    return s;
 }
 
 char *along_plain(const struct scenario *s)

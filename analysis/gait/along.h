@@ -23,6 +23,16 @@ bool along_read(char *text, struct along *along);
  */
 char *along_plain(const struct scenario *s);
 
+/* What begins a scenario at a point of the section, its second foot about so high (m) over the
+ * ground: "initial={state: ...}", to be freed by the caller; NULL: no memory. */
+char *along_initial(const struct return_map *map, const double *z, double height);
+
+/* The scenario of a plain text with a number changed, of which a map is to be made: with a map of
+ * before it begins near its point z, the second foot off the ground, as that may be another one
+ * now. NULL: it has been said why. */
+struct scenario *along_at(const char *file, const char *plain, const char *path, double value,
+                          const struct return_map *map, const double *z);
+
 /* Follows it, from the values of `s` but for the path's, and says so; returns an exit code. */
 int along_say(const struct scenario *s, const struct along *along, enum table_form form);
 

@@ -1,5 +1,6 @@
 /* command_gait.c - `stance gait`: the cycle that a walking robot comes to, and whether it holds. */
-#include "along.h"
+#include "margins.h"
+#include "sensitivity.h"
 
 #include "runner/plan/asked.h"
 #include "runner/plan/instruction_set.h"
@@ -14,6 +15,7 @@ struct request {
     struct asked asked;
     uint64_t steps, settle, count;
     const char *path, *along;
+    struct option_texts sensitivity;
     enum table_form form;
 };
 
@@ -33,15 +35,58 @@ static const char text[] =
     "\nMultipliers of [steps=1:a step|{steps} steps]: the gait is [stable:stable|NOT stable]\n"
     "[multipliers*:  {modulus%.9f}  {.number%-26s}  +- {error%.1e}\n]"
     "\nOn the way\n"
-    "[peak_torque:  largest torque {peak_torque%.4g} N m\n]"
-    "  friction used  {friction_used%.4g} of {friction%.4g}[.slips:; slips by {slip_distance%.3g} "
-    "m]\n"
+    "[cost_of_transport:  cost of transport  {cost_of_transport%.4g}\n]"
+    "[peak_torque:  largest torque     {peak_torque%.4g} N m\n]"
+    "  friction used      {friction_used%.4g} of {friction%.4g}[.slips:; slips by "
+    "{slip_distance%.3g} m]\n"
+    "  the impact's       {impact_friction%.4g}\n"
+    "  least normal force {least_normal_force%.4g} N\n"
+    "  the foot behind leaves at {lift_speed%.3g} m/s\n"
+    "  the other one comes {clearance%.3g} m high, ahead[.under:; before that {under_ground%.3g} m "
+    "under the ground]\n"
+    "[.sensitivity:\nStandard deviations where a number is drawn anew in each return, evenly\n"
+    "{.sensitivity}]"
     "\nIt returns to within {residual%.1e}, after {iterations} iteration{iterations#s} of "
     "Newton.\n";
 
+/* A row for each number that is drawn anew; false: it has been told why not. */
+static bool spread(const struct scenario *s, const struct return_map *map, const struct gait *gait,
+                   const struct option_texts *asked, struct table *t)
+{
+    for (size_t k = 0; k < asked->count; k++) {
+        char path[200];
+        struct along along;
+        struct gait_sensitivity is;
+        stance_message message = {""};
+        snprintf(path, sizeof path, "%s", asked->text[k]);
+        if (!along_read(path, &along)) {
+            fprintf(stderr,
+                    "stance gait: --sensitivity takes PATH=FROM..TO, two different numbers, not "
+                    "'%s'\n",
+                    asked->text[k]);
+            return false;
+        }
+        if (!gait_sensitivity_find(s, map, gait, &along, &is, &message)) {
+            if (message.text[0])
+                fail(s, message.text);
+            return false;
+        }
+        TABLE_FACTS(
+            t, {{"path", "", .width = 28, .left = true, .before = "  "}, as_text(path)},
+            {{"from", "from", "%.6g", .width = 10}, as_number(along.from)},
+            {{"to", "to", "%.6g", .width = 10}, as_number(along.to)},
+            {{"period", "period (s)", "%.3e", .width = 11}, as_number(is.time)},
+            {{"step_length", "step (m)", "%.3e", .width = 11}, as_number(is.length / map->steps)},
+            {{"speed", "speed (m/s)", "%.3e", .width = 12}, as_number(is.speed)},
+            {{"error", "+-", "%.1e", .width = 8}, as_number(is.error)});
+        table_end_row(t);
+    }
+    return true;
+}
+
 /* The gait as facts. */
 static json_t *facts_of(const struct scenario *s, const struct return_map *map,
-                        const struct gait *gait)
+                        const struct gait *gait, const struct gait_margins *margins)
 {
     const stance_scene *const scene = map->scene;
     double position[STANCE_MAX_COORDINATES], velocity[STANCE_MAX_COORDINATES];
@@ -77,7 +122,13 @@ static json_t *facts_of(const struct scenario *s, const struct return_map *map,
         {"peak_torque", scene->actuators > 0 ? as_number(r->peak_torque) : as_nothing(NULL)},
         {"friction_used", as_number(r->friction_used)}, {"friction", as_number(map->base.friction)},
         {"slip_distance", as_number(r->slip_distance)},
-        {".slips", as_truth(r->slip_distance > 1e-6)}, {"residual", as_number(gait->residual)},
+        {".slips", as_truth(r->slip_distance > 1e-6)},
+        {"cost_of_transport", as_number(margins->cost)},
+        {"impact_friction", as_number(margins->impact_friction)},
+        {"least_normal_force", as_number(margins->least_normal_force)},
+        {"lift_speed", as_number(margins->lift)}, {"clearance", as_number(margins->clearance)},
+        {"under_ground", as_number(margins->under)}, {".under", as_truth(margins->under > 0)},
+        {"residual", as_number(gait->residual)},
         {"iterations", as_whole((uint64_t)gait->iterations)});
 }
 
@@ -85,29 +136,10 @@ static json_t *facts_of(const struct scenario *s, const struct return_map *map,
 static char *begun(const struct scenario *s, const struct return_map *map, const struct gait *gait)
 {
     static const char *const drop[] = {"initial", "sweep", "optimise"};
-    const stance_scene *const scene = map->scene;
-    double position[STANCE_MAX_COORDINATES], velocity[STANCE_MAX_COORDINATES];
-    char *set = NULL;
-    size_t size = 0;
-    FILE *const out = open_memstream(&set, &size);
-    if (!out)
-        return NULL;
-    return_map_state(map, gait->z, position, velocity);
-    fputs("initial={state: {", out);
-    for (int rate = 0; rate < 2; rate++)
-        for (int j = 0; j < scene->postures; j++) {
-            const int k = scene->posture[j];
-            fprintf(out, "%s%s%s: %.15g", rate + j ? ", " : "", rate ? "v" : "",
-                    scene->coordinate[k].name, rate ? velocity[k] : position[k]);
-        }
-    if (scenario_numbers_feet(scene))
-        fprintf(out, "}, support_foot: %d}", map->foot[0] + 1);
-    else
-        fprintf(out, "}, support: [%s]}", scene->contact_name[map->foot[0]]);
-    const bool written = fclose(out) == 0;
-    char *const result = written ? scenario_rewrite(s->text, drop, sizeof drop / sizeof *drop,
-                                                    (const char *const[]){set}, 1)
-                                 : NULL;
+    char *const set = along_initial(map, gait->z, 0);
+    char *const result = set ? scenario_rewrite(s->text, drop, sizeof drop / sizeof *drop,
+                                                (const char *const[]){set}, 1)
+                             : NULL;
     free(set);
     return result;
 }
@@ -124,6 +156,25 @@ static int write_scenario(const struct scenario *s, const char *path, const stru
                 strerror(result ? errno : ENOMEM));
     free(result);
     return written && closed ? EXIT_DONE : EXIT_IO;
+}
+
+static int say(const struct scenario *s, const struct request *request,
+               const struct return_map *map, const struct gait *gait)
+{
+    struct table t = {0};
+    struct gait_margins margins;
+    stance_message message;
+    int code = EXIT_USAGE;
+    if (!gait_margins_find(map, gait, &margins, &message))
+        fail(s, message.text);
+    else if (spread(s, map, gait, &request->sensitivity, &t)) {
+        json_t *const facts = facts_of(s, map, gait, &margins);
+        if (request->sensitivity.count > 0)
+            table_show(facts, "sensitivity", &t, "path from to period step_length speed error", 0);
+        code = say_facts(facts, request->form == TABLE_AS_JSON, text, stdout) ? EXIT_DONE : EXIT_IO;
+    }
+    table_free(&t);
+    return code;
 }
 
 static int find(const struct scenario *s, const stance_case *c, void *asked)
@@ -145,9 +196,7 @@ static int find(const struct scenario *s, const stance_case *c, void *asked)
     else if (request->path)
         code = write_scenario(s, request->path, map, gait);
     else
-        code = say_facts(facts_of(s, map, gait), request->form == TABLE_AS_JSON, text, stdout)
-                   ? EXIT_DONE
-                   : EXIT_IO;
+        code = say(s, request, map, gait);
     free(map);
     free(gait);
     return code;
@@ -201,6 +250,10 @@ static const struct option options[] = {
     {"--along", "PATH=FROM..TO", OPTION_TO(struct request, along), .without = "-o",
      .text = "the gait followed along a number of the scenario, and where it flips (a multiplier "
              "passes -1: steps begin to alternate) or folds (1: it ends)"},
+    {"--sensitivity", "PATH=FROM..TO", OPTION_TO(struct request, sensitivity),
+     .without = "-o --along",
+     .text = "by how much period, length and speed vary where this number of the scenario is drawn "
+             "anew in each return, evenly between the two; may be repeated"},
     {"--count", "COUNT", OPTION_TO(struct request, count), .low = 2, .high = 10000,
      .needs = "--along", .text = "values along it, 11 by default (with --along)"},
     {TABLE_CSV(struct request, form), .needs = "--along",

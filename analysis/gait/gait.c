@@ -21,6 +21,7 @@ struct work {
     double z[1 + 4 * RETURN_MAP_MOST][RETURN_MAP_MOST];
     struct return_point point[1 + 4 * RETURN_MAP_MOST];
     double J[RETURN_MAP_MOST * RETURN_MAP_MOST]; /* columns */
+    double by[RETURN_MAP_MOST][2];               /* of time and length */
 };
 
 /* The point z and, beside it in each coordinate, `apart` times h. */
@@ -41,12 +42,15 @@ static void derive(const struct return_map *map, double h, const double *weight,
                    struct work *w)
 {
     const size_t n = (size_t)map->n;
+    memset(w->J, 0, sizeof w->J);
+    memset(w->by, 0, sizeof w->by);
     for (size_t j = 0; j < n; j++)
-        for (size_t i = 0; i < n; i++) {
-            double sum = 0;
-            for (size_t k = 0; k < count; k++)
-                sum += weight[k] * w->point[1 + count * j + k].z[i];
-            w->J[j * n + i] = sum / h;
+        for (size_t k = 0; k < count; k++) {
+            const struct return_point *const p = &w->point[1 + count * j + k];
+            for (size_t i = 0; i < n; i++)
+                w->J[j * n + i] += weight[k] / h * p->z[i];
+            w->by[j][0] += weight[k] / h * p->time;
+            w->by[j][1] += weight[k] / h * p->length;
         }
 }
 
@@ -143,6 +147,8 @@ static bool judge(const struct return_map *map, struct gait *gait, struct work *
         if (!return_map_take(map, count, (const double(*)[RETURN_MAP_MOST])w->z, w->point, message))
             return false;
         derive(map, steps[k], weight, 4, w);
+        memcpy(gait->J, w->J, sizeof gait->J);
+        memcpy(gait->by, w->by, sizeof gait->by);
         if (!multipliers(map, w, re[k], im[k])) {
             snprintf(message->text, sizeof message->text, "its multipliers do not converge");
             return false;

@@ -77,6 +77,13 @@ bool return_map_state(const struct return_map *map, const double *z, double *pos
     return fabs(gap) < 1e-12;
 }
 
+void return_map_lift(const struct return_map *map, double height, double *position)
+{
+    const int left = map->scene->posture[map->follows];
+    if (height != 0)
+        position[left] += height / slope_of(map, position, left);
+}
+
 /* The section's coordinates of a state in which the second leg landed, or the first one. */
 static void section_of(const struct return_map *map, const double *position, const double *velocity,
                        bool second, double *z, double *posture)

@@ -41,6 +41,8 @@ bool return_map_change(struct return_map *map, const stance_case *c, stance_mess
 /* Position and velocity at a point of the section, standing on the first leg's foot. */
 bool return_map_state(const struct return_map *map, const double *z, double *position,
                       double *velocity);
+/* Turns the angle that follows so that the second foot is about so high over the ground, m. */
+void return_map_lift(const struct return_map *map, double height, double *position);
 /* Maps points[count]; false, with a message: one of them falls, or makes no such step. */
 bool return_map_take(const struct return_map *map, size_t count, const double (*z)[RETURN_MAP_MOST],
                      struct return_point *point, stance_message *message);
@@ -57,6 +59,8 @@ struct gait {
      * difference steps are apart. */
     double re[RETURN_MAP_MOST], im[RETURN_MAP_MOST], error[RETURN_MAP_MOST];
     bool stable; /* all within the unit circle, by more than their errors */
+    double J[RETURN_MAP_MOST * RETURN_MAP_MOST]; /* [n][n], columns: the map's derivative */
+    double by[RETURN_MAP_MOST][2]; /* the return's time and length by each coordinate */
 };
 
 /* Newton's method from z[]. False, with a message: it does not converge. */

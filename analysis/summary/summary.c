@@ -340,7 +340,11 @@ static const struct number {
     enum results_kind of;
 } number[] = {
     {"settle_time", "s", NULL, RESULTS_STABILISED},
+    {"step_time", "s", NULL, RESULTS_STABILISED},
+    {"walking_speed", "m/s", NULL, RESULTS_STABILISED},
+    {"cost_of_transport", "", NULL, RESULTS_STABILISED},
     {"friction_used", "", NULL, RESULTS_STABILISED},
+    {"impact_friction", "", NULL, RESULTS_STABILISED},
     {"least_normal_force", "N", NULL, RESULTS_STABILISED},
     {"excursion", "rad", NULL, RESULTS_STABILISED},
     {"slip_distance", "m", NULL, RESULTS_STABILISED},
@@ -412,10 +416,10 @@ bool summary_numbers(const struct summary *summary)
             values[i] = r->kind[i] == of ? values[i] : NAN;
         statistics_summarise(values, (size_t)r->cases, &n);
         free(values);
-        /* nothing is actuated, there is no target */
-        idle = idle ||
-               ((strcmp(row->name, "peak_torque") == 0 || strcmp(row->name, "excursion") == 0) &&
-                n.high == 0);
+        /* nothing is actuated, there is no target, nothing struck the ground */
+        static const char *const nothing[] = {"peak_torque", "excursion", "impact_friction"};
+        for (size_t i = 0; i < sizeof nothing / sizeof *nothing; i++)
+            idle = idle || (strcmp(row->name, nothing[i]) == 0 && n.high == 0);
         const char *const of_word = of == RESULTS_KIND_COUNT ? "done" : results_kind_names[of];
         add_number(&all, row, of_word, &n);
         if (!row->residual && n.n > 0 && !idle)

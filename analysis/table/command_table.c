@@ -12,7 +12,7 @@
 
 extern const struct command command_table; /* below */
 
-enum { ROWS = 4096, MOST_COLUMNS = 40, MOST_PATHS = 256 };
+enum { ROWS = 4096, MOST_COLUMNS = STANCE_ANSWER_COUNT + 8, MOST_PATHS = 256 };
 
 static const char *const answers[] = {
     "status",

@@ -130,6 +130,11 @@ HOT lanes scene_damped(const scene_body *b, const lanes *w, const lanes *d)
                         tree_joint(d, tree_spring[k]), sum);
     return sum;
 }
+/* What actuator i moves, rad or m, of coordinates, rates or a displacement. */
+HOT lanes scene_actuated(const lanes *x, int i)
+{
+    return tree_joint(x, tree_actuator[i]);
+}
 /* Work of the torques and of pushes over a displacement d. */
 HOT lanes scene_work(const scene_body *b, lanes h, lanes t, const scene_trig *trig,
                      const lanes *torque, const lanes *d)
@@ -138,7 +143,7 @@ HOT lanes scene_work(const scene_body *b, lanes h, lanes t, const scene_trig *tr
     lanes sum = lanes_of(0);
     TREE_UNROLL
     for (int i = 0; i < tree_actuators; i++)
-        sum = lanes_fma(torque[i], tree_joint(d, tree_actuator[i]), sum);
+        sum = lanes_fma(torque[i], scene_actuated(d, i), sum);
     TREE_UNROLL
     for (int p = 0; p < tree_pushes; p++) {
         lanes force[SCENE_COORDINATES], pull[2];

@@ -339,8 +339,8 @@ const struct row schema_rows[] = {
          .fallback = 0, RANGE(0, 1000), .quiet = true,
          .text = "steps in a row that are like the one 1, 2 or 4 before; 0: nobody walks",
          .more = "Alike in angles and rates just after the footfall, legs exchanged, in the second "
-                 "half of them no less than in the first; see the answers walked_steps, step_time, step_length and "
-                 "gait_period."}},
+                 "half of them no less than in the first; see the answers walked_steps, step_time, step_length, walking_speed, "
+                 "cost_of_transport, gait_period and gait_change."}},
     {0, {.path = "stop.walks.length", .type = FIELD_NUMBER, .use = USE_WALKS, .sweep = true,
          VALUE(walk_length), .unit = "m", .fallback = 0.05, ABOVE(0, LARGE), .quiet = true,
          .text = "shortest step: what lands nearer to the other foot is none",
@@ -487,6 +487,8 @@ const struct row schema_rows[] = {
          .fallback = 0, RANGE(0, LARGE), .text = "price of the friction used"}},
     {0, {.path = "optimise.price.settle_time", .type = FIELD_NUMBER, BY_HAND, .unit = "1/s",
          .fallback = 0, RANGE(0, LARGE), .text = "price of the time to settle"}},
+    {0, {.path = "optimise.price.cost_of_transport", .type = FIELD_NUMBER, BY_HAND, .unit = "1",
+         .fallback = 0, RANGE(0, LARGE), .text = "price of the cost of transport of one that walks"}},
     {0, {.path = "optimise.price.gain", .type = FIELD_NUMBER, BY_HAND, .unit = "1",
          .fallback = 0, RANGE(0, LARGE),
          .text = "price of the gains' root mean square, in their units",

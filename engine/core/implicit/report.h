@@ -81,16 +81,15 @@ HOT void report_torques(struct step_report *report, const lanes *torque)
     EACH (i, 0, SCENE_ACTUATORS)
         report->peak_torque = lanes_max(lanes_abs(torque[i]), report->peak_torque);
 }
-/* How much of its friction grip c uses, of forces or impulses. */
-HOT void report_friction(struct step_report *report, int c, const mask *part, const lanes (*r)[2])
+/* The largest friction so far and what grip c takes, of forces or impulses. */
+HOT void report_friction(lanes *used, int c, const mask *part, const lanes (*r)[2])
 {
     if (contact_unknowns(c) == 1)
         return;
     const lanes load = contact_load(c, r);
     const mask loaded = contact_part(c, part) & mask_less(lanes_of(0), load);
     const lanes ratio = lanes_abs(r[c][1]) / choose(loaded, load, lanes_of(1));
-    report->friction_used =
-        choose(loaded, lanes_max(ratio, report->friction_used), report->friction_used);
+    *used = choose(loaded, lanes_max(ratio, *used), *used);
 }
 
 /* Forces of the contacts in `part`, N. */
@@ -101,7 +100,7 @@ static inline void report_forces(struct step_report *report, const mask *part,
     EACH_CONTACT (c, 0) {
         const mask carries = part[c] & mask_less(none, force[c][0]);
         report->least[c] = lanes_min(choose(carries, force[c][0], none), report->least[c]);
-        report_friction(report, c, part, force);
+        report_friction(&report->friction_used, c, part, force);
     }
 }
 

@@ -177,7 +177,7 @@ HOT void report_contact(const struct setting *set, const struct motion *from, la
     const mask grips = contact_part(c, part) & mask_less(none, contact_load(c, r));
     report->impulse[c][1] = choose(grips, r[c][1], none);
     report->slip[c] = choose(grips, h * lanes_abs(u[1]), none);
-    report_friction(report, c, part, r);
+    report_friction(&report->friction_used, c, part, r);
 }
 
 /* Lanes where a contact carries that did not stand on the ground before. */
@@ -231,8 +231,14 @@ HOT mask step_finish(const struct setting *set, const struct motion *from, lanes
         load += lanes_max(it->r[c][0], none);
     EACH_IN (c, touching)
         somewhere |= it->active[c] & converged;
-    if (impacts && mask_any(somewhere & impact))
+    if (impacts && mask_any(somewhere & impact)) {
         report->impact_energy = choose(somewhere & impact, impact_energy(set, touching, it), none);
+        mask struck[CONTACTS];
+        EACH_CONTACT (c, 0)
+            struck[c] = it->active[c] & converged & impact;
+        EACH_IN (c, touching)
+            report_friction(&report->impact_friction, c, struck, (const lanes(*)[2])it->r);
+    }
     if (frozen)
         converged &= step_obeys(set, from, it);
     lanes u[CONTACTS][2];

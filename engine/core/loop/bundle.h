@@ -45,9 +45,9 @@ struct gathered {
 
 struct bundle {
     const stance_feed *feed;
-    mask live;                              /* lanes that are not idle */
-    int filled;                             /* how many */
-    int recorded, unusual, bending, choosy; /* of these: see bundle_count */
+    mask live;                                       /* lanes that are not idle */
+    int filled;                                      /* how many */
+    int recorded, unusual, bending, choosy, walking; /* of these: see bundle_count */
     double target_key[sizeof(struct setting) / sizeof(lanes) + 8 + CONTACTS]; /* see rest_target */
     bool target_known, target_holds;
     const stance_case *which[LANES]; /* NULL: idle */
@@ -252,6 +252,7 @@ static void bundle_count(struct bundle *b, const stance_case *c, int by)
     b->unusual += case_is_unusual(c) ? by : 0;
     b->bending += c->bends ? by : 0;
     b->choosy += c->lands_ahead ? by : 0;
+    b->walking += c->walk_steps > 0 ? by : 0;
 }
 
 /* Puts a case into a lane. The motion's derived parts follow in bundle_begin. */

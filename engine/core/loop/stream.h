@@ -51,6 +51,7 @@ COLD void bundle_start(struct bundle *b, mask fresh, bool coupled)
 {
     bundle_begin(b, fresh);
     feet_begin(b, fresh);
+    walk_begin(b, fresh);
     feet_choose(b, fresh);
     mask loaded[CONTACTS];
     EACH_CONTACT (c, 0)
@@ -105,6 +106,7 @@ PER_SET bool stream_ordinary(struct bundle *b, bool coupled, contact_set touchin
     if (!advance_ordinary(&b->advance, &b->set, b->torque, coupled, b->h, b->live, touching,
                           &b->now, &report))
         return false;
+    walk_effort(b, b->live, coupled ? report.torque : b->torque, false);
     for (int i = 0; i < SCENE_ACTUATORS && coupled; i++)
         b->torque[i] = report.torque[i];
     stream_follow(b, true, b->live, MASK_NONE, true, touching, &report);
@@ -185,6 +187,8 @@ COLD void stream_any(struct bundle *b, bool coupled)
     if (SCENE_PUSHES > 0)
         ok = stream_join(b, ok, &report);
 #endif
+    walk_effort(b, b->live & LANES_NOT(ok), b->torque, true);
+    walk_effort(b, ok, coupled ? report.torque : b->torque, false);
     feet_count(b, b->live, down);
     b->failure = choose(failed, report.failure, b->failure);
     const mask tired = ok & mask_less(b->most_work, b->answer.evaluations + report.evaluations);
@@ -240,6 +244,7 @@ COLD void stream_strike(struct bundle *b, lanes from)
     b->answer.impact_energy = choose(hit, lanes_max(report.impact_energy, b->answer.impact_energy),
                                      b->answer.impact_energy);
     b->answer.limited_impacts += choose(hit, report.limited_impacts, lanes_of(0));
+    account_largest(false, hit, report.impact_friction, &b->answer.impact_friction);
     advance_forget(&b->advance, hit);
     const mask failed = hit & LANES_NOT(solved);
     b->failure = choose(failed, lanes_of(STANCE_FAILURE_CONTACT), b->failure);

@@ -52,11 +52,13 @@ static double walk_off(const struct bundle *b, int lane, const double *section, 
 static void walk_compare(struct walking *w, struct bundle *b, int lane, const double *section)
 {
     const double steps = lane_get(&w->steps, lane), wanted = lane_get(&w->wanted, lane);
+    lane_set(&w->change, lane, INFINITY);
     for (int k = WALK_PERIODS; k-- > 0;) {
         double alike = lane_get(&w->alike[k], lane);
         double first = lane_get(&w->first[k], lane), later = lane_get(&w->later[k], lane);
         const double off =
             steps > walk_period[k] ? walk_off(b, lane, section, walk_period[k]) : INFINITY;
+        lane_set(&w->change, lane, fmin(off, lane_get(&w->change, lane)));
         alike = off <= 1 ? alike + 1 : 0;
         if (alike >= wanted && fmax(later, off) > fmax(first, WALK_FLOOR))
             alike = 1; /* it grows: again from here */
@@ -83,7 +85,9 @@ static void walk_step(struct walking *w, struct bundle *b, int lane, double t, d
     for (int k = WALK_KEPT; k > 0; k--) {
         lane_set(&w->when[k], lane, lane_get(&w->when[k - 1], lane));
         lane_set(&w->where[k], lane, lane_get(&w->where[k - 1], lane));
+        lane_set(&w->after[k], lane, lane_get(&w->after[k - 1], lane));
     }
+    lane_set(&w->after[0], lane, lane_get(&w->effort, lane));
     lane_set(&w->when[0], lane, t);
     lane_set(&w->where[0], lane, place);
     walk_section(b, lane, section);
@@ -126,6 +130,33 @@ COLD void walk_footfall(struct bundle *b, mask where, int c)
     }
 }
 
+/* What the actuators have done since the last time, with the torques before and now; within a step
+ * (`inside`) with those before, and after that with those at its end alone: there may have been a
+ * footfall between. */
+HOT void walk_effort(struct bundle *b, mask where, const lanes *torque, bool inside)
+{
+    struct walking *const w = &b->walk;
+    if (SCENE_ACTUATORS == 0 || !bundle_some(b->walking))
+        return;
+    for (int i = 0; i < SCENE_ACTUATORS; i++) {
+        const lanes now = scene_actuated(b->now.s, i), moved = now - w->moved[i];
+        const lanes before =
+            inside ? b->torque[i]
+                   : choose(mask_less(lanes_of(0), w->inside), torque[i], b->torque[i]);
+        const lanes work = lanes_abs(0.5 * (before + torque[i]) * moved);
+        w->effort = choose(where, w->effort + work, w->effort);
+        w->moved[i] = choose(where, now, w->moved[i]);
+    }
+    w->inside = choose(where, lanes_of(inside), w->inside);
+}
+
+/* Where the actuators of the cases in `fresh` begin. */
+COLD void walk_begin(struct bundle *b, mask fresh)
+{
+    for (int i = 0; i < SCENE_ACTUATORS; i++)
+        b->walk.moved[i] = choose(fresh, scene_actuated(b->now.s, i), b->walk.moved[i]);
+}
+
 /* Lanes that walk. */
 static inline mask walk_goes(const struct bundle *b)
 {
@@ -138,14 +169,22 @@ static void walk_answer(const struct bundle *b, int lane, stance_result *r)
     const struct walking *const w = &b->walk;
     const int steps = (int)fmin(lane_get(&w->steps, lane), WALK_KEPT + 1), last = steps - 1;
     r->walked_steps = r->gait_period = STANCE_NO_COUNT;
-    r->step_time = r->step_length = NAN;
+    r->step_time = r->step_length = r->walking_speed = r->cost_of_transport = r->gait_change = NAN;
     if (lane_get(&w->wanted, lane) <= 0)
         return;
     r->walked_steps = (int64_t)lane_get(&w->steps, lane);
     if (last > 0) {
         r->step_time = (lane_get(&w->when[0], lane) - lane_get(&w->when[last], lane)) / last;
         r->step_length = (lane_get(&w->where[0], lane) - lane_get(&w->where[last], lane)) / last;
+        r->walking_speed = r->step_length / r->step_time;
+        const double effort = lane_get(&w->after[0], lane) - lane_get(&w->after[last], lane);
+        const stance_tree_numbers *const body = &b->which[lane]->body;
+        const double weight = body->mass * hypot(body->gravity[0], body->gravity[1]);
+        if (SCENE_ACTUATORS > 0 && weight > 0)
+            r->cost_of_transport = effort / (weight * fabs(r->step_length) * last);
     }
+    if (isfinite(lane_get(&w->change, lane)))
+        r->gait_change = lane_get(&w->change, lane);
     if (r->outcome == STANCE_WALKS)
         r->settle_time = lane_get(&w->settled, lane);
     if (lane_get(&w->period, lane) > 0)

@@ -9,15 +9,19 @@ enum { WALK_PERIODS = 3, WALK_KEPT = 4 };
 static const int walk_period[WALK_PERIODS] = {1, 2, 4};
 
 struct walking {
-    lanes wanted;        /* steps that are to be alike; 0: nobody asks */
-    lanes foot;          /* contact that stood up to now; -1: none */
-    lanes last;          /* s, of the last footfall, be it a step */
-    lanes settled;       /* s, since when */
-    lanes steps, period; /* so far; with which they are alike, 0: they are not */
-    lanes length;        /* m, of the last one, from foot to foot */
-    /* Of the last steps, the newest first: when, where, with which angles and rates, legs exchanged
-     * where the second one stands. */
-    lanes when[WALK_KEPT + 1], where[WALK_KEPT + 1];
+    lanes wanted;           /* steps that are to be alike; 0: nobody asks */
+    lanes foot;             /* contact that stood up to now; -1: none */
+    lanes last;             /* s, of the last footfall, be it a step */
+    lanes settled;          /* s, since when */
+    lanes steps, period;    /* so far; with which they are alike, 0: they are not */
+    lanes length;           /* m, of the last one, from foot to foot */
+    lanes change;           /* how unlike the last one is to one before; INFINITY: there is none */
+    lanes effort;           /* J, sum of |work| of each actuator so far, where ... */
+    lanes inside;           /* 1: within a step */
+    lanes moved[ACTUATORS]; /* ... these are their places */
+    /* Of the last steps, the newest first: when, where, after which effort, with which angles and
+     * rates, legs exchanged where the second one stands. */
+    lanes when[WALK_KEPT + 1], where[WALK_KEPT + 1], after[WALK_KEPT + 1];
     lanes section[WALK_KEPT][2 * POSTURES];
     /* By period: how many in a row were alike, since when, s; the largest difference of the first
      * half of those that are wanted, and of the others. */
@@ -34,6 +38,7 @@ static inline void walking_load(struct walking *w, int lane, const stance_case *
     lane_set(&w->foot, lane, -1);
     lane_set(&w->last, lane, -INFINITY);
     lane_set(&w->ended, lane, -1);
+    lane_set(&w->change, lane, INFINITY);
 }
 
 #endif

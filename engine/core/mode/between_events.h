@@ -449,6 +449,7 @@ static inline mask between_impact(const struct setting *set, mask where, struct 
         after[1] = choose(rule.moreau, after[1] + rebound[c][1], after[1]);
         struct step_report laws = *report;
         report_residuals(&laws, c, part, set->friction, (const lanes(*)[2])r, after);
+        report_friction(&laws.impact_friction, c, part, (const lanes(*)[2])r);
         choose_all(impact, &laws, report, sizeof laws);
     }
     for (int a = 0; a < SCENE_ANGLES; a++) {

@@ -1,0 +1,95 @@
+/* margins.c - the gait once more, with answers of walking, and its first step recorded. */
+#include "margins.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* What the foot that stands carries at least, N: row 0 has nothing before it. */
+static double least_force(const struct return_map *map, const stance_trajectory *record,
+                          int64_t rows)
+{
+    double least = INFINITY;
+    for (int64_t k = 1; k < rows; k++)
+        least = fmin(least, record->force[2 * (k * map->scene->contacts + map->foot[0])]);
+    return least;
+}
+
+/* How high the foot that swings is while it is ahead of the other one, and how deep before, in the
+ * first rows of a record. */
+static void look_at_feet(const struct return_map *map, const stance_trajectory *record,
+                         int64_t rows, double direction, struct gait_margins *m)
+{
+    const stance_scene *const scene = map->scene;
+    const double *const robot = map->base.robot;
+    double sine, cosine;
+    stance_sincos(robot[STANCE_ROBOT_SLOPE], &sine, &cosine);
+    for (int64_t k = 0; k < rows; k++) {
+        const double *const q = record->position + k * scene->coordinates;
+        const double *const v = record->velocity + k * scene->coordinates;
+        const double gap = record->gap[k * scene->contacts + map->foot[1]];
+        double foot[2][2], speed[2];
+        for (int leg = 0; leg < 2; leg++)
+            scene->contact_point(scene, robot, q, v, map->foot[leg], foot[leg], speed);
+        const double along = cosine * (foot[1][0] - foot[0][0]) - sine * (foot[1][1] - foot[0][1]);
+        if (along * direction > 0)
+            m->clearance = fmax(m->clearance, gap);
+        else
+            m->under = fmax(m->under, -gap);
+    }
+}
+
+/* Speed at which the foot that stood leaves the ground after the last footfall. */
+static double lift_of(const struct return_map *map, const stance_result *r)
+{
+    double point[2], speed[2], sine, cosine;
+    stance_sincos(map->base.robot[STANCE_ROBOT_SLOPE], &sine, &cosine);
+    map->scene->contact_point(map->scene, map->base.robot, r->position, r->velocity,
+                              map->foot[(map->steps - 1) % 2], point, speed);
+    return fmax(sine * speed[0] + cosine * speed[1], 0);
+}
+
+bool gait_margins_find(const struct return_map *map, const struct gait *gait,
+                       struct gait_margins *margins, stance_message *message)
+{
+    const stance_scene *const scene = map->scene;
+    const size_t rows = (size_t)(gait->at.time / map->base.step) + 1;
+    const size_t n = (size_t)scene->coordinates, contacts = (size_t)scene->contacts;
+    const size_t width = 2 * n + (size_t)scene->actuators + 3 * contacts;
+    double *const all = calloc(rows * width, sizeof *all);
+    stance_trajectory record = {.interval = map->base.step, .rows = (int64_t)rows};
+    stance_case c[2] = {map->base, map->base};
+    stance_result r[2];
+    if (!all) {
+        snprintf(message->text, sizeof message->text, "out of memory");
+        return false;
+    }
+    record.position = all, record.velocity = record.position + rows * n;
+    record.gap = record.velocity + rows * n, record.force = record.gap + rows * contacts;
+    record.torque = record.force + rows * 2 * contacts;
+    c[0].trajectory = &record;
+    c[0].footfalls = 1;
+    c[1].walk_steps = INT32_MAX; /* answers of walking, and no end by it */
+    c[1].walk_length = c[1].walk_time = 0;
+    c[1].footfalls = map->steps + 1;
+    bool good = true;
+    for (int k = 0; good && k < 2; k++) {
+        good = return_map_state(map, gait->z, c[k].position, c[k].velocity);
+        if (good)
+            map->kernel->run(&c[k], &r[k], 1);
+        good = good && r[k].status == STANCE_DONE && r[k].footfalls >= c[k].footfalls;
+    }
+    if (good) {
+        *margins = (struct gait_margins){.cost = r[1].cost_of_transport,
+                                         .impact_friction = r[1].impact_friction,
+                                         .lift = lift_of(map, &gait->at.result)};
+        const int64_t whole = (int64_t)(r[0].end_time / c[0].step);
+        look_at_feet(map, &record, whole, gait->at.length, margins);
+        margins->least_normal_force = least_force(map, &record, whole);
+    } else {
+        snprintf(message->text, sizeof message->text, "it does not take another step");
+    }
+    free(all);
+    return good;
+}
