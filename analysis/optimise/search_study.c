@@ -87,6 +87,14 @@ static int64_t count_in(const struct search_study *study, size_t k, size_t circu
                               (size_t)label];
 }
 
+static int64_t recovered_in(const struct search_study *study, size_t k, size_t circumstance)
+{
+    int64_t sum = 0;
+    for (int label = 0; label < TRIAL_LABELS; label++)
+        sum += trials_recovered(label) ? count_in(study, k, circumstance, label) : 0;
+    return sum;
+}
+
 int64_t search_count(const struct search_study *study, size_t k, int label)
 {
     int64_t sum = 0;
@@ -101,8 +109,7 @@ size_t search_worst(const struct search_study *study, size_t k)
     if (!counts_worst(study))
         return study->f.length[SEARCH_CIRCUMSTANCE] > 1 ? SEARCH_OVERALL : 0;
     for (size_t c = 1; c < study->f.length[SEARCH_CIRCUMSTANCE]; c++)
-        if (count_in(study, k, c, STANCE_STABILISED + 1) <
-            count_in(study, k, worst, STANCE_STABILISED + 1))
+        if (recovered_in(study, k, c) < recovered_in(study, k, worst))
             worst = c;
     return worst;
 }
@@ -218,12 +225,13 @@ void search_aim(const struct search_study *study, char *text, size_t size)
     FILE *const to = fmemopen(text, size, "w");
     if (!to)
         return;
+    const char *const how = study->first->base.walk_steps > 0 ? "walk" : "are stabilised";
     if (s->aim == AIM_SHARE)
-        fputs("share of the starts that are stabilised", to);
+        fprintf(to, "share of the starts that %s", how);
     else if (s->aim == AIM_NEAREST)
-        fputs("scale up to which all directions are stabilised", to);
+        fprintf(to, "scale up to which all directions %s", how);
     else
-        fprintf(to, "%s of the starts that are stabilised", stance_answers[s->answer].name);
+        fprintf(to, "%s of the starts that %s", stance_answers[s->answer].name, how);
     if (s->normal)
         fputs(", those near the middle counting more", to);
     for (int i = 0; i < STANCE_ANSWER_COUNT; i++)

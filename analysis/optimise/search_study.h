@@ -45,7 +45,7 @@ static inline bool search_recovers(const struct search_study *study, size_t k, s
 {
     const struct search_file *const f = &study->f;
     const size_t pair = k * f->length[SEARCH_CIRCUMSTANCE] + circumstance;
-    return f->confirmed_outcome[pair * f->length[SEARCH_START] + start] == STANCE_STABILISED + 1;
+    return trials_recovered(f->confirmed_outcome[pair * f->length[SEARCH_START] + start]);
 }
 
 /* The chosen less the first candidate; of one circumstance, or of their mean. */

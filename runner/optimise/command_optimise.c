@@ -337,7 +337,8 @@ static void warn(const struct optimise *o)
     }
     for (size_t e = 0; e < f->length[SEARCH_ELSEWHERE]; e++)
         if (f->elsewhere_chosen[e] < f->elsewhere_first[e] ||
-            f->elsewhere_chosen[e] < 0.5 * most_ending(f, STANCE_STABILISED))
+            f->elsewhere_chosen[e] <
+                0.5 * (most_ending(f, STANCE_STABILISED) + most_ending(f, STANCE_WALKS)))
             fprintf(stderr, "%s %s the best recovers %.1f %% of the starts, the first %.1f %%\n",
                     who, f->elsewhere[e], 100 * f->elsewhere_chosen[e],
                     100 * f->elsewhere_first[e]);

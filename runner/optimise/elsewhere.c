@@ -116,7 +116,7 @@ enum trials_end elsewhere_run(const struct scenario *s, const struct trials *wit
     for (size_t c = 0; end == TRIALS_DONE && c < candidates; c++) {
         uint64_t recovered = 0;
         for (uint64_t i = 0; i < starts; i++)
-            recovered += trials.label[c * starts + i] == STANCE_STABILISED + 1;
+            recovered += trials_recovered(trials.label[c * starts + i]);
         share[c] = (double)recovered / (double)starts;
     }
     if (there)

@@ -317,8 +317,7 @@ static int64_t nearest_score(const struct search *search, size_t candidate, uint
             continue;
         for (uint64_t i = 0; i < starts; i++) {
             size_t lead = 0;
-            while (lead < scale->count &&
-                   label[(c + lead * stride) * starts + i] == STANCE_STABILISED + 1)
+            while (lead < scale->count && trials_recovered(label[(c + lead * stride) * starts + i]))
                 lead++;
             nearest = lead < nearest ? lead : nearest;
             further += (int64_t)lead;

@@ -168,7 +168,7 @@ static bool attend(void *context, double now)
     return batch->t->attend && batch->t->attend(batch->t->context, now);
 }
 
-/* What a stabilised start is worth: 1 or an answer, less prices. */
+/* What a recovered start is worth: 1 or an answer, less prices. */
 static int64_t worth_of(const struct scenario_search *search, const stance_result *result)
 {
     double worth = 1;
@@ -188,8 +188,7 @@ static void end_case(void *context, uint64_t row, const stance_result *result)
 {
     struct batch *const batch = context;
     struct trials *const t = batch->t;
-    if (result->status == STANCE_DONE &&
-        (result->outcome == STANCE_STABILISED || result->outcome == STANCE_WALKS))
+    if (result->status == STANCE_DONE && trials_recovered(result->outcome + 1))
         t->worth[row / batch->starts] +=
             batch->weight[row % batch->starts] * worth_of(&t->scenario->search, result);
     batch->cases += result->failure != STANCE_FAILURE_INITIAL;

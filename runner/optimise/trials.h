@@ -38,7 +38,7 @@ struct trials {
     /* Of the last run, [candidates][circumstances][starts] and [candidates][circumstances], on
      * every rank. */
     uint8_t *label;
-    int64_t *worth; /* sum over stabilised starts of weight times value, in TRIALS_WORTH */
+    int64_t *worth; /* sum over recovered starts of weight times value, in TRIALS_WORTH */
     struct trials_loop *loop;
     uint64_t cases;   /* simulated so far, by all ranks */
     double compiling; /* s, that the kernels took */
@@ -65,6 +65,12 @@ void trials_free(struct trials *trials);
  * why. */
 enum trials_end trials_run(struct trials *trials, size_t candidates, double *value,
                            enum trials_starts which, uint64_t starts, stance_message *message);
+
+/* Whether a label is of a start that ended as is looked for: stabilised, or it walks. */
+static inline bool trials_recovered(int label)
+{
+    return label == STANCE_STABILISED + 1 || label == STANCE_WALKS + 1;
+}
 
 /* Of one of the three: how many there are at most, and their seed. */
 static inline uint64_t trials_count(const struct scenario *s, enum trials_starts which)
