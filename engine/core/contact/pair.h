@@ -1,6 +1,7 @@
-/* pair.h - two points of which no certain solution is known: every mode of both, as lane.h tries
- * them, in lanes. On parallel legs, whose feet are at one place, the laws often have several
- * solutions or redundant ones, and such robots are many in a map.
+/* pair.h - one or two points of which no certain solution is known: every mode of both, as lane.h
+ * tries them, in lanes. On parallel legs, whose feet are at one place, the laws often have several
+ * solutions or redundant ones, and such robots are many in a map; a foot whose law answers its
+ * reactions (decoupling.h) may have them at each sample.
  */
 #ifndef STANCE_CORE_CONTACT_PAIR_H
 #define STANCE_CORE_CONTACT_PAIR_H
@@ -51,9 +52,9 @@ static inline void pair_offer(const struct contact_rule *rule, const lanes (*uf)
         }
 }
 
-/* As lane_enumerate, in lanes, where the contacts in `touching` are two points, first and second.
- * Impulses r in the lanes that are returned, *ambiguous among them; elsewhere a mode is on the
- * verge of a solution, or there is none. */
+/* As lane_enumerate, in lanes, where the contacts in `touching` are two points, first and second,
+ * or one, which is both. Impulses r in the lanes that are returned, *ambiguous among them;
+ * elsewhere a mode is on the verge of a solution, or there is none. */
 COLD mask pair_enumerate(const struct contact_rule *rule, const lanes (*D)[CONTACTS][2][2],
                          const lanes (*uf)[2], contact_set touching, int first, int second,
                          const mask *active, const struct contact_tolerance *tolerance, mask todo,
@@ -61,6 +62,7 @@ COLD mask pair_enumerate(const struct contact_rule *rule, const lanes (*D)[CONTA
 {
     enum { OPEN, STICK, FORWARD, BACKWARD, MODES };
     const lanes none = lanes_of(0);
+    const int points = first == second ? 1 : 2;
     struct pair_choice best = {
         .have = MASK_NONE, .exact = MASK_NONE, .ambiguous = MASK_NONE, .energy = none};
     lanes candidate[CONTACTS][2], u[CONTACTS][2], edge[CONTACTS];
@@ -88,10 +90,11 @@ COLD mask pair_enumerate(const struct contact_rule *rule, const lanes (*D)[CONTA
     for (int mode = 0; mode < MODES * MODES; mode++) {
         const int of[2] = {mode / MODES, mode % MODES}, point[2] = {first, second};
         const mask may = todo & LANES_NOT(never[first][of[0]] | never[second][of[1]]);
-        if ((of[0] == STICK && of[1] == STICK) || !mask_any(may))
+        if ((of[0] == STICK && of[1] == STICK) || (first == second && of[0] != of[1]) ||
+            !mask_any(may))
             continue;
         contact_set carries = 0; /* what is open has no part in the equations */
-        for (int k = 0; k < 2; k++) {
+        for (int k = 0; k < points; k++) {
             carries |= of[k] == OPEN ? 0 : contact_with(point[k]);
             closed[point[k]] = of[k] == OPEN ? MASK_NONE : active[point[k]];
             sticks[point[k]] = of[k] == STICK ? LANES_ALL : MASK_NONE;
@@ -116,7 +119,7 @@ COLD mask pair_enumerate(const struct contact_rule *rule, const lanes (*D)[CONTA
                 direct_rest(CONTACT_ALL, (const mask(*)[2])rows, &f, (const lanes(*)[2])u, x);
             else
                 direct_back(carries, (const mask(*)[2])rows, &f, (const lanes(*)[2])u, x);
-            for (int k = 0; k < 2; k++) {
+            for (int k = 0; k < points; k++) {
                 const int c = point[k];
                 candidate[c][0] = candidate[c][0] + x[c][0];
                 candidate[c][1] = candidate[c][1] + lanes_fma(edge[c], x[c][0], x[c][1]);
@@ -127,7 +130,7 @@ COLD mask pair_enumerate(const struct contact_rule *rule, const lanes (*D)[CONTA
             rule, D, touching, active, (const lanes(*)[2])candidate, (const lanes(*)[2])u);
         lanes sum =
             none; /* not finite where the mode is singular, of which violation says nothing */
-        for (int k = 0; k < 2; k++)
+        for (int k = 0; k < points; k++)
             for (int a = 0; a < 2; a++)
                 sum += candidate[point[k]][a] + u[point[k]][a];
         const mask regular = may & mask_finite(sum);
@@ -145,8 +148,8 @@ COLD mask pair_enumerate(const struct contact_rule *rule, const lanes (*D)[CONTA
     return done;
 }
 
-/* The same in the lanes where two points are active and no other contact is: whatever else is in
- * `touching`, for other lanes. */
+/* The same in the lanes where one or two points are active and no other contact is: whatever else
+ * is in `touching`, for other lanes. */
 static inline mask pair_every(const struct contact_rule *rule, const lanes (*D)[CONTACTS][2][2],
                               const lanes (*uf)[2], contact_set touching, const mask *active,
                               const struct contact_tolerance *tolerance, mask todo, lanes (*r)[2],
@@ -154,7 +157,7 @@ static inline mask pair_every(const struct contact_rule *rule, const lanes (*D)[
 {
     mask done = MASK_NONE;
     for (int a = 0; a < OWN_CONTACTS && mask_any(todo); a++)
-        for (int b = a + 1; b < OWN_CONTACTS; b++) {
+        for (int b = a; b < OWN_CONTACTS; b++) {
             if (!(touching >> a & touching >> b & 1) || !contact_is_point(a) ||
                 !contact_is_point(b))
                 continue;
