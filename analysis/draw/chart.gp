@@ -15,6 +15,7 @@ do for [p=1:panels] {
     bottom = bottom + panel_high[p] + (p < panels ? between : 0)
 }
 page_height = bottom + foot
+eval chart_fit
 load 'page.gp'
 do for [p=1:panels] {
     if (headed) { set label cut(panel_heading[p], (width + legend_room)/7.1) at screen X(left), Y(panel_top[p] - 9) left @small front }
