@@ -2,8 +2,9 @@
 # one, which has its name beside it. Their series are drawn in the order in which the data have them.
 between = headed ? 24 : 14
 foot = headed ? 56 : 84
-own_sum = sum [p=1:panels] panel_own[p]
 width = wide(chart_width, 1, left + legend_room)
+eval chart_fit
+own_sum = sum [p=1:panels] panel_own[p]
 
 eval column_page
 top = top + (headed ? 24 : 0)
@@ -15,7 +16,6 @@ do for [p=1:panels] {
     bottom = bottom + panel_high[p] + (p < panels ? between : 0)
 }
 page_height = bottom + foot
-eval chart_fit
 load 'page.gp'
 do for [p=1:panels] {
     if (headed) { set label cut(panel_heading[p], (width + legend_room)/7.1) at screen X(left), Y(panel_top[p] - 9) left @small front }

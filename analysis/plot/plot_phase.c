@@ -145,6 +145,8 @@ static void put_phase(struct gnuplot *g, const struct plot_case *c, int i, char 
     if (twin >= 0 && twin < i)
         return; /* it has been drawn with the other one */
     gnuplot_panel(g, 1, "");
+    for (int leg = 0; leg <= paired && c->other; leg++)
+        put_curves(&(struct curve){g, c->other, i, leg > 0, range}, "0xb8b8b8", leg ? 2 : 1);
     for (int leg = 0; leg <= paired; leg++)
         put_curves(&(struct curve){g, c, i, leg > 0, range},
                    own ? "hue[3]" : gnuplot_hue((size_t)leg), leg ? 2 : 1);
@@ -173,6 +175,7 @@ bool plot_phase(const struct plot_case *c)
     for (int k = 0; k < 3; k++)
         if (legend[k][0])
             gnuplot_legend(&g, gnuplot_hue((size_t)k), k == 1 ? 2 : 1, 0, legend[k], "");
-    gnuplot_note(&g, "dot: the start; dotted: jump at an impact");
+    gnuplot_note(&g, "dot: the start; dotted: jump at an impact%s",
+                 c->other ? "; grey: the second case" : "");
     return gnuplot_end(&g);
 }

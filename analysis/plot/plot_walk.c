@@ -92,20 +92,25 @@ size_t walk_footfalls(const struct plot_case *c, double time[WALK_FOOTFALLS])
 /* ---- two steps ---------------------------------------------------------------------------- */
 
 /* Figures stand on the axis of time, each about the place of its instant, in the scale of heights;
- * the ground falls along the page as it does along itself. `metre` s of the axis are as long as one
- * m of height, which chart.gp knows when it has laid out its panels; figures that would be on top
- * of each other are left out. */
+ * the ground falls along the page as it does along itself. chart.gp knows when it has a width how
+ * large they can be, and which are left out so that they are not on top of each other. */
 static const char fit[] =
+    "fit_step = width*figure_time/(x_high - x_low); "
     "fit_drop = abs(figure_fall)*width; "
-    "fit_scale = at_least(20, panel_high[1] - fit_drop)/(figure_high - figure_low); "
+    "fit_scale = at_least(110, at_most(230, 2.6*fit_step*(figure_high - figure_low)/figure_wide))"
+    "/(figure_high - figure_low); "
+    "panel_own[1] = fit_scale*(figure_high - figure_low) + fit_drop; "
     "y1_low = figure_low - (figure_fall > 0 ? fit_drop/fit_scale : 0); "
     "y1_high = figure_high + (figure_fall < 0 ? fit_drop/fit_scale : 0); "
-    "metre = fit_scale*(x_high - x_low)/width; "
-    "every = 0.5*figure_wide*metre > figure_time ? 2 : 1; "
-    "panel_heading[1] = 'A figure each '.(every == 1 ? 'tenth' : 'fifth').' of a step'";
+    "fit_wide = fit_scale*figure_wide; "
+    "every = 0.45*fit_wide < fit_step ? 1 : 0.5*fit_wide < 2*fit_step ? 2 : 5; "
+    "panel_heading[1] = 'A figure each '.(every == 1 ? 'tenth of a' : every == 2 ? 'fifth of a' : "
+    "'half').' step'";
+/* s of the axis that are as long as one m of height. */
+static const char metre[] = "metre(_) = panel_high[1]/(y1_high - y1_low)*(x_high - x_low)/width";
 #define FIGURE_PLACE                                                                               \
-    "(int(($4 - figure_begin)/figure_time + 0.5)%%every ? NaN : $4 + metre*$1):"                   \
-    "($2 - figure_fall*($4 - x_low)/metre):(figure_colour($3))"
+    "(int(($4 - figure_begin)/figure_time + 0.5)%%every ? NaN : $4 + metre(0)*$1):"                \
+    "($2 - figure_fall*($4 - x_low)/metre(0)):(figure_colour($3))"
 
 static void put_figures(struct case_page *page)
 {
@@ -132,7 +137,8 @@ static void put_figures(struct case_page *page)
                 "figure_wide = %#.17g; figure_time = %#.17g; figure_begin = %#.17g",
                 fall, height.low - 0.05 * tall, height.high + 0.05 * tall, wide, step, begin);
     gnuplot_text(g, fit, "chart_fit");
-    gnuplot_panel(g, 200 + 700 * fabs(fall), "");
+    gnuplot_set(g, "%s", metre);
+    gnuplot_panel(g, 200, "");
     gnuplot_axis(g, 'y', PLOT_LINEAR, height, "height", "m");
     const int contacts = figure_names(g, c->scenario.scene);
     gnuplot_set(g, "figure_colour(k) = k < contacts ? hue[int(k)%%|hue|+1] : 0x303030");
@@ -142,7 +148,8 @@ static void put_figures(struct case_page *page)
         GNUPLOT_ROW(g, page->mark[k], 1);
         gnuplot_gap(g);
     }
-    gnuplot_series(g, "using 1:(-figure_fall*($1 - x_low)/metre) with lines lw 2 lc rgb 0xa0a0a0");
+    gnuplot_series(g,
+                   "using 1:(-figure_fall*($1 - x_low)/metre(0)) with lines lw 2 lc rgb 0xa0a0a0");
     GNUPLOT_ROW(g, page->time.low, 0);
     GNUPLOT_ROW(g, page->time.high, 0);
     for (int part = FIGURE_SEGMENTS; part <= FIGURE_POINTS; part++) {
