@@ -161,15 +161,23 @@ static void put_figures(struct case_page *page)
     }
 }
 
+/* Whether it still steps at its end, with instants enough in steps that take so long. */
+static bool still_walks(const struct plot_case *c, double last, double steps)
+{
+    const enum results_kind kind = c->plot->r->kind[c->plot->r->single ? 0 : c->t->index];
+    return (kind == RESULTS_WALKS || kind == RESULTS_UNDECIDED) && walk_end(c) - last < steps &&
+           steps > FIGURES * (c->t->time[1] - c->t->time[0]);
+}
+
 bool plot_steps(const struct plot_case *c, bool *drawn)
 {
     static double time[WALK_FOOTFALLS];
-    const enum results_kind kind = c->plot->r->kind[c->plot->r->single ? 0 : c->t->index];
     const size_t count = c->other ? 0 : walk_footfalls(c, time);
-    *drawn = count > STEPS && (kind == RESULTS_WALKS || kind == RESULTS_UNDECIDED);
+    const double *const first = time + (count > STEPS ? count - STEPS - 1 : 0);
+    *drawn = count > STEPS && still_walks(c, first[STEPS], first[STEPS] - first[0]);
     if (!*drawn)
         return true;
-    struct case_page page = {.c = c, .mark = time + count - STEPS - 1, .marks = STEPS + 1};
+    struct case_page page = {.c = c, .mark = first, .marks = STEPS + 1};
     char what[100];
     snprintf(what, sizeof what, "Two steps, of %.4g and %.4g s", page.mark[1] - page.mark[0],
              page.mark[2] - page.mark[1]);
