@@ -208,7 +208,7 @@ static const struct option options[] = {
      .text =
          "footfalls from the scenario's start until the search begins, 40 by default; few, where "
          "the start is near a gait that does not hold"},
-    {"-o", "FILE", OPTION_TO(struct request, path),
+    {"-o", "FILE", OPTION_TO(struct request, path), .without = "--csv --json",
      .text = "instead of the report the scenario, begun on the gait and without its sweep; with "
              "--along a picture, a file that ends in svg, png or pdf: multipliers, speed and the "
              "times of steps against the number, with what --settled has"},
