@@ -32,7 +32,7 @@ analysis/summary: $numbers analysis/draw analysis/optimise
 analysis/basin: $numbers analysis/draw
 analysis/sensitivity: $numbers analysis/draw analysis/optimise analysis/summary
 analysis/compare: $numbers analysis/draw
-analysis/gait: $numbers
+analysis/gait: $numbers analysis/draw
 analysis/plot: $numbers analysis/draw analysis/optimise analysis/summary analysis/basin analysis/sensitivity
 analysis/bench: $numbers analysis/draw analysis/optimise analysis/summary analysis/basin analysis/sensitivity analysis/plot
 analysis/view: $numbers analysis/draw analysis/optimise analysis/summary analysis/basin analysis/sensitivity analysis/plot analysis/bench

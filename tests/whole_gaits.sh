@@ -2,7 +2,7 @@
 # What a newcomer types to walk: a compass down a slope, its cycle, a scenario begun on it, other hips, the paper's
 # biped, its starts; and what is wrong, said in one line with its place.
 # Speaks TAP.
-# about: analysis/gait analysis/summary runner/run
+# about: analysis/gait analysis/summary analysis/plot runner/run
 set -u
 . "$(dirname "$0")/scratch.sh"
 compass=$shipped/mechanisms/compass_gait.yaml
@@ -38,6 +38,52 @@ expect "which is drawn" 0 "$stance" plot map.h5 --picture map
 says "a basin is measured" 'Starts that end as walks' "$stance" basin map.h5
 says "summaries tell of steps" '^  walks +[1-9]' "$stance" summary map.h5
 says "programs get it as JSON" '"stable": true' "$stance" gait "$walks" --json
+
+# ---- pictures ----------------------------------------------------------------------------------
+expect "two steps of the cycle, recorded" 0 "$stance" run cycle.yaml --trace --set stop.footfalls=2 -o two.h5 --quiet
+expect "are drawn" 0 "$stance" plot two.h5 --format svg
+expect "a gait along a number is drawn, and what it comes to" 0 "$stance" gait "$compass" "${points[@]}" \
+    --along ground.slope=0.0725..0.08 --count 2 -o along.svg
+says "which is a number, too" '^0\.08,.*,,,2' "$stance" gait "$compass" "${points[@]}" --along ground.slope=0.08..0.081 \
+    --count 2 --settled --csv
+"$stance" run "$shipped/balance_recovers.yaml" --trace --quiet -o none.h5 >/dev/null 2>&1
+"$stance" plot none.h5 --picture phase >log 2>&1
+[ $? = 2 ] && grep -q "has no picture 'phase'" log
+result $? "what does not step has no phases"
+"$python" - "$tests" >log 2>&1 <<'EOF'
+import math, re, sys
+sys.path.insert(0, sys.argv[1])
+from drawn import Picture
+import numpy as np
+
+def meets(a, b):
+    return math.dist(a, b) < 1.5
+
+# Each line ends where a jump begins, at one angle, which leads to where a line begins.
+p = Picture("two-phase.svg")
+assert len(p.panels) == 2 and "leg1, leg1 + leg2 (rad)" in p.said(), p.said()
+for panel, hue in zip(p.panels, ("0072b2", "009e73")):
+    lines = [q[2] for q in panel.lines if q[0] == hue and not q[1]]
+    jumps = [q[2] for q in panel.lines if q[0] == hue and q[1]]
+    assert len(lines) == 2 and len(jumps) == 2, (len(lines), len(jumps))
+    for line in lines:
+        jump = [j for j in jumps if meets(j[0], line[-1])]
+        assert jump and abs(jump[0][0][0] - jump[0][-1][0]) < 1, line[-1]
+        assert any(meets(jump[0][-1], other[0]) for other in lines), jump
+p = Picture("two-strip.svg")
+assert "A figure each fifth of a step" in p.said()
+marks = sorted({q[2][0][0] for q in p.panels[1].lines if q[0] == "606060" and q[1]})
+assert np.allclose(p.panels[-1].x(marks), [0, 0.744928, 2 * 0.744928], atol=2e-3), p.panels[-1].x(marks)
+assert len(p.panels) == 3 and p.panels[0].left == p.panels[2].left
+feet = p.panels[0].marks("0072b2")
+assert len(feet) == 11, len(feet)
+p = Picture("along.svg")
+assert any(re.fullmatch(r"dotted: flip at 0\.07663\d+", t) for t in p.said()), p.said()
+dots = p.panels[0].marks("d55e00")
+times = [sorted({round(float(p.panels[0].y(y)), 3) for x, y in dots if abs(x - at) < 1}) for at in sorted(set(dots[:, 0]))]
+assert [len(t) for t in times] == [1, 2], times
+EOF
+result $? "a gait is a closed curve, has a figure each fifth of a step, and alternates behind a flip"
 
 # ---- what is wrong -----------------------------------------------------------------------------
 outputs="controller.outputs"
@@ -79,6 +125,8 @@ gait "noise" "a gait with noise has no cycle" --set controller.noise=0.1
 gait "late torques" "remember the step before" --set controller.delay=1
 gait "a start that falls" "it falls after 0 footfalls, by hip; give a start that walks" --set initial.state.vq1=0
 gait "a path that is none" "unknown key 'slop'" --along ground.slop=0..1
+gait "a picture of no kind" "a file that ends in svg, png or pdf" --along ground.slope=0..0.1 -o along.txt
+gait "how a picture looks of none" "pictures are drawn by -o FILE with --along" --for column
 gait "a path without an end" "takes PATH=FROM..TO" --along ground.slope=1
 gait "a bad count" "--steps" --steps 0
 gait "a floor that is too slippery" "the foot that lands slides" --set ground.friction=0.05

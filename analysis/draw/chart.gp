@@ -2,8 +2,9 @@
 # one, which has its name beside it. Their series are drawn in the order in which the data have them.
 between = headed ? 24 : 14
 foot = headed ? 56 : 84
-own_sum = sum [p=1:panels] panel_own[p]
 width = wide(chart_width, 1, left + legend_room)
+eval chart_fit
+own_sum = sum [p=1:panels] panel_own[p]
 
 eval column_page
 top = top + (headed ? 24 : 0)

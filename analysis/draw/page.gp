@@ -21,7 +21,7 @@ if (drawing eq 'pdf') {
         linewidth 2*px_points pointscale px_points background '#ffffff' noenhanced
 }
 if (drawing eq 'gif') {
-    set terminal gif animate delay delay size page_width,page_height font font_name.',12' \
+    set terminal gif animate delay delay optimize size page_width,page_height font font_name.',12' \
         fontscale 1 background '#ffffff' noenhanced
 }
 set output 'picture.'.drawing

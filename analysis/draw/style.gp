@@ -100,6 +100,7 @@ panels = 0
 left = 104
 chart_width = 620 # px, of a panel
 headed = 0        # panels have room for headings
+chart_fit = 'f_fit = 0' # what follows from their width
 
 # ---- legends: marks with texts, and notes under them; the data add theirs. A mark is a line where it has a type of
 # dashes, a point where it has a type of points, or a filled box ----

@@ -17,7 +17,10 @@
 extern const struct command command_gait;
 
 #define CLEAR 0.02 /* m: a foot so far off the ground is not inside a changed one */
+#define VIEW "value period step_length speed re im modulus holds place"
 #define PLACE 1e-4 /* of a multiplier that is at -1 or 1 */
+#define OFF 1e-3   /* rad, rad/s: slightly off a gait */
+#define SAME 1e-6  /* s: of times of steps that are alike */
 enum { HALVINGS = 5, PLACES = 40 };
 
 struct follow {
@@ -31,9 +34,24 @@ struct follow {
     double last;      /* ... at this value; and the one before */
     double before[RETURN_MAP_MOST], last_before;
     int found;
+    double at, asked; /* the value that is looked at; of which it is asked what it comes to */
+    int settled;      /* times of steps there */
+    double time[ALONG_TIMES];
+    struct along_gait *row; /* what is told */
+    size_t rows;
     bool refused; /* the scenario does not admit a value */
     stance_message message;
 };
+
+/* What the gait comes to, slightly off it. */
+static void settle(struct follow *f)
+{
+    const size_t count = sizeof f->time / sizeof *f->time;
+    double z[RETURN_MAP_MOST];
+    for (int i = 0; i < f->map.n; i++)
+        z[i] = f->gait.z[i] + (i % 2 ? -OFF : OFF);
+    f->settled = return_map_settle(&f->map, z, ALONG_WALKED, count, f->time) ? (int)count : 0;
+}
 
 static int take(const struct scenario *s, const stance_case *c, void *context)
 {
@@ -48,6 +66,8 @@ static int take(const struct scenario *s, const stance_case *c, void *context)
     good = good && gait && gait_find(&f->map, f->guess, gait, &f->message);
     if (good)
         f->gait = *gait;
+    if (good && f->along->settled && f->at == f->asked)
+        settle(f);
     free(gait);
     return good ? EXIT_DONE : EXIT_USAGE;
 }
@@ -56,6 +76,7 @@ static int take(const struct scenario *s, const stance_case *c, void *context)
 static bool find(struct follow *f, double value)
 {
     f->message.text[0] = '\0';
+    f->at = value;
     struct scenario *const s =
         along_at(f->file, f->plain, f->along->path, value, f->begun ? &f->map : NULL, f->gait.z);
     if (!s) {
@@ -94,21 +115,68 @@ static double room(const struct follow *f, int sign)
     return 1 - most;
 }
 
-static void tell(const struct follow *f, struct table *t, const char *what)
+/* The last gait as it is told; NULL: no memory. Of a `place` what it comes to is not asked. */
+static struct along_gait *note(struct follow *f, const char *place)
 {
+    struct along_gait *const more = realloc(f->row, (f->rows + 1) * sizeof *more);
+    if (!more)
+        return NULL;
+    f->row = more;
+    struct along_gait *const row = &more[f->rows++];
     const struct gait *const g = &f->gait;
+    *row = (struct along_gait){.value = f->last,
+                               .period = g->at.time,
+                               .length = g->at.length,
+                               .n = f->map.n,
+                               .error = g->error[0],
+                               .stable = g->stable,
+                               .place = place};
+    memcpy(row->re, g->re, sizeof row->re);
+    memcpy(row->im, g->im, sizeof row->im);
+    if (!place) {
+        row->settled = f->settled;
+        memcpy(row->time, f->time, sizeof row->time);
+    }
+    return row;
+}
+
+/* After how many steps the times repeat; 0: after none. */
+static int repeats(const struct along_gait *row)
+{
+    for (int k = 1; k <= row->settled / 2; k *= 2) {
+        bool same = true;
+        for (int i = k; i < row->settled; i++)
+            same = same && fabs(row->time[i] - row->time[i - k]) < SAME;
+        if (same)
+            return k;
+    }
+    return 0;
+}
+
+static void tell(const struct along *along, const struct along_gait *row, struct table *t)
+{
+    json_t *const list = json_array(), *const times = row->settled ? json_array() : NULL;
+    for (int i = 0; i < row->n; i++)
+        if (row->im[i] >= 0)
+            TABLE_APPEND(list, {"re", as_number(row->re[i])}, {"im", as_number(row->im[i])});
+    for (int i = 0; i < row->settled; i++)
+        table_append(times, as_number(row->time[i]));
     TABLE_FACTS(
         t,
-        {{.name = "value", .heading = f->along->path, .format = "%.12g", .width = 16},
-         as_number(f->last)},
-        {{"period", "period (s)", "%.9f", .width = 13}, as_number(g->at.time)},
-        {{"step_length", "step (m)", "%.7f", .width = 11}, as_number(g->at.length / f->map.steps)},
-        {{"speed", "speed (m/s)", "%.6f", .width = 12}, as_number(g->at.length / g->at.time)},
-        {{"re", "multiplier", "%.6f", .width = 11}, as_number(g->re[0])},
-        {{"im", "+- i", "%.6f", .width = 9}, as_number(g->im[0])},
-        {{"modulus", "modulus", "%.6f", .width = 9}, as_number(hypot(g->re[0], g->im[0]))},
-        {{"holds", "", .left = true, .width = 5}, as_text(g->stable ? "holds" : "")},
-        {{"place", "", .left = true, .width = 4, .empty = ""}, as_text(what)});
+        {{.name = "value", .heading = along->path, .format = "%.12g", .width = 16},
+         as_number(row->value)},
+        {{"period", "period (s)", "%.9f", .width = 13}, as_number(row->period)},
+        {{"step_length", "step (m)", "%.7f", .width = 11}, as_number(row->length / along->steps)},
+        {{"speed", "speed (m/s)", "%.6f", .width = 12}, as_number(row->length / row->period)},
+        {{"re", "multiplier", "%.6f", .width = 11}, as_number(row->re[0])},
+        {{"im", "+- i", "%.6f", .width = 9}, as_number(row->im[0])},
+        {{"modulus", "modulus", "%.6f", .width = 9}, as_number(hypot(row->re[0], row->im[0]))},
+        {{"holds", "", .left = true, .width = 5}, as_text(row->stable ? "holds" : "")},
+        {{"place", "", .left = true, .width = 4, .empty = ""}, as_text(row->place)},
+        {{"repeats", "repeats", "%.0f", .width = 7, .empty = ""},
+         row->settled ? as_number(repeats(row)) : as_nothing(NULL)},
+        {{"settled", .hidden = TABLE_NO_CSV}, as_tree(times)},
+        {{"multipliers", .hidden = TABLE_NO_CSV}, as_tree(list)});
     table_end_row(t);
 }
 
@@ -149,40 +217,45 @@ static bool reach(struct follow *f, double value)
     return false;
 }
 
-static int follow(struct follow *f, struct table *t)
+static int follow(struct follow *f)
 {
     const struct along *const a = f->along;
-    if (!find(f, a->from))
+    f->asked = a->from;
+    if (!find(f, a->from) || !note(f, NULL))
         return EXIT_USAGE;
-    tell(f, t, NULL);
     for (size_t k = 1; k < a->count; k++) {
         const double begin = f->last, at[2] = {room(f, 1), room(f, -1)};
         const double end = k + 1 == a->count
                                ? a->to
                                : a->from + (a->to - a->from) * (double)k / (double)(a->count - 1);
-        if (!reach(f, end))
+        f->asked = end;
+        if (!reach(f, end) || !note(f, NULL))
             return EXIT_USAGE;
         struct gait *const there = malloc(sizeof *there);
         if (!there)
             return EXIT_USAGE;
         *there = f->gait;
+        f->asked = NAN;
         for (int kind = 0; kind < 2; kind++) {
             const int sign = kind == 0 ? 1 : -1;
             f->gait = *there, f->last = end;
             const double now = room(f, sign);
             if ((at[kind] < 0) == (now < 0) || !isfinite(at[kind]) || !isfinite(now))
                 continue;
-            if (meet(f, sign, begin, at[kind], end, now))
-                tell(f, t,
-                     fabs(room(f, sign)) > PLACE + f->gait.error[0] ? "jump"
-                     : kind == 0                                    ? "fold"
-                                                                    : "flip");
+            if (!meet(f, sign, begin, at[kind], end, now) ||
+                !note(f, fabs(room(f, sign)) > PLACE + f->gait.error[0] ? "jump"
+                         : kind == 0                                    ? "fold"
+                                                                        : "flip"))
+                continue;
+            /* it stands before the end */
+            const struct along_gait place = f->row[f->rows - 1];
+            f->row[f->rows - 1] = f->row[f->rows - 2];
+            f->row[f->rows - 2] = place;
         }
         f->gait = *there, f->last = end;
         memcpy(f->before, there->z, sizeof f->before);
         f->found = 1; /* the line begins anew behind a place */
         free(there);
-        tell(f, t, NULL);
     }
     return EXIT_DONE;
 }
@@ -258,8 +331,14 @@ int along_say(const struct scenario *s, const struct along *along, enum table_fo
     f->along = along;
     f->file = s->file;
     f->plain = along_plain(s);
-    int code = f->plain ? follow(f, &t) : EXIT_USAGE;
-    if (table_rows(&t) == 0) {
+    int code = f->plain ? follow(f) : EXIT_USAGE;
+    for (size_t k = 0; k < f->rows && !along->look; k++)
+        tell(along, &f->row[k], &t);
+    if (f->rows > 0 && along->look) {
+        if (code != EXIT_DONE)
+            fprintf(stderr, "stance gait: it goes no further: %s\n", f->message.text);
+        code = along_draw(s, along, f->row, f->rows);
+    } else if (table_rows(&t) == 0) {
         if (f->message.text[0] && !f->refused) /* else it has been said */
             fprintf(stderr, "stance gait: %s: %s\n", s->file, f->message.text);
         table_free(&t);
@@ -267,13 +346,12 @@ int along_say(const struct scenario *s, const struct along *along, enum table_fo
         json_t *const facts = TABLE_OBJECT(
             {"title", as_text(s->title[0] ? s->title : NULL)}, {"path", as_text(along->path)},
             {"stopped", as_text(code == EXIT_DONE ? NULL : f->message.text)});
-        const bool said =
-            table_say(form,
-                      table_show(facts, "rows", &t,
-                                 "value period step_length speed re im modulus holds place", 0),
-                      text, &t);
+        const bool said = table_say(
+            form, table_show(facts, "rows", &t, along->settled ? VIEW " repeats" : VIEW, 0), text,
+            &t);
         code = said ? EXIT_DONE : EXIT_IO;
     }
+    free(f->row);
     free(f->plain);
     free(f);
     return code;

@@ -4,6 +4,7 @@
 
 #include "return_map.h"
 
+#include "analysis/draw/look.h"
 #include "analysis/table/table.h"
 
 /* What is asked for: the gait at `count` values of a path, evenly from the first to the last, and
@@ -14,7 +15,27 @@ struct along {
     double from, to;
     size_t count;
     int steps, settle; /* as of return_map_begin */
+    bool settled;      /* it is asked what each gait comes to, slightly off it */
+    struct look *look; /* a picture is asked for; NULL: a table */
 };
+
+/* Times of so many steps, after so many footfalls. */
+enum { ALONG_TIMES = 16, ALONG_WALKED = 200 };
+
+/* A gait on the way. */
+struct along_gait {
+    double value, period, length;
+    int n;
+    double re[RETURN_MAP_MOST], im[RETURN_MAP_MOST], error;
+    bool stable;
+    const char *place;        /* "flip", "fold", "jump"; NULL: one of the values asked for */
+    int settled;              /* how many step times follow; 0: it falls, or it is not asked */
+    double time[ALONG_TIMES]; /* s */
+};
+
+/* Draws them. Returns an exit code; says why on standard error. */
+int along_draw(const struct scenario *s, const struct along *along, const struct along_gait *gait,
+               size_t count);
 
 /* Reads "PATH=FROM..TO"; the path is in *text from then on. False: it is none. */
 bool along_read(char *text, struct along *along);

@@ -17,6 +17,8 @@ struct request {
     const char *path, *along;
     struct option_texts sensitivity;
     enum table_form form;
+    bool settled;
+    struct look look;
 };
 
 static int fail(const struct scenario *s, const char *text)
@@ -202,11 +204,13 @@ static int find(const struct scenario *s, const stance_case *c, void *asked)
     return code;
 }
 
-static int follow(const struct scenario *s, const struct request *request)
+static int follow(const struct scenario *s, struct request *request)
 {
     struct along along = {.count = (size_t)request->count,
                           .steps = (int)request->steps,
-                          .settle = (int)request->settle};
+                          .settle = (int)request->settle,
+                          .settled = request->settled || request->path,
+                          .look = request->path ? &request->look : NULL};
     char path[200];
     snprintf(path, sizeof path, "%s", request->along);
     if (!along_read(path, &along)) {
@@ -215,14 +219,21 @@ static int follow(const struct scenario *s, const struct request *request)
                 request->along);
         return EXIT_USAGE;
     }
+    if (request->path && (!look_place(request->path, &request->look) || !request->look.file ||
+                          request->look.format[LOOK_GIF]))
+        return command_usage(
+            &command_gait, "-o with --along draws a picture, a file that ends in svg, png or pdf");
     return along_say(s, &along, request->form);
 }
 
 /* What is swept has the values that it has without the sweep. */
 static int gait(const struct scenario *s, void *asked)
 {
-    if (((const struct request *)asked)->along)
-        return follow(s, asked);
+    struct request *const request = asked;
+    if (look_given(&request->look) && !(request->along && request->path))
+        return command_usage(&command_gait, "pictures are drawn by -o FILE with --along");
+    if (request->along)
+        return follow(s, request);
     char *const plain = along_plain(s);
     struct scenario *const one = plain ? scenario_new(s->file, plain, NULL, 0, stderr) : NULL;
     const int code = one ? asked_first(&command_gait, one, find, asked) : EXIT_USAGE;
@@ -234,6 +245,7 @@ static int gait(const struct scenario *s, void *asked)
 static int run(int argc, char **argv)
 {
     struct request request = {.steps = 1, .settle = 40, .count = 11};
+    look_begin(&request.look);
     return asked_run(&command_gait, argc, argv, gait, &request);
 }
 
@@ -245,9 +257,11 @@ static const struct option options[] = {
      .text =
          "footfalls from the scenario's start until the search begins, 40 by default; few, where "
          "the start is near a gait that does not hold"},
-    {"-o", "FILE", OPTION_TO(struct request, path),
-     .text = "instead of the report the scenario, begun on the gait and without its sweep"},
-    {"--along", "PATH=FROM..TO", OPTION_TO(struct request, along), .without = "-o",
+    {"-o", "FILE", OPTION_TO(struct request, path), .without = "--csv --json",
+     .text = "instead of the report the scenario, begun on the gait and without its sweep; with "
+             "--along a picture, a file that ends in svg, png or pdf: multipliers, speed and the "
+             "times of steps against the number, with what --settled has"},
+    {"--along", "PATH=FROM..TO", OPTION_TO(struct request, along),
      .text = "the gait followed along a number of the scenario, and where it flips (a multiplier "
              "passes -1: steps begin to alternate) or folds (1: it ends)"},
     {"--sensitivity", "PATH=FROM..TO", OPTION_TO(struct request, sensitivity),
@@ -255,10 +269,13 @@ static const struct option options[] = {
      .text = "by how much period, length and speed vary where this number of the scenario is drawn "
              "anew in each return, evenly between the two; may be repeated"},
     {"--count", "COUNT", OPTION_TO(struct request, count), .low = 2, .high = 10000,
-     .needs = "--along", .text = "values along it, 11 by default (with --along)"},
-    {TABLE_CSV(struct request, form), .needs = "--along",
-     .text = "as comma-separated values (with --along)"},
+     .needs = "--along", .text = "values along it, 11 by default"},
+    {"--settled", OPTION_TO(struct request, settled), .needs = "--along",
+     .text = "after how many steps it repeats what it comes to, slightly off each gait, in the "
+             "times of 16 steps after 200 footfalls; 0: in none; nothing where it falls"},
+    {TABLE_CSV(struct request, form), .needs = "--along", .text = "as comma-separated values"},
     {TABLE_JSON(struct request, form), .text = "as JSON"},
+    {.at = offsetof(struct request, look), .rows = look_drawn},
     {0},
 };
 
@@ -286,7 +303,8 @@ const struct command command_gait = {
     "peak_torque, friction_used, friction, slip_distance, cost_of_transport, impact_friction, "
     "least_normal_force, lift_speed, clearance, under_ground, residual, iterations, sensitivity: "
     "[{path, from, to, period, step_length, speed, error}]}; with --along {title, path, stopped, "
-    "rows: [{value, period, step_length, speed, re, im, modulus, holds, place}]}, the largest "
-    "multiplier of each, place flip, fold or jump (to another gait).\n"
+    "rows: [{value, period, step_length, speed, re, im, modulus, holds, place, repeats, settled, "
+    "multipliers: [{re, im}]}]}, re, im and modulus of the largest multiplier, place flip, fold or "
+    "jump (to another gait), settled the 16 times.\n"
     "Exit codes: 0 found, 2 bad use or scenario, or no such gait, 3 FILE cannot be written.",
 };

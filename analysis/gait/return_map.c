@@ -304,6 +304,25 @@ static bool check(const stance_case *c, const stance_kernel *kernel, int steps,
                            "number of steps; give --steps 2");
 }
 
+bool return_map_settle(const struct return_map *map, const double *z, size_t first, size_t count,
+                       double *time)
+{
+    struct return_map one = *map;
+    struct return_point next;
+    stance_message ignored;
+    double from[1][RETURN_MAP_MOST];
+    one.steps = alike(map->scene, &map->base) ? 1 : map->steps;
+    memcpy(from[0], z, sizeof from[0]);
+    for (size_t k = 0, made = 0; k < count; made += (size_t)one.steps) {
+        if (!take(&one, 1, (const double(*)[RETURN_MAP_MOST])from, 0, &next, &ignored))
+            return false;
+        memcpy(from[0], next.z, sizeof from[0]);
+        if (made >= first)
+            time[k++] = next.time / one.steps;
+    }
+    return true;
+}
+
 static void take_case(struct return_map *map, const stance_case *c)
 {
     map->base = *c;

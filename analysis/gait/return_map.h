@@ -46,6 +46,10 @@ void return_map_lift(const struct return_map *map, double height, double *positi
 /* Maps points[count]; false, with a message: one of them falls, or makes no such step. */
 bool return_map_take(const struct return_map *map, size_t count, const double (*z)[RETURN_MAP_MOST],
                      struct return_point *point, stance_message *message);
+/* From a point on: after `first` footfalls, of legs that are alike one by one, the times between
+ * the next `count`, in s; of others the mean of each return. False: it does not come so far. */
+bool return_map_settle(const struct return_map *map, const double *z, size_t first, size_t count,
+                       double *time);
 /* Name of coordinate i of the section, "q1" or "vq1". */
 const char *return_map_name(const struct return_map *map, int i, char name[STANCE_NAME + 2]);
 

@@ -230,7 +230,11 @@ static const struct option options[] = {
 #undef HELP
      "  sampled factors     NAME-sensitivity: which factor decides (stance sensitivity -h)\n"
      "  one case with a     NAME-coordinates, -forces, -torques, -gaps against time, and -strip:\n"
-     "  trajectory          stick figures; of a sweep: --case N, its files NAME-caseN-..."},
+     "  trajectory          stick figures; of a sweep: --case N, its files NAME-caseN-...\n"
+     "  ... that steps      NAME-phase: each angle against its rate, legs that are alike in one\n"
+     "                      panel; a gait closes, after two steps at the latest where it repeats\n"
+     "                      after one. NAME-strip of one that walks at its end: its last two\n"
+     "                      steps over forces and torques"},
     {"--outline", TO(outline),
      .text = "NAME-outline instead: where cases were stabilised, a line for each of up to 12 "
              "files and each value of their other axes, in one frame with a legend"},

@@ -422,8 +422,9 @@ const struct command command_replay = {
     run,
     options,
     "Computes a case again, from the scenario inside the file, and draws its coordinates, forces, "
-    "torques and gaps against time and its stick figures: NAME-caseN-coordinates ... beside the "
-    "file. Two cases are overlaid, the second dashed, its stick figures grey. -o FILE.gif: an "
+    "torques and gaps against time, its stick figures, and of what steps its angles against their "
+    "rates: NAME-caseN-coordinates ... beside the file. Two cases are overlaid, the second dashed, "
+    "its stick figures grey. -o FILE.gif: an "
     "animation in real time instead; --picture animation draws it as SVG, for browsers.",
     NULL,
 };

@@ -36,6 +36,7 @@ if (drawing eq 'svg') {
     plot NaN notitle
 }
 eval (drawing eq 'svg' && !follows ? no_axes : axes)
+set samples 2 # of the ground, a straight line
 do for [f=1:frames] {
     set xrange [centre[f] + low_x:centre[f] + high_x]
     set yrange [base[f] + low_z:base[f] + high_z]

@@ -19,23 +19,14 @@ static size_t grounded(const struct plot_case *c)
 
 /* ---- pages -------------------------------------------------------------------------------- */
 
-/* What a page shows of trajectories. */
-enum shown { POSITIONS, FORCES, TORQUES, GAPS };
-
-struct page {
-    struct gnuplot g;
-    const struct plot_case *c;
-    struct plot_range time;
-    enum shown of;
-};
-
 /* [rows][width]; NULL: it has none. */
-static const double *shown_of(const struct page *page, const struct results_trajectory *t,
+static const double *shown_of(const struct case_page *page, const struct results_trajectory *t,
                               size_t *width)
 {
     const double *const values[] = {t->position, t->force, t->torque, t->gap};
-    *width = (const size_t[]){t->coordinates, 2 * t->contacts, t->actuators, t->contacts}[page->of];
-    return values[page->of];
+    *width =
+        (const size_t[]){t->coordinates, 2 * t->contacts, t->actuators, t->contacts}[page->shown];
+    return values[page->shown];
 }
 
 /* Columns first, first + every ... before `end` of what a page shows. */
@@ -47,7 +38,8 @@ struct columns {
 /* What of some columns fits the frame. */
 struct range {
     struct plot_range of;
-    size_t beyond;  /* rows left outside */
+    size_t rows;    /* seen */
+    size_t beyond;  /* of them, left outside */
     double largest; /* of them, by magnitude */
 };
 
@@ -71,9 +63,9 @@ static double limit_of(const double *values, size_t rows, size_t width, struct c
 }
 
 /* Of all cases. */
-static struct range range_of(const struct page *page, struct columns columns)
+static struct range range_of(const struct case_page *page, struct columns columns)
 {
-    struct range range = {PLOT_NOTHING, 0, 0};
+    struct range range = {.of = PLOT_NOTHING};
     for (const struct plot_case *c = page->c; c; c = c->other) {
         size_t width;
         const double *const values = shown_of(page, c->t, &width);
@@ -81,6 +73,9 @@ static struct range range_of(const struct page *page, struct columns columns)
             columns.robust ? limit_of(values, c->t->rows, width, columns) : INFINITY;
         for (size_t k = 0; k < c->t->rows * width; k += width) {
             bool beyond = false;
+            const double time = c->t->time[k / width];
+            if (time < page->time.low || time > page->time.high)
+                continue;
             for (size_t i = k + columns.first; i < k + columns.end; i += columns.every) {
                 if (!isfinite(values[i]))
                     continue;
@@ -90,6 +85,7 @@ static struct range range_of(const struct page *page, struct columns columns)
                     range.largest = values[i];
             }
             range.beyond += beyond;
+            range.rows++;
         }
     }
     if (!(range.of.low <= range.of.high))
@@ -169,14 +165,17 @@ bool plot_case_begin(const struct plot_case *c, struct gnuplot *g, const char *n
     return true;
 }
 
-/* A page of panels, all of columns of what it shows against time. */
-static bool begin_page(struct page *page, const char *name, const char *what)
+bool plot_page_begin(struct case_page *page, const char *name, const char *what)
 {
     struct gnuplot *const g = &page->g;
     if (!plot_case_begin(page->c, g, name, NULL, what))
         return false;
     page->time = PLOT_NOTHING;
-    for (const struct plot_case *c = page->c; c; c = c->other) {
+    for (size_t k = 0; k < page->marks; k++)
+        plot_widen(&page->time, page->mark[k]);
+    if (page->marks > 0)
+        page->time = plot_roomy(page->time, 0.08);
+    for (const struct plot_case *c = page->c; c && page->marks == 0; c = c->other) {
         plot_widen(&page->time, c->t->time[0]);
         plot_widen(&page->time, c->t->time[c->t->rows - 1]);
     }
@@ -190,7 +189,7 @@ static bool begin_page(struct page *page, const char *name, const char *what)
 }
 
 /* The next panel: its range is that of all its lines and ramps. */
-static void put_panel(struct page *page, double height, const char *heading,
+static void put_panel(struct case_page *page, double height, const char *heading,
                       struct plot_range range, const char *name, const char *unit)
 {
     /* Room around the values; never so little that noise of rounding fills the frame. */
@@ -200,11 +199,19 @@ static void put_panel(struct page *page, double height, const char *heading,
     gnuplot_panel(&page->g, height, heading);
     gnuplot_axis(&page->g, 'y', PLOT_LINEAR, (struct plot_range){middle - half, middle + half},
                  name, unit);
+    if (page->marks > 0)
+        gnuplot_series(&page->g, "using 1:2 with lines dt 3 lw 1 lc rgb 0x606060");
+    for (size_t k = 0; k < page->marks; k++) {
+        /* A line with both ends outside, be it by a rounding, is not drawn. */
+        GNUPLOT_ROW(&page->g, page->mark[k], middle - 0.999 * half);
+        GNUPLOT_ROW(&page->g, page->mark[k], middle + 0.999 * half);
+        gnuplot_gap(&page->g);
+    }
 }
 
 /* A column of what is shown in the last panel, `factor` times; of another case dashed. More rows
  * than pixels become two per group, the least and the largest, so that no peak is lost. */
-static void put_line(struct page *page, size_t column, double factor, size_t hue, bool dotted)
+static void put_line(struct case_page *page, size_t column, double factor, size_t hue, bool dotted)
 {
     int number = 0;
     for (const struct plot_case *c = page->c; c; c = c->other) {
@@ -233,7 +240,8 @@ struct ramp {
     double start, rate, end;
 };
 
-static void put_ramp(struct page *page, const struct ramp *ramp, const char *colour, bool dashed)
+static void put_ramp(struct case_page *page, const struct ramp *ramp, const char *colour,
+                     bool dashed)
 {
     const double time[] = {page->time.low, fmax(page->time.low, fmin(ramp->end, page->time.high)),
                            page->time.high};
@@ -246,16 +254,17 @@ static void put_ramp(struct page *page, const struct ramp *ramp, const char *col
         GNUPLOT_ROW(&page->g, time[k], ramp->start + ramp->rate * fmin(time[k], ramp->end));
 }
 
-static void put_level(struct page *page, double level, const char *colour, bool dashed)
+static void put_level(struct case_page *page, double level, const char *colour, bool dashed)
 {
     put_ramp(page, &(struct ramp){level, 0, page->time.high}, colour, dashed);
 }
 
 /* A line and an entry of the legend for each contact or actuator. */
-static void put_names(struct page *page, const char (*names)[SCENARIO_NAME], size_t count)
+static void put_names(struct case_page *page, const char (*names)[SCENARIO_NAME], size_t count,
+                      int dash)
 {
     for (size_t k = 0; k < count; k++)
-        gnuplot_legend(&page->g, gnuplot_hue(k), 0, 0, names[k], "");
+        gnuplot_legend(&page->g, gnuplot_hue(k), dash, 0, names[k], "");
 }
 
 /* ---- coordinates -------------------------------------------------------------------------- */
@@ -297,10 +306,10 @@ static bool draw_coordinates(const struct plot_case *c)
 {
     static const stance_quantity unknown = {.unit = "", .text = ""};
     const struct results_trajectory *t = c->t;
-    struct page page = {.c = c, .of = POSITIONS};
+    struct case_page page = {.c = c, .shown = SHOWN_POSITIONS};
     bool targets = false, led = false;
 
-    if (!begin_page(&page, "coordinates", "Coordinates"))
+    if (!plot_page_begin(&page, "coordinates", "Coordinates"))
         return false;
     for (size_t i = 0; i < t->coordinates; i++) {
         const stance_quantity *q = c->readable ? &c->scenario.scene->coordinate[i] : &unknown;
@@ -331,51 +340,61 @@ static bool draw_coordinates(const struct plot_case *c)
 /* ---- forces ------------------------------------------------------------------------------- */
 
 /* "Normal force (mean over 0.01 s); 1 of 801 instants beyond the frame, the largest 9000 N" */
-static void heading_of(const struct results_trajectory *t, const struct range *range,
-                       const char *unit, char *text, size_t size)
+static void heading_of(const struct range *range, bool brief, const char *unit, char *text,
+                       size_t size)
 {
-    if (range->beyond > 0)
+    if (range->beyond > 0 && brief)
+        add_text(text, size, "; beyond the frame up to %.4g %s", range->largest, unit);
+    else if (range->beyond > 0)
         add_text(text, size, "; %zu of %zu instants beyond the frame, up to %.4g %s", range->beyond,
-                 t->rows, range->largest, unit);
+                 range->rows, range->largest, unit);
 }
 
-/* Normal and tangential forces, the latter with the edges of the friction cones. */
-static bool draw_forces(const struct plot_case *c)
+void plot_page_forces(struct case_page *page, double height)
 {
-    static const char *const names[][2] = {{"Normal force, out of the ground", "normal force"},
-                                           {"Tangential force, along +x", "tangential force"}};
+    static const char *const names[][4] = {
+        {"Normal force, out of the ground", "normal force", "Normal force", "normal"},
+        {"Tangential force, along +x", "tangential force", "Tangential force", "tangential"}};
+    const struct plot_case *const c = page->c;
     const struct results_trajectory *t = c->t;
     const size_t count = grounded(c);
-    struct page page = {.c = c, .of = FORCES};
     stance_tree_numbers number = {0};
+    const bool brief = page->marks > 0;
     char text[300];
     bool rough = false;
 
+    page->shown = SHOWN_FORCES;
     if (c->readable)
         stance_tree_numbers_make(c->scenario.scene->tree, c->scenario.scene->mechanism,
                                  c->values.robot, &number);
-    if (!begin_page(&page, "forces", "Forces of the ground on the contacts"))
-        return false;
     for (size_t k = 0; k < 2; k++) {
-        const struct range range = range_of(&page, (struct columns){k, 2, 2 * count, true});
-        snprintf(text, sizeof text, "%s", names[k][0]);
-        if (t->rows > 1)
+        const struct range range = range_of(page, (struct columns){k, 2, 2 * count, true});
+        snprintf(text, sizeof text, "%s", names[k][brief ? 2 : 0]);
+        if (t->rows > 1 && !brief)
             add_text(text, sizeof text, " (means over %.4g s)", t->time[1] - t->time[0]);
-        heading_of(t, &range, "N", text, sizeof text);
-        put_panel(&page, 220, text, range.of, names[k][1], "N");
+        heading_of(&range, brief, "N", text, sizeof text);
+        put_panel(page, height, text, range.of, names[k][brief ? 3 : 1], "N");
         for (size_t i = 0; i < count; i++) {
             for (int sign = -1; k == 1 && c->readable && sign <= 1; sign += 2)
-                put_line(&page, 2 * i, sign * c->values.friction * number.rough[i], i, true);
-            put_line(&page, 2 * i + k, 1, i, false);
+                put_line(page, 2 * i, sign * c->values.friction * number.rough[i], i, true);
+            put_line(page, 2 * i + k, 1, i, false);
             rough |= c->readable && number.rough[i] != 1;
         }
     }
-    put_names(&page, t->contact, count);
+    put_names(page, t->contact, count, 0);
     if (c->readable) {
-        gnuplot_note(&page.g, "tangential, dotted:");
-        gnuplot_note(&page.g, "limit of friction %.4g%s", c->values.friction,
+        gnuplot_note(&page->g, "tangential, dotted:");
+        gnuplot_note(&page->g, "limit of friction %.4g%s", c->values.friction,
                      rough ? " times each friction_factor" : "");
     }
+}
+
+static bool draw_forces(const struct plot_case *c)
+{
+    struct case_page page = {.c = c};
+    if (!plot_page_begin(&page, "forces", "Forces of the ground on the contacts"))
+        return false;
+    plot_page_forces(&page, 220);
     return gnuplot_end(&page.g);
 }
 
@@ -432,34 +451,41 @@ static size_t torque_levels(const struct plot_case *c, size_t actuators, struct 
     return count;
 }
 
-static bool draw_torques(const struct plot_case *c)
+void plot_page_torques(struct case_page *page, double height)
 {
+    const struct plot_case *const c = page->c;
     const struct results_trajectory *t = c->t;
-    struct page page = {.c = c, .of = TORQUES};
-    struct range range = range_of(&page, (struct columns){0, 1, t->actuators, true});
+    page->shown = SHOWN_TORQUES;
+    struct range range = range_of(page, (struct columns){0, 1, t->actuators, true});
     const double extent = 4 * fmax(fabs(range.of.low), fabs(range.of.high));
     const char *unit, *const label = torque_label(c, &unit);
     struct torque_level level[STANCE_MAX_ACTUATORS];
     char text[300] = "Applied in the step that ends at each instant";
 
-    if (!begin_page(&page, "torques", "What the actuators give"))
-        return false;
-    heading_of(t, &range, unit, text, sizeof text);
+    heading_of(&range, page->marks > 0, unit, text, sizeof text);
     const size_t limits = torque_levels(c, t->actuators, level);
     for (size_t k = 0; k < limits && level[k].limit < extent; k++) {
         plot_widen(&range.of, -level[k].limit);
         plot_widen(&range.of, level[k].limit);
     }
-    put_panel(&page, 260, text, range.of, label, "");
+    put_panel(page, height, text, range.of, label, "");
     for (size_t k = 0; k < limits; k++)
         for (int sign = -1; level[k].limit < extent && sign <= 1; sign += 2)
-            put_level(&page, sign * level[k].limit, "0x606060", true);
+            put_level(page, sign * level[k].limit, "0x606060", true);
     for (size_t k = 0; k < t->actuators; k++)
-        put_line(&page, k, 1, k, false);
-    put_names(&page, t->actuator, t->actuators);
+        put_line(page, k, 1, k, false);
+    put_names(page, t->actuator, t->actuators, page->marks > 0);
     for (size_t k = 0; k < limits; k++)
-        gnuplot_note(&page.g, "%slimit %.4g %s%s", level[k].limit < extent ? "dashed: " : "",
+        gnuplot_note(&page->g, "%slimit %.4g %s%s", level[k].limit < extent ? "dashed: " : "",
                      level[k].limit, level[k].unit, level[k].of);
+}
+
+static bool draw_torques(const struct plot_case *c)
+{
+    struct case_page page = {.c = c};
+    if (!plot_page_begin(&page, "torques", "What the actuators give"))
+        return false;
+    plot_page_torques(&page, 260);
     return gnuplot_end(&page.g);
 }
 
@@ -467,17 +493,17 @@ static bool draw_gaps(const struct plot_case *c)
 {
     const struct results_trajectory *t = c->t;
     const size_t count = grounded(c);
-    struct page page = {.c = c, .of = GAPS};
-    struct range range = range_of(&page, (struct columns){0, 1, count, false});
+    struct case_page page = {.c = c, .shown = SHOWN_GAPS};
 
-    if (!begin_page(&page, "gaps", "Heights of the contact points above the ground"))
+    if (!plot_page_begin(&page, "gaps", "Heights of the contact points above the ground"))
         return false;
+    struct range range = range_of(&page, (struct columns){0, 1, count, false});
     plot_widen(&range.of, 0);
     put_panel(&page, 260, "", range.of, "gap", "m");
     put_level(&page, 0, "0x606060", false);
     for (size_t k = 0; k < count; k++)
         put_line(&page, k, 1, k, false);
-    put_names(&page, t->contact, count);
+    put_names(&page, t->contact, count, 0);
     return gnuplot_end(&page.g);
 }
 
@@ -550,5 +576,5 @@ bool plot_case(const struct plot_case *c)
     if (good && !c->readable)
         fprintf(stderr, "%s: no stick figures: this version cannot read the file's scenario\n",
                 c->plot->r->file);
-    return good && (!c->readable || plot_strip(c));
+    return good && (!c->readable || (plot_strip(c) && plot_phase(c)));
 }

@@ -37,6 +37,65 @@ static bool is_outline(const struct plot_case *c)
     return round;
 }
 
+/* Of a disc that a contact is; 0: it is none. */
+static double radius_of(const stance_mechanism *m, const stance_mechanism_numbers *number,
+                        int contact)
+{
+    int e = 0;
+    for (; contact > m->element[e].sole; e++)
+        contact -= m->element[e].sole ? 2 : 1;
+    return m->element[e].sole ? 0 : number->element[e].radius;
+}
+
+/* Which contact's each point is: its own; of a robot with two legs also its disc's rim and centre,
+ * so that a leg has the colour of its foot. Of other outlines none is. */
+static void find_feet(struct figure *figure, const struct plot_case *c)
+{
+    const stance_scene *const scene = c->scenario.scene;
+    stance_mechanism_numbers number;
+    double sine, cosine;
+    stance_mechanism_expand(scene->mechanism, c->values.robot, &number);
+    stance_sincos(c->values.robot[STANCE_ROBOT_SLOPE], &sine, &cosine);
+    for (int p = 0; p < figure->points; p++)
+        figure->foot[p] = -1, figure->upper[p] = false;
+    for (int k = plot_case_grounded(scene); k-- > 0;) {
+        const double r = radius_of(scene->mechanism, &number, k);
+        double below[2] = {0, 0}; /* where the rim begins, from the centre */
+        for (int p = 0; p < figure->points && (scene->exchange.any || !figure->outline); p++) {
+            const double x = figure->point[p][0] - figure->contact[k][0] - r * sine,
+                         z = figure->point[p][1] - figure->contact[k][1] - r * cosine;
+            const bool rim = fabs(hypot(x, z) - r) < 1e-9;
+            if (!rim && hypot(x, z) > 1e-9)
+                continue;
+            figure->foot[p] = k;
+            if (rim && below[0] == 0 && below[1] == 0)
+                below[0] = x, below[1] = z;
+            figure->upper[p] = rim && r > 0 && x * below[0] + z * below[1] < 0.4 * r * r;
+        }
+    }
+}
+
+/* Of legs that are alike, what turns with the joints of one of them is of its first foot. */
+static void find_legs(struct figure *figure, const struct plot_case *c, const double *position)
+{
+    const stance_scene *const scene = c->scenario.scene;
+    const stance_exchange *const e = &scene->exchange;
+    for (int leg = 0; leg < 2 && e->any; leg++) {
+        double bent[STANCE_MAX_COORDINATES] = {0}, point[STANCE_MAX_POINTS][2];
+        for (int i = 0; i < scene->coordinates; i++) {
+            bent[i] = position[i];
+            for (int k = 0; k < scene->coordinates; k++)
+                if (e->coordinate[i][k] == 1 && (leg ? k < i : k > i))
+                    bent[i] += 1e-3;
+        }
+        scene->figure(scene, c->values.robot, bent, point);
+        for (int p = 0; p < figure->points; p++)
+            if (figure->foot[p] < 0 &&
+                hypot(point[p][0] - figure->point[p][0], point[p][1] - figure->point[p][1]) > 1e-9)
+                figure->foot[p] = __builtin_ctz(e->leg[leg]);
+    }
+}
+
 void figure_make(struct figure *figure, const struct plot_case *c, size_t row)
 {
     const stance_scene *scene = c->scenario.scene;
@@ -50,6 +109,8 @@ void figure_make(struct figure *figure, const struct plot_case *c, size_t row)
     figure->points = scene->figure(scene, c->values.robot, position, figure->point);
     for (int k = 0; k < plot_case_grounded(scene); k++)
         scene->contact_point(scene, c->values.robot, position, rest, k, figure->contact[k], speed);
+    find_feet(figure, c);
+    find_legs(figure, c, position);
     figure->centre = 0;
     for (int p = 0; p < figure->points; p++)
         figure->centre += figure->point[p][0] / figure->points;
@@ -65,32 +126,37 @@ int figure_names(struct gnuplot *g, const stance_scene *scene)
     return contacts;
 }
 
-/* Contact that a point of the figure is, or -1. */
-static int contact_at(const struct figure *figure, int contacts, int point)
+/* Whether a point of the figure is a contact. */
+static bool is_contact(const struct figure *figure, int contacts, int point)
 {
     for (int k = 0; k < contacts; k++)
         if (hypot(figure->point[point][0] - figure->contact[k][0],
                   figure->point[point][1] - figure->contact[k][1]) < 1e-9)
-            return k;
-    return -1;
+            return true;
+    return false;
 }
 
 void figure_put(struct gnuplot *g, const struct figure *figure, int contacts, enum figure_part part,
                 double dx, double dz)
 {
     for (int p = 0; part == FIGURE_SEGMENTS && p + 1 < figure->points; p++) {
-        /* In the colour of its contact; the body's also between two contacts. */
-        const int first = contact_at(figure, contacts, p),
-                  second = contact_at(figure, contacts, p + 1);
-        const bool body = figure->outline || (first >= 0) == (second >= 0);
-        const int contact = body ? contacts : first >= 0 ? first : second;
+        /* In the colour of its leg; the body's also between two contacts. */
+        const int first = figure->foot[p], second = figure->foot[p + 1];
+        const bool alike = first == second && !(is_contact(figure, contacts, p) &&
+                                                is_contact(figure, contacts, p + 1));
+        const bool body = !alike && (first >= 0) == (second >= 0);
+        const int contact = body ? contacts : first >= 0 ? first : second >= 0 ? second : contacts;
+        if (figure->open && (figure->upper[p] || figure->upper[p + 1]))
+            continue;
         for (int end = 0; end < 2; end++)
-            GNUPLOT_ROW(g, figure->point[p + end][0] + dx, figure->point[p + end][1] + dz, contact);
+            GNUPLOT_ROW(g, figure->point[p + end][0] + dx, figure->point[p + end][1] + dz, contact,
+                        figure->time);
         gnuplot_gap(g);
     }
     for (int p = 0; part == FIGURE_POINTS && p < figure->points && !figure->outline; p++)
-        if (contact_at(figure, contacts, p) < 0)
-            GNUPLOT_ROW(g, figure->point[p][0] + dx, figure->point[p][1] + dz, contacts);
+        if (!is_contact(figure, contacts, p))
+            GNUPLOT_ROW(g, figure->point[p][0] + dx, figure->point[p][1] + dz,
+                        figure->foot[p] < 0 ? contacts : figure->foot[p], figure->time);
     for (int k = 0; part == FIGURE_POINTS && k < contacts; k++)
-        GNUPLOT_ROW(g, figure->contact[k][0] + dx, figure->contact[k][1] + dz, k);
+        GNUPLOT_ROW(g, figure->contact[k][0] + dx, figure->contact[k][1] + dz, k, figure->time);
 }

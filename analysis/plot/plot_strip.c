@@ -100,6 +100,9 @@ static void put_figures(struct gnuplot *g, const struct strip *strip)
 bool plot_strip(const struct plot_case *c)
 {
     struct gnuplot g;
+    bool drawn;
+    if (!plot_steps(c, &drawn) || drawn)
+        return drawn;
     if (!plot_case_begin(c, &g, "strip", plot_strip_gp, "Stick figures"))
         return false;
     struct strip *const strip = gnuplot_room(&g, 1, sizeof *strip);

@@ -45,7 +45,15 @@ static void stage_scenario(struct run *run)
             run->scenario = run_read_scenario(run, sets);
         scenario_drop(own);
     }
-    if (run_share_scenario(run) && o->single && o->single_case >= run->scenario->cases)
+    if (!run_share_scenario(run))
+        return;
+    if (o->trace && !o->single && run->scenario->cases > 1)
+        run_fail(run, EXIT_USAGE,
+                 "stance run: --trace needs --only: the scenario's cases are 0 ... %" PRIu64,
+                 run->scenario->cases - 1);
+    else if (o->trace && !o->single)
+        run->options.single = true, run->options.single_case = 0;
+    if (o->single && o->single_case >= run->scenario->cases)
         run_fail(run, EXIT_USAGE,
                  "stance run: --only %" PRIu64 ": the scenario's cases are 0 ... %" PRIu64,
                  o->single_case, run->scenario->cases - 1);

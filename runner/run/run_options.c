@@ -113,9 +113,9 @@ static const struct option options[] = {
      .text = "stop after 90s, 55m, 1h30m ... of wall time; resumable"},
     {"--only", "CASE", TO(single_case), .takes = "the flat index of a case",
      .text = "compute one case of the sweep, by its flat index, to a file of its own"},
-    {"--trace", TO(trace), .needs = "--only",
+    {"--trace", TO(trace), .without = "--resume --extend --shard",
      .text = "... and record its trajectory, each 0.01 s unless record.every says (`record` in "
-             "the scenario records a sweep)"},
+             "the scenario records a sweep); of a scenario of one case without --only, too"},
     {"--extend", "COUNT", TO(extend_count), .low = 1, .takes = "the new sweep.sample.count",
      .without = "--only",
      .text = "a new file with sweep.sample.count COUNT, by default results/<scenario "
