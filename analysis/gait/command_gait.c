@@ -31,7 +31,8 @@ static const char text[] =
     "Just after a footfall, standing on {foot}[sampled: (samples begin there)]\n"
     "[state*:  {key%-12s} {value%16.12f}\n]"
     "\nMultipliers of [steps=1:a step|{steps} steps]: the gait is [stable:stable|NOT stable]\n"
-    "[multipliers*:  {modulus%.9f}  {.number%-26s}  +- {error%.1e}\n]"
+    "  modulus      multiplier                  error\n"
+    "[multipliers*:  {modulus%.9f}  {.number%-26s}  {error%.1e}\n]"
     "\nOn the way\n"
     "[peak_torque:  largest torque {peak_torque%.4g} N m\n]"
     "  friction used  {friction_used%.4g} of {friction%.4g}[.slips:; slips by {slip_distance%.3g} "
@@ -202,9 +203,8 @@ static const struct option options[] = {
      .text = "the gait followed along a number of the scenario, and where it flips (a multiplier "
              "passes -1: steps begin to alternate) or folds (1: it ends)"},
     {"--count", "COUNT", OPTION_TO(struct request, count), .low = 2, .high = 10000,
-     .needs = "--along", .text = "values along it, 11 by default (with --along)"},
-    {TABLE_CSV(struct request, form), .needs = "--along",
-     .text = "as comma-separated values (with --along)"},
+     .needs = "--along", .text = "values along it, 11 by default"},
+    {TABLE_CSV(struct request, form), .needs = "--along", .text = "as comma-separated values"},
     {TABLE_JSON(struct request, form), .text = "as JSON"},
     {0},
 };
@@ -215,9 +215,8 @@ const struct command command_gait = {
     run,
     options,
     "Lets a scenario, without its sweep, walk, and looks from there for the gait that returns to "
-    "itself "
-    "exactly, with its multipliers: by how much a small departure has changed a step later. It "
-    "holds where all are less than 1.",
+    "itself exactly, with its multipliers: by how much a small departure has changed a step later. "
+    "It holds where all are less than 1 in size.",
     "The section is the state just after a footfall, legs read as if the first one had landed. "
     "Samples "
     "of a controller begin there (the clock of a run goes on instead: the gait then locks to it, "

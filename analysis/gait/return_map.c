@@ -119,7 +119,8 @@ static bool returned(const struct return_map *map, const stance_case *c, const s
     snprintf(message->text, sizeof message->text,
              r->status != STANCE_DONE ? "a run failed after %ld footfall%s%s%s"
              : r->outcome == STANCE_FELL
-                 ? "it falls after %ld footfall%s%s%s; give a start that walks"
+                 ? "it falls after %ld footfall%s%s%s; give a start that walks (--along "
+                   "follows a gait away from one)"
                  : "it makes %ld footfall%s in 100 s and no more%s%s",
              made, made == 1 ? "" : "s", cause[0] ? ", by " : "", cause);
     return false;
