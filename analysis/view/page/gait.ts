@@ -12,8 +12,8 @@ export interface Footfall {
   z: number;
 }
 
-// Where contacts began to bear, those that bear from the start among them. `contacts` have forces, each row has places of
-// `columns`.
+// Where contacts began to bear; at time 0 those that bear from the start, which fell before. `contacts` have forces, each
+// row has places of `columns`.
 export function footfalls(rows: Trajectory, contacts: number, columns: number): Footfall[] {
   const found: Footfall[] = [];
   for (let c = 0; c < contacts; c++) {
@@ -22,7 +22,7 @@ export function footfalls(rows: Trajectory, contacts: number, columns: number): 
       const place = 2 * (k * columns + c);
       if (!(rows.force[place] > 0)) continue;
       const time = rows.time[k];
-      if (time - last > pause) found.push({ time, contact: c, x: rows.contact[place], z: rows.contact[place + 1] });
+      if (time - last > pause) found.push({ time: k > 1 ? time : 0, contact: c, x: rows.contact[place], z: rows.contact[place + 1] });
       last = time;
     }
   }

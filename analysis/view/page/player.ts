@@ -212,7 +212,7 @@ export class Player {
     return this.cases.map((c) => {
       const k = rowAt(c.rows, this.time);
       const q = c.scene.coordinates.map((x, i) => `${x.name} ${numberText(c.rows.position[k * c.scene.coordinates.length + i], 3)} ${x.unit}`);
-      const steps = this.follows ? `, ${this.fallen(c).length} footfalls` : '';
+      const steps = this.follows ? `, ${this.fallen(c).filter((x) => x.time > 0).length} footfalls` : '';
       return `${c.name}, ${c.outcome}, at ${this.time.toFixed(3)} s: ${q.join(', ')}${steps}`;
     }).join('; ');
   }
