@@ -64,7 +64,7 @@ export class Player {
   // Of all cases and rows: what is in sight, and the largest force and torque.
   private box: Box = { left: 0, right: 1, low: 0, high: 1 };
   private follows = false;
-  private steps = new Map<PlayedCase, Footfall[]>(); // where the view moves with the robot
+  private steps = new Map<PlayedCase, Footfall[]>(); // of robots that go away, and of walkers
   private force = 0;
   private torque = 0;
   readonly element: HTMLElement;
@@ -184,7 +184,7 @@ export class Player {
     this.force = forces.length ? forces[Math.floor(0.98 * (forces.length - 1))] : 0;
     this.follows = box.right - box.left > 3.2 * size;
     if (this.follows) Object.assign(box, { left: -size, right: size }, over);
-    this.steps = new Map(this.follows ? this.cases.map((c) => [c, footfalls(c.rows, c.scene.contacts.length, c.text.contacts)]) : []);
+    this.steps = new Map(this.follows || this.cases.some((c) => c.values['ground.lands'] === 'ahead') ? this.cases.map((c) => [c, footfalls(c.rows, c.scene.contacts.length, c.text.contacts)]) : []);
     const margin = 0.16 * size;
     this.box = { left: box.left - margin, right: box.right + margin, low: Math.min(box.low, 0) - margin, high: box.high + margin };
   }
@@ -212,7 +212,7 @@ export class Player {
     return this.cases.map((c) => {
       const k = rowAt(c.rows, this.time);
       const q = c.scene.coordinates.map((x, i) => `${x.name} ${numberText(c.rows.position[k * c.scene.coordinates.length + i], 3)} ${x.unit}`);
-      const steps = this.follows ? `, ${this.fallen(c).filter((x) => x.time > 0).length} footfalls` : '';
+      const steps = this.steps.size ? `, ${this.fallen(c).filter((x) => x.time > 0).length} footfalls` : '';
       return `${c.name}, ${c.outcome}, at ${this.time.toFixed(3)} s: ${q.join(', ')}${steps}`;
     }).join('; ');
   }
@@ -264,7 +264,7 @@ export class Player {
       g.lineTo(X(x) - 7, Y(z(x)) + 9);
     }
     g.stroke();
-    if (!this.follows) return;
+    if (!this.steps.size) return;
     // How far it has gone.
     g.fillStyle = style('--muted');
     g.font = '10px system-ui, sans-serif';
