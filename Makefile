@@ -302,7 +302,7 @@ web-page:
 	+@$(WEB_MAKE) MPI=0 $(WEB)/page.html
 # Pages that simulate, the program that makes them, and pages of studies that ship.
 GALLERY  = basin_one_foot basin_both_feet friction_sweep topple block_threshold painleve controllers/bimodal \
-           controllers/switching mechanisms/compass_gait mechanisms/rabbit mechanisms/pushed balance_recovers walk_attempt
+           controllers/switching mechanisms/compass_gait mechanisms/rabbit mechanisms/pushed balance_recovers walk_attempt gaits/walks
 GALLERY_DIRECTORY = results/gallery
 web: packages packages-web
 	$(MAKE) -j$(CORES) web-page

@@ -388,6 +388,38 @@ check('a mechanism with springs: identical, forces and no torques', () =>
     same(await p.evaluate(`[...document.querySelectorAll('.course')].map((c) => c.dataset.course).join()`), 'coordinates,forces', 'courses');
   }));
 
+check('a walker: followed along the ground, its footfalls told; answers of steps; another slope', () =>
+  on('walker.html', { motion: false }, async (p) => {
+    await p.until(painted);
+    const h = head('walker.html');
+    same(await p.evaluate(`${count('walks')} + ${count('fell')}`), h.cases, 'cases in the legend');
+    same((await p.pixel('#map', 0.5, 0.7)).join(), '45,184,124', 'colour of what walks');
+    await p.click(...(await p.spot('#map', 0.5, 0.7)));
+    await p.until(played);
+    await p.click(...(await p.spot('#map', 0.1, 0.1)), shift);
+    await p.until(`document.querySelectorAll('#case-list .badge').length === 2`);
+    same(await p.evaluate(`[...document.querySelectorAll('#case-list .outcome')].map((x) => x.textContent).join()`), 'walks,fell', 'outcomes');
+    same(await p.evaluate(badges), 'identical to the file|identical to the file', 'badges');
+    const answers = await p.evaluate(`document.querySelector('#case-list dl').textContent`);
+    for (const word of ['walked_steps1', 'step_time0.66', 'step_length0.27', 'gait_period1']) assert(answers.includes(word), `${word}: ${answers}`);
+    // Metres from where it began it is in the middle still.
+    await p.evaluate(`document.querySelector('#case-list .case:nth-of-type(2) button[aria-label^=Remove]').click()`);
+    await p.until(`document.querySelectorAll('#case-list .badge').length === 1`);
+    await p.set('#scrub', '7');
+    await p.until(`/at 7.000 s: x [23].*, 1\\d footfalls/.test(document.querySelector('#figure').getAttribute('aria-label'))`);
+    const legs = await p.evaluate(`(() => { const c = document.querySelector('#figure'); const w = Math.round(c.width / 3);
+      const d = c.getContext('2d').getImageData(w, c.height / 4, w, c.height / 2).data; const found = [0, 0];
+      for (let i = 0; i < d.length; i += 4) { if (d[i] === 0 && d[i + 1] === 114) found[0]++; if (d[i] === 213 && d[i + 1] === 94) found[1]++; } return found; })()`);
+    assert(legs[0] > 50 && legs[1] > 50, `pixels of two legs in the middle: ${legs}`);
+    await p.set('#colour', 'step_length');
+    await p.until(`document.querySelector('#legend').innerText.startsWith('step_length (m)')`);
+    await p.set('#colour', 'outcome');
+    await p.evaluate(`location.hash = '#set=ground.slope=0.03&map=9,refined'`);
+    await p.until(`${computed} && document.querySelector('#map').dataset.computed === 'true' && ${count('walks')} > 5`);
+    const command = await p.evaluate(`document.querySelector('#live-part .command code').textContent`);
+    assert(command.includes('--set ground.slope=0.03'), command);
+  }));
+
 check('a case that is not what the file says is found out', async () => {
   withHead('single.html', 'other.html', (h) => ({ ...h, wire: h.wire.replace('12:torque_limits2:10', '12:torque_limits1:5') }));
   await on('other.html', { motion: false }, async (p) => {

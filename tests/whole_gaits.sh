@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# What a newcomer types to walk: a compass down a slope, its cycle, a scenario begun on it, other hips, the paper's
-# biped, its starts; and what is wrong, said in one line with its place.
+# What a newcomer types to walk: a compass down a slope, its cycle, multipliers and basin, other hips, where it flips; the
+# paper's biped, its starts, pushes and a film; and what is wrong, said in one line with its place.
 # Speaks TAP.
 # about: analysis/gait analysis/summary analysis/plot runner/run
 set -u
@@ -17,27 +17,66 @@ says() { # NAME PATTERN COMMAND...: its output has the pattern
     result $? "$name"
 }
 
-# ---- the first half hour -----------------------------------------------------------------------
+# ---- the first half hour, in the order of scenarios/gaits/README.md -------------------------------
+# A compass down a slope: its cycle, how fast departures from it die, a scenario begun on it.
 says "a compass has a gait" '^  period +0\.744928150? s$' "$stance" gait "$compass" "${exact[@]}"
+grep -qE '^  0\.5241[0-9]+  0\.12528[0-9]* \+- 0\.50896[0-9]*i ' log
+result $? "... with two multipliers that turn"
 says "that holds" 'the gait is stable' "$stance" gait "$compass"
 expect "a scenario begun on it" 0 "$stance" gait "$compass" -o cycle.yaml
 says "walks by itself" '1 walks' "$stance" run cycle.yaml --set stop.walks.steps=10 --set stop.time=20 -o cycle.h5
+says "in steps of the cycle's length" '^  step_length +0\.75921[0-9]* m$' "$stance" summary cycle.h5
 says "its cycle is where it began" '^  vleg1 +-1\.41932714' "$stance" gait cycle.yaml --settle 1 "${exact[@]}"
-says "a heavier hip walks otherwise" '^  period +0\.7[0-9]+ s$' "$stance" gait "$compass" --set robot.bodies.hip.mass=12
-says "steeper than 4.39 degrees it limps" 'NOT stable' "$stance" gait "$compass" --set robot.bodies.leg1.centre='[0, -0.5]' \
-    --set ground.slope=0.0785 --set 'robot.contacts={foot1: {body: leg1, at: [0, -1]}, foot2: {body: leg2, at: [0, -1]}}' \
-    --set 'initial.state={leg1: 0.2302, leg2: -0.6172, vleg1: -1.152995, vleg2: 1.0019}' --settle 1
+# From where it comes to it.
+walking=(--set stop.walks.steps=10 --set stop.time=30)
+says "ranges of starts that show its basin" 'cease to be walks' "$stance" ranges "$compass" "${walking[@]}"
+cp log ranges
+grep -qE '^# These ranges hold the domain: about [23][0-9] %' ranges && [ "$(grep -c 'path: initial.state.vleg' ranges)" = 2 ]
+result $? "... both rates, of which a third walk"
+says "its basin" ' [1-9][0-9]* walks' "$stance" run "$compass" "${walking[@]}" --set 'sweep.grid[0].count=17' \
+    --set 'sweep.grid[1].count=17' -o basin.h5
+says "is measured" '^ +1[0-9]\.[0-9]+ %' "$stance" basin basin.h5
+# A hip of one's own, and a steeper slope.
+says "a heavier hip walks otherwise" '^  period +0\.75644[0-9]* s$' "$stance" gait "$compass" --set robot.bodies.hip.mass=12
+says "a much lighter one is reached along the way" '^ +2 +0\.61337[0-9]* .* holds$' "$stance" gait "$compass" \
+    --along robot.bodies.hip.mass=10..2 --count 5
+says "... which is told where the start does not walk" 'falls after 1 footfall, by waist; .*--along' "$stance" gait "$compass" \
+    --set robot.bodies.hip.mass=2
 points=(--set 'robot.contacts={foot1: {body: leg1, at: [0, -1]}, foot2: {body: leg2, at: [0, -1]}}' --settle 1
     --set 'initial.state={leg1: 0.2302, leg2: -0.6172, vleg1: -1.152995, vleg2: 1.0019}')
-says "where it begins to, by an independent program 0.0766356315753 rad" '^0\.07663563157[0-9]*,.*,flip' "$stance" gait \
-    "$compass" "${points[@]}" "${exact[@]}" --along ground.slope=0.076..0.077 --count 2 --csv
+says "on point feet steps begin to alternate, by an independent program at 0.0766356315753 rad" \
+    '^0\.07663563157[0-9]*,.*,flip' "$stance" gait "$compass" "${points[@]}" "${exact[@]}" --along ground.slope=0.076..0.077 \
+    --count 2 --csv
+says "steeper it does not hold" 'NOT stable' "$stance" gait "$compass" "${points[@]}" --set ground.slope=0.0785
+# The paper's biped: its gait, its starts, its pushes, a film.
 says "the paper's biped walks" '^  period +0\.66823[0-9]* s$' "$stance" gait "$walks"
+says "programs get it as JSON" '"stable": true' "$stance" gait "$walks" --json
 says "from one start in nine" '(3[0-9]|4[0-9]) walks' "$stance" run "$walks" --set 'sweep.grid[0].count=19' \
     --set 'sweep.grid[1].count=19' -o map.h5
 expect "which is drawn" 0 "$stance" plot map.h5 --picture map
 says "a basin is measured" 'Starts that end as walks' "$stance" basin map.h5
-says "summaries tell of steps" '^  walks +[1-9]' "$stance" summary map.h5
-says "programs get it as JSON" '"stable": true' "$stance" gait "$walks" --json
+says "summaries tell of steps" '^  step_time \(s\) +0\.66' "$stance" summary map.h5
+grep -qE '^  walks +[34][0-9] ' log
+result $? "... and how many walk"
+expect "pushes at the hip" 0 "$stance" run "$shipped/gaits/walk_pushes.yaml" --set 'sweep.grid[0].count=3' \
+    --set 'sweep.grid[1].count=9' -o pushes.h5
+"$python" - >log 2>&1 <<'END'
+import h5py
+f = h5py.File("pushes.h5")
+words = f["outcome"].attrs["flag_meanings"]
+walks = (words.decode() if isinstance(words, bytes) else words).split().index("walks")
+for row, (weakest, strongest) in zip(f["outcome"][...], [(0, 15), (-30, 45), (0, 15)]):
+    survived = [-60 + 15 * k for k in range(9) if row[k] == walks]
+    assert survived == list(range(weakest, strongest + 1, 15)), (survived, weakest, strongest)
+END
+result $? "... are survived best in mid-step, and better forwards"
+expect "which is drawn, too" 0 "$stance" plot pushes.h5 --picture map
+says "a film of one" 'waist.from = 0.33 s.*force\[0\] = 30 N: walks' "$stance" replay pushes.h5 --near 'from=0.33,force[0]=30' \
+    --set stop.time=2 -o push.gif
+grep -q 'case 15: was walks in the file, and is undecided now' log
+result $? "... of its first two seconds, which do not tell"
+[ "$(head -c 6 push.gif)" = GIF89a ] && [ "$(wc -c <push.gif)" -gt 100000 ]
+result $? "... that moves"
 
 # ---- pictures ----------------------------------------------------------------------------------
 expect "two steps of the cycle, recorded" 0 "$stance" run cycle.yaml --trace --set stop.footfalls=2 -o two.h5 --quiet

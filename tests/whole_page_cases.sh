@@ -35,6 +35,12 @@ page sampled sampled --set sweep.sample.count=32
 sets=() && grid 65 65 && page refined basin_refined "${sets[@]}"
 page pushed mechanisms/pushed --set 'sweep.grid[1].count=5'
 sets=() && grid 5 5 && page compass mechanisms/compass_gait "${sets[@]}"
+sets=() && grid "$side" "$side" && page walks gaits/walks "${sets[@]}"
+page rabbit-walks gaits/rabbit_walks "${sets[@]}"
+page walk-pushes gaits/walk_pushes "${sets[@]}"
+page without-model gaits/walks_without_model --set 'sweep.grid[0].count=7'
+page clock gaits/walks_by_the_clock --set 'sweep.grid[0].count=7'
+page compass-walks mechanisms/compass_gait "${sets[@]}" --set stop.walks.steps=10 --set stop.time=30
 for law in bimodal switching sensors delay lag; do
     page "$law" "controllers/$law" --set 'sweep.grid=[{path: initial.offset.theta, from: -0.1, to: 0.1, count: 6}, {path: initial.offset.vtheta, from: -0.4, to: 0.4, count: 5}]'
 done
@@ -62,4 +68,7 @@ change stop.time=3 stop.settle.hold=0.1
 study mechanisms/cart_pole
 change ground.gravity=5 controller.model.gravity=9.81
 change controller.torque_limit=20 method.step=0.002
+study gaits/walks
+change ground.friction=0.6 ground.slope=0.02
+change controller.torque_limit=8 controller.sample_time=0.005
 "$node" "$tests/page_cases.mjs" "$cases" "${pages[@]}"

@@ -16,6 +16,7 @@ make_page refined basin_refined.yaml --set 'sweep.grid[0].count=129' --set 'swee
 make_page sample sampled.yaml --set sweep.sample.count=64
 make_page single balance_recovers.yaml
 make_page mechanism mechanisms/hopper.yaml --set 'sweep.grid[1].count=5' --set 'sweep.grid[2].count=5'
+make_page walker gaits/walks.yaml --set 'sweep.grid[0].count=15' --set 'sweep.grid[1].count=15'
 make_page axes ball_bounce.yaml --set 'record={answers: [outcome, failure, end_time]}' --set method.step=0.01 --set stop.time=1 --set 'sweep={grid: [
     {path: ground.restitution, from: 0, to: 0.6, count: 4}, {path: ground.friction, from: 0, to: 1, count: 4}, {path: initial.state.z, from: 0.2, to: 1, count: 4},
     {path: initial.state.vx, from: -1, to: 1, count: 4}, {path: initial.state.vz, from: -1, to: 1, count: 4}]}'

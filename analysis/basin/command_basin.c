@@ -277,7 +277,9 @@ static const struct option options[] = {
      .text = "a row for each value of this parameter alone; may be repeated; an axis of starts "
              "named here is a parameter"},
     {"--of", "OUTCOME", TO(of), .most = 2,
-     .text = "stabilised (default; or rested, where nothing else was), rested, fell or undecided"},
+     .text = "stabilised (default; or walks, where any does, or rested, where nothing else was), "
+             "walks, "
+             "rested, fell or undecided"},
     {"--within", "ANSWER=BOUND", TO(within), .most = 8,
      .text = "counts as the outcome only where the number is at most BOUND, in all of the above: "
              "settle_time=2 is the domain of stability within 2 s; with BOUND LEAST.. at least "

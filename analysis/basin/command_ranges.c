@@ -240,10 +240,12 @@ static int show(const struct request *request, const struct scenario *s)
         STANCE_OUTCOMES(RANGES_NUMBER)
 #undef RANGES_NUMBER
     };
+    const int wanted = s->base.walk_steps > 0 ? RESULTS_WALKS : RESULTS_STABILISED;
+    const int of = request->of < RESULTS_OUTCOMES ? request->of : wanted;
     struct ranges *r = malloc(sizeof *r);
     stance_message message = {""};
     int code = EXIT_IO;
-    if (!r || !ranges_make(r, s, number_of[request->of], &message)) {
+    if (!r || !ranges_make(r, s, number_of[of], &message)) {
         fprintf(stderr, "%s: %s\n", s->file, r ? message.text : "not enough memory");
         code = r ? EXIT_USAGE : EXIT_IO;
     } else {
@@ -286,7 +288,7 @@ static int work(void *request)
 
 static int run(int argc, char **argv)
 {
-    struct request request = {.of = RESULTS_STABILISED};
+    struct request request = {.of = RESULTS_OUTCOMES};
     const int code = command_begin(&command_ranges, argc, argv, &request);
     if (code != COMMAND_GOES_ON)
         return code;
@@ -297,7 +299,7 @@ static int run(int argc, char **argv)
 static const struct option options[] = {
     {.rows = asked_options},
     {"--of", "OUTCOME", OPTION_TO(struct request, of), .word = results_outcome_word,
-     .text = "look for another outcome than stabilised"},
+     .text = "look for another outcome than stabilised, or than walks with stop.walks"},
     {OPTION_TIME_LIMIT},
     {OPTION_JSON(struct request, json)},
     {0},

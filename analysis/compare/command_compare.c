@@ -336,8 +336,9 @@ static const struct option options[] = {
              "the first one's domain the share that is lost in the second (of a sample with a 95 "
              "% interval, as in the summary), of the second one's the share that is won"},
     {"--of", "OUTCOME", TO(of), .word = results_outcome_word, .needs = "--labels",
-     .text = "the domain: stabilised (default; or rested, where nothing else was), rested, fell "
-             "or undecided"},
+     .text =
+         "the domain: stabilised (default; or walks, where any does, or rested, where nothing else "
+         "was), walks, rested, fell or undecided"},
     {TABLE_CSV(struct request, form),
      .text = "a row for each variable or attribute that differs: name, reason, differing, of, "
              "largest, largest_case (without a tolerance the first case that differs), and both "

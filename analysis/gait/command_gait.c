@@ -35,7 +35,8 @@ static const char text[] =
     "Just after a footfall, standing on {foot}[sampled: (samples begin there)]\n"
     "[state*:  {key%-12s} {value%16.12f}\n]"
     "\nMultipliers of [steps=1:a step|{steps} steps]: the gait is [stable:stable|NOT stable]\n"
-    "[multipliers*:  {modulus%.9f}  {.number%-26s}  +- {error%.1e}\n]"
+    "  modulus      multiplier                  error\n"
+    "[multipliers*:  {modulus%.9f}  {.number%-26s}  {error%.1e}\n]"
     "\nOn the way\n"
     "[cost_of_transport:  cost of transport  {cost_of_transport%.4g}\n]"
     "[peak_torque:  largest torque     {peak_torque%.4g} N m\n]"
@@ -285,9 +286,8 @@ const struct command command_gait = {
     run,
     options,
     "Lets a scenario, without its sweep, walk, and looks from there for the gait that returns to "
-    "itself "
-    "exactly, with its multipliers: by how much a small departure has changed a step later. It "
-    "holds where all are less than 1.",
+    "itself exactly, with its multipliers: by how much a small departure has changed a step later. "
+    "It holds where all are less than 1 in size.",
     "The section is the state just after a footfall, legs read as if the first one had landed. "
     "Samples of a controller begin there (the clock of a run goes on instead: the gait then locks "
     "to it, or wanders). Newton's derivative is of central differences of 1e-4; multipliers are of "

@@ -124,10 +124,11 @@ static bool returned(const struct return_map *map, const stance_case *c, const s
     const char *const cause =
         r->outcome == STANCE_FELL && r->fall_cause > 0 ? map->scene->cause[r->fall_cause - 1] : "";
     snprintf(message->text, sizeof message->text,
-             r->status != STANCE_DONE ? "a run failed after %ld footfall%s%s%s"
-             : r->outcome == STANCE_FELL
-                 ? "it falls after %ld footfall%s%s%s; give a start that walks"
-                 : "it makes %ld footfall%s in 100 s and no more%s%s",
+             r->status != STANCE_DONE    ? "a run failed after %ld footfall%s%s%s"
+             : r->outcome == STANCE_FELL ? "it falls after %ld footfall%s%s%s; give a start that "
+                                           "walks (--settle 1 looks near the "
+                                           "start, --along follows a gait away from one)"
+                                         : "it makes %ld footfall%s in 100 s and no more%s%s",
              made, made == 1 ? "" : "s", cause[0] ? ", by " : "", cause);
     return false;
 }
@@ -277,6 +278,8 @@ static bool check(const stance_case *c, const stance_kernel *kernel, int steps,
                   stance_message *message)
 {
     const char *const method = kernel->method->name;
+    if (!c->scene->exchange.any)
+        return refuse(message, "no two legs of the robot are alike in structure");
     if (strcmp(method, "capturing") != 0 && strcmp(method, "event-driven") != 0) {
         snprintf(message->text, sizeof message->text,
                  "%s puts footfalls at the end of a step; give method.name capturing or "
@@ -297,8 +300,6 @@ static bool check(const stance_case *c, const stance_kernel *kernel, int steps,
         return refuse(message,
                       "a gait has no time of its own: pushes, ramps and integrals of a run "
                       "begin once, not at each footfall");
-    if (!c->scene->exchange.any)
-        return refuse(message, "no two legs of the robot are alike in structure");
     return steps % 2 == 0 || alike(c->scene, c) ||
            refuse(message, "the legs, or what drives them, differ: a gait repeats after an even "
                            "number of steps; give --steps 2");

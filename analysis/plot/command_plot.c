@@ -244,7 +244,7 @@ static const struct option options[] = {
     {"--case", "N", TO(index), .takes = "the number of a case", .without = "--outline --answer",
      .text = "the trajectory of case N (flat index) instead of the sweep"},
     {"--of", "OUTCOME", TO(of), .word = results_outcome_word, .needs = "--answer or --outline",
-     .text = "only of the cases that were stabilised, rested, fell or stayed undecided"},
+     .text = "only of the cases that were stabilised, walk, rested, fell or stayed undecided"},
     {"--allowed", TO(allowed), .without = "--case",
      .text = "in maps and outlines over two starts, too: the line within which linear theory "
              "allows some controller to recover with these torques, while the contacts stand "

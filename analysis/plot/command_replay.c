@@ -285,7 +285,7 @@ static int compute(const struct results *r, const struct request *request, struc
         return EXIT_IO;
     replay->opened = true;
     const enum results_kind was = r->kind[r->single ? 0 : replay->index], is = replay->r.kind[0];
-    if (request->sets.count == 0 && was != RESULTS_PENDING && was != is)
+    if (was != RESULTS_PENDING && was != is)
         fprintf(stderr, "case %llu: was %s in the file, and is %s now\n",
                 (unsigned long long)replay->index, results_kind_names[was], results_kind_names[is]);
     return EXIT_DONE;

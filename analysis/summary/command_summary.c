@@ -133,10 +133,13 @@ static const struct option options[] = {
     {"FILE...", OPTION_TO(struct request, report.files), .low = 1, .high = REPORT_FILES,
      .text = "a results file"},
     {REPORT_CSV,
-     .text = "the counts of all cases, then a row for every value of every parameter: parameter, "
-             "value, done, failed, pending, stabilised, rested, fell, undecided, and the share of "
-             "stabilised cases (without a controller that has a target: rested ones) with its "
-             "interval low ... high (of a grid empty); `stance table` has the cases themselves"},
+     .text =
+         "the counts of all cases, then a row for every value of every parameter: parameter, "
+         "value, done, failed, pending, stabilised, walks, rested, fell, undecided, and the share "
+         "of "
+         "stabilised cases (with stop.walks those that walk, else without a controller that has a "
+         "target rested ones) with its interval low ... high (of a grid empty); `stance table` has "
+         "the cases themselves"},
     {REPORT_JSON, .text = "the same as JSON; what does not apply is left out or null. Keys"},
     {0},
 };
@@ -169,9 +172,9 @@ const struct command command_summary = {
     "low_unknown, high_unknown, at: {path: value}}]; outcome of the case nearest to the "
     "equilibrium; where that is pending or failed stabilised is null\n"
     "    parameters   [{path, unit, share_of, values: [{value, done, failed, pending, stabilised, "
-    "rested, fell, undecided, share, low, high, extents: {path: [low, high]}}], steepest: {from, "
-    "to}}]; share_of: stabilised, or without a controller that has a target rested; an extent is "
-    "[] for none, null for unknown\n"
+    "walks, rested, fell, undecided, share, low, high, extents: {path: [low, high]}}], steepest: "
+    "{from, to}}]; share_of: stabilised, with stop.walks walks, else without a controller that has "
+    "a target rested; an extent is [] for none, null for unknown\n"
     "    pairs        of two parameters, no more: {paths: [2], share: [[...]]}, a row for each "
     "value of the first, a column for each of the second; null where none done\n"
     "    changes      [{from, to, before, after}] along the axis of a sweep with one axis\n"

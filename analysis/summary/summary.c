@@ -341,14 +341,17 @@ static const struct number {
 } number[] = {
     {"settle_time", "s", NULL, RESULTS_STABILISED},
     {"step_time", "s", NULL, RESULTS_STABILISED},
+    {"step_length", "m", NULL, RESULTS_STABILISED},
     {"walking_speed", "m/s", NULL, RESULTS_STABILISED},
     {"cost_of_transport", "", NULL, RESULTS_STABILISED},
+    {"gait_period", "", NULL, RESULTS_STABILISED},
     {"friction_used", "", NULL, RESULTS_STABILISED},
     {"impact_friction", "", NULL, RESULTS_STABILISED},
     {"least_normal_force", "N", NULL, RESULTS_STABILISED},
     {"excursion", "rad", NULL, RESULTS_STABILISED},
     {"slip_distance", "m", NULL, RESULTS_STABILISED},
     {"fall_time", "s", NULL, RESULTS_FELL},
+    {"footfalls", "", NULL, RESULTS_KIND_COUNT},
     {"peak_torque", "N m", NULL, RESULTS_KIND_COUNT},
     {"max_penetration", "m", NULL, RESULTS_KIND_COUNT},
     {"through_ground", "m", NULL, RESULTS_KIND_COUNT},
@@ -408,16 +411,18 @@ bool summary_numbers(const struct summary *summary)
         const struct number *const row = &number[k];
         const enum results_kind of = row->of == RESULTS_STABILISED ? summary->judged : row->of;
         struct statistics_numbers n;
-        double *values, one;
+        double *values;
         if (!(good = results_answer(r, row->name, &values, summary->message)) || !values)
             continue;
         bool idle = strcmp(row->name, "through_ground") == 0 && add_through(summary, values) == 0;
+        const double one = r->single ? values[0] : NAN;
         for (uint64_t i = 0; of != RESULTS_KIND_COUNT && i < r->cases; i++)
             values[i] = r->kind[i] == of ? values[i] : NAN;
         statistics_summarise(values, (size_t)r->cases, &n);
         free(values);
-        /* nothing is actuated, there is no target, nothing struck the ground */
-        static const char *const nothing[] = {"peak_torque", "excursion", "impact_friction"};
+        /* nothing is actuated, there is no target, nothing struck the ground, no foot lands */
+        static const char *const nothing[] = {"peak_torque", "excursion", "impact_friction",
+                                              "footfalls"};
         for (size_t i = 0; i < sizeof nothing / sizeof *nothing; i++)
             idle = idle || (strcmp(row->name, nothing[i]) == 0 && n.high == 0);
         const char *const of_word = of == RESULTS_KIND_COUNT ? "done" : results_kind_names[of];
@@ -427,8 +432,9 @@ bool summary_numbers(const struct summary *summary)
         if (row->residual && n.n > 0)
             TABLE_APPEND(residuals, {"law", as_text(row->residual)}, {"largest", as_number(n.high)},
                          {"unit", as_text(row->unit)});
-        if (r->single && !row->residual && !strstr(row->name, "_time") &&
-            results_numbers(r, row->name, &one, 1) == 1 && !isnan(one))
+        if (!row->residual &&
+            (!strstr(row->name, "_time") || strcmp(row->name, "step_time") == 0) && !isnan(one) &&
+            !(strcmp(row->name, "footfalls") == 0 && one == 0))
             TABLE_APPEND(single, {"answer", as_text(row->name)}, {"is", as_number(one)},
                          {"unit", as_text(row->unit)});
     }

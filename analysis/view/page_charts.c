@@ -107,7 +107,7 @@ static void put_basin(json_t *charts, const struct results *r, int k)
                       (struct interval){fmax(0, scale * (row->volume - row->reach)),
                                         fmin(100, scale * (row->volume + row->reach))});
         }
-        snprintf(title, sizeof title, "Basin of what is %s along %.120s",
+        snprintf(title, sizeof title, "Basin of starts that end as %s along %.120s",
                  results_kind_names[choice.of], a->name);
         add_chart(charts, title,
                   "Volume of the starts from which cases end so, of the box of starts; stance "

@@ -27,6 +27,15 @@ const groups: Group[] = [
   { name: 'energy', unit: () => 'J', names: () => ['energy'], numbers: (c) => c.rows.energy },
 ];
 
+// Blows last a row, and make all else flat: the range of the other forces where blows are many times as large, else null.
+function withoutBlows(tables: uPlot.AlignedData[]): [number, number] | null {
+  const all = tables.flatMap((t) => t.slice(1).flatMap((y) => (y as (number | null)[]).filter((x) => x !== null))).sort((a, b) => a - b);
+  if (all.length < 100) return null;
+  const [low, high] = [0.01, 0.99].map((share) => all[Math.round(share * (all.length - 1))]);
+  const span = high - low;
+  return span > 0 && all[all.length - 1] - all[0] > 3 * span ? [low - 0.1 * span, high + 0.1 * span] : null;
+}
+
 export class Courses {
   private cases: PlayedCase[] = [];
   private chosen = new Set(['coordinates', 'torques', 'forces']);
@@ -83,13 +92,14 @@ export class Courses {
       const numbers = own.map((_, k) => Array.from(g.numbers(c, k), (y) => (Number.isFinite(y) ? y : null)));
       return [Array.from(c.rows.time), ...numbers] as uPlot.AlignedData;
     });
-    const box = el('div', { class: 'course', 'data-course': g.name }, el('h3', {}, label(g.name, g.unit(this.cases[0]))));
+    const range = g.name === 'forces' ? withoutBlows(tables) : null;
+    const box = el('div', { class: 'course', 'data-course': g.name }, el('h3', {}, `${label(g.name, g.unit(this.cases[0]))}${range ? '; blows go beyond' : ''}`));
     this.list.append(box);
     const font = '11px system-ui, sans-serif';
     const axis = { stroke: ink, grid: lines, ticks: lines, font };
     const plot = new uPlot(
       {
-        width: Math.max(200, this.list.clientWidth), height: 130, series, scales: { x: { time: false } },
+        width: Math.max(200, this.list.clientWidth), height: 130, series, scales: { x: { time: false }, ...(range ? { y: { range } } : {}) },
         axes: [{ ...axis, size: 26 }, { ...axis, size: 56, space: 22 }],
         cursor: { drag: { x: false, y: false }, y: false, points: { show: false }, bind: { mousemove: () => null, mouseleave: () => null, mouseenter: () => null, mousedown: () => null, mouseup: () => null, dblclick: () => null } },
         legend: { live: true },

@@ -3,6 +3,7 @@
 import { hues } from './colours';
 import { context, eachFrame, el, style } from './dom';
 import type { PlayText, Trajectory, ViewText } from './format';
+import { discPoints, discs, footfalls, type Footfall } from './gait';
 import { numberText } from './numbers';
 
 export interface PlayedCase {
@@ -43,6 +44,11 @@ const roundDown = (x: number): number => {
   return (x / power >= 5 ? 5 : x / power >= 2 ? 2 : 1) * power;
 };
 
+const roundUp = (x: number): number => {
+  const power = 10 ** Math.floor(Math.log10(x));
+  return (x / power > 5 ? 10 : x / power > 2 ? 5 : x / power > 1 ? 2 : 1) * power;
+};
+
 export class Player {
   private cases: PlayedCase[] = [];
   private beside = false;
@@ -58,6 +64,7 @@ export class Player {
   // Of all cases and rows: what is in sight, and the largest force and torque.
   private box: Box = { left: 0, right: 1, low: 0, high: 1 };
   private follows = false;
+  private steps = new Map<PlayedCase, Footfall[]>(); // of robots that go away, and of walkers
   private force = 0;
   private torque = 0;
   readonly element: HTMLElement;
@@ -145,6 +152,7 @@ export class Player {
 
   private measure(): void {
     const box: Box = { left: Infinity, right: -Infinity, low: Infinity, high: -Infinity };
+    const over = { low: Infinity, high: -Infinity }; // heights over the ground
     const forces: number[] = [];
     this.torque = 0;
     let size = 0;
@@ -161,6 +169,9 @@ export class Player {
           b.low = Math.min(b.low, z);
           b.high = Math.max(b.high, z);
         }
+        const above = z + Math.tan(this.fall(c)) * x;
+        over.low = Math.min(over.low, above);
+        over.high = Math.max(over.high, above);
       }
       size = Math.max(size, first.right - first.left, first.high - first.low);
       for (let k = 0; k < force.length; k += 2) if (force[k] > 0) forces.push(Math.hypot(force[k], force[k + 1]));
@@ -172,7 +183,8 @@ export class Player {
     // Blows aside: the force that one row in fifty exceeds.
     this.force = forces.length ? forces[Math.floor(0.98 * (forces.length - 1))] : 0;
     this.follows = box.right - box.left > 3.2 * size;
-    if (this.follows) Object.assign(box, { left: -1.3 * size, right: 1.3 * size });
+    if (this.follows) Object.assign(box, { left: -size, right: size }, over);
+    this.steps = new Map(this.follows || this.cases.some((c) => c.values['ground.lands'] === 'ahead') ? this.cases.map((c) => [c, footfalls(c.rows, c.scene.contacts.length, c.text.contacts)]) : []);
     const margin = 0.16 * size;
     this.box = { left: box.left - margin, right: box.right + margin, low: Math.min(box.low, 0) - margin, high: box.high + margin };
   }
@@ -200,7 +212,8 @@ export class Player {
     return this.cases.map((c) => {
       const k = rowAt(c.rows, this.time);
       const q = c.scene.coordinates.map((x, i) => `${x.name} ${numberText(c.rows.position[k * c.scene.coordinates.length + i], 3)} ${x.unit}`);
-      return `${c.name}, ${c.outcome}, at ${this.time.toFixed(3)} s: ${q.join(', ')}`;
+      const steps = this.steps.size ? `, ${this.fallen(c).filter((x) => x.time > 0).length} footfalls` : '';
+      return `${c.name}, ${c.outcome}, at ${this.time.toFixed(3)} s: ${q.join(', ')}${steps}`;
     }).join('; ');
   }
 
@@ -213,6 +226,7 @@ export class Player {
     const X = (x: number): number => width / 2 + (x - middle - (box.left + box.right) / 2) * scale;
     const Y = (z: number): number => height - 4 - (z - base - box.low) * scale;
     this.ground(g, width, X, Y, this.fall(first), scale);
+    this.footprints(g, first, X, Y);
     [...cases].reverse().forEach((c) => this.figure(g, c, X, Y, scale, c === first));
     this.legend(g, scale, cases);
   }
@@ -250,6 +264,29 @@ export class Player {
       g.lineTo(X(x) - 7, Y(z(x)) + 9);
     }
     g.stroke();
+    if (!this.steps.size) return;
+    // How far it has gone.
+    g.fillStyle = style('--muted');
+    g.font = '10px system-ui, sans-serif';
+    g.textBaseline = 'top';
+    g.textAlign = 'center';
+    const metres = roundUp(70 / scale);
+    for (let x = Math.ceil(left / metres) * metres; x < right; x += metres) g.fillText(`${numberText(x, 4)} m`, X(x), Y(z(x)) + 13);
+  }
+
+  private fallen = (c: PlayedCase): Footfall[] => (this.steps.get(c) ?? []).filter((x) => x.time <= this.time + 1e-9);
+
+  // Where feet have come down until now, in their colours.
+  private footprints(g: CanvasRenderingContext2D, c: PlayedCase, X: (x: number) => number, Y: (z: number) => number): void {
+    for (const step of this.fallen(c)) {
+      const [x, z] = this.turned(c, step.x, step.z);
+      g.fillStyle = hues[step.contact % hues.length];
+      g.beginPath();
+      g.moveTo(X(x), Y(z));
+      g.lineTo(X(x) - 5, Y(z) + 9);
+      g.lineTo(X(x) + 5, Y(z) + 9);
+      g.fill();
+    }
   }
 
   private figure(g: CanvasRenderingContext2D, c: PlayedCase, X: (x: number) => number, Y: (z: number) => number, scale: number, solid: boolean): void {
@@ -259,24 +296,40 @@ export class Player {
     // Between two rows where the points are, in proportion.
     const next = Math.min(k + 1, rows.time.length - 1);
     const share = next > k ? Math.min(1, Math.max(0, (this.time - rows.time[k]) / (rows.time[next] - rows.time[k]))) : 0;
+    const there = (row: number, list: Float64Array, per: number, i: number): [number, number] => this.turned(c, list[(row * per + i) * 2], list[(row * per + i) * 2 + 1]);
     const between = (list: Float64Array, per: number, i: number): [number, number] => {
-      const at = (row: number, j: number): number => list[(row * per + i) * 2 + j];
-      return this.turned(c, at(k, 0) + share * (at(next, 0) - at(k, 0)), at(k, 1) + share * (at(next, 1) - at(k, 1)));
+      const [[x, z], [x1, z1]] = [there(k, list, per, i), there(next, list, per, i)];
+      return [x + share * (x1 - x), z + share * (z1 - z)];
     };
     g.globalAlpha = solid ? 1 : 0.45;
     g.lineWidth = solid ? 4 : 3;
     g.lineJoin = g.lineCap = 'round';
     const points = Array.from({ length: n }, (_, p) => between(rows.figure, n, p));
-    const contacts = c.scene.contacts.map((_, i) => between(rows.contact, text.contacts, i));
     const body = this.cases.length > 1 ? c.hue : style('--figure');
     const ink = (contact: number): string => (this.cases.length > 1 || contact < 0 ? body : hues[contact % hues.length]);
-    const touches = ([x, z]: [number, number]): number => contacts.findIndex(([a, b]) => Math.hypot(x - a, z - b) < 1e-9);
-    // What ends at one contact has its colour; an outline, which ends where it begins, is the body.
-    const outline = n > 1 && Math.hypot(points[0][0] - points[n - 1][0], points[0][1] - points[n - 1][1]) < 1e-9;
-    const of = points.map(touches);
+    // What ends at one contact, or at the centre of its disc, has its colour; so has the disc. An outline, which ends where
+    // it begins and nowhere turns back as a line through links does, is the body. Told in the row, where distances are exact.
+    const own = Array.from({ length: n }, (_, p) => there(k, rows.figure, n, p));
+    const contacts = c.scene.contacts.map((_, i) => there(k, rows.contact, text.contacts, i));
+    const distance = (a: [number, number], b: [number, number]): number => Math.hypot(a[0] - b[0], a[1] - b[1]);
+    const touches = (p: [number, number], radius: number): number => contacts.findIndex((q) => Math.abs(distance(p, q) - radius) < 1e-9);
+    const round = discs(own);
+    const closed = n > 1 && distance(own[0], own[n - 1]) < 1e-9;
+    const outline = closed && (round.length > 0 ? contacts.length < 2 : !own.some((p, i) => i > 1 && distance(p, own[i - 2]) < 1e-9));
+    const of = own.map((p) => touches(p, 0));
+    const drawn = new Set<number>(); // points that a circle takes the place of, with the lines from there on
+    for (const { at, radius } of round) {
+      const contact = outline ? -1 : touches(own[at - 1], radius);
+      of[at - 1] = of[at + discPoints] = contact;
+      for (let p = at; p < at + discPoints - 1; p++) drawn.add(p);
+      g.strokeStyle = ink(contact);
+      g.beginPath();
+      g.arc(X(points[at - 1][0]), Y(points[at - 1][1]), radius * scale, 0, 7);
+      g.stroke();
+    }
     for (let p = 0; p + 1 < n; p++) {
       const [[a, b], [x, z]] = [points[p], points[p + 1]];
-      if (!Number.isFinite(a + b + x + z)) continue;
+      if (!Number.isFinite(a + b + x + z) || drawn.has(p)) continue;
       const leg = outline || (of[p] >= 0) === (of[p + 1] >= 0) ? -1 : Math.max(of[p], of[p + 1]);
       g.strokeStyle = ink(leg);
       g.beginPath();
@@ -285,7 +338,7 @@ export class Player {
       g.stroke();
     }
     points.forEach(([x, z], p) => {
-      if (outline || !Number.isFinite(x + z)) return;
+      if (outline || drawn.has(p) || drawn.has(p - 1) || !Number.isFinite(x + z)) return;
       g.fillStyle = ink(of[p]);
       g.beginPath();
       g.arc(X(x), Y(z), 3.6, 0, 7);
@@ -369,6 +422,20 @@ export class Player {
     g.stroke();
     x += metre * scale + 5;
     word(`${numberText(metre)} m`, style('--ink'));
+    for (const text of this.pushes(cases[0])) word(text, style('--ink'));
+  }
+
+  // What pushes now; a blow is told for a tenth of a second.
+  private pushes(c: PlayedCase): string[] {
+    const number = (path: string): number => Number(c.values[path] ?? 0);
+    return Object.keys(c.values).flatMap((path) => {
+      const [, point, kind] = /^(robot\.points\..*)\.(force|impulse)\[0\]$/.exec(path) ?? [];
+      if (!point) return [];
+      const size = Math.hypot(number(path), number(`${point}.${kind}[1]`));
+      const from = number(`${point}.from`);
+      const to = kind === 'force' ? number(`${point}.to`) : from + 0.1;
+      return size > 0 && this.time >= from && this.time < to ? [`push at ${point.slice('robot.points.'.length)}: ${numberText(size, 3)} ${kind === 'force' ? 'N' : 'N s'}`] : [];
+    });
   }
 }
 
