@@ -462,7 +462,7 @@ typedef struct stance_case {
      * holds, too, no further than settle_angle away: see core/loop/rest.h. */
     bool settle;
     int64_t footfalls; /* ends at so many of them, where they fall; 0: does not */
-    /* `walks` ends the case, too, where walk_steps > 0: so many in a row are like the one 1, 2 or 4
+    /* `walks` ends the case, too, where walk_steps > 0: so many in a row are like the one 1 to 4
      * steps before, within walk_angle and walk_rate (rad, rad/s) just after the footfall, the
      * second half of them no less than the first. A step is a footfall that is walk_length (m) or
      * more away from the foot that stood, the way the last one went, and comes walk_time (s) or
@@ -526,9 +526,9 @@ void stance_case_robot(const stance_scene *scene, stance_case *c);
     X(walking_speed, double, END, own, "m/s", "mean speed of the last four of them")               \
     X(cost_of_transport, double, END, own, "1",                                                    \
       "of the last four of them: sum of |work| of each actuator, over weight and way")             \
-    X(gait_period, int64_t, END, own, "1", "steps after which the gait repeats: 1, 2 or 4")        \
+    X(gait_period, int64_t, END, own, "1", "steps after which the gait repeats: 1 to 4")           \
     X(gait_change, double, END, own, "1",                                                          \
-      "how unlike the last step is to one 1, 2 or 4 before, in what stop.walks admits")            \
+      "how unlike the last step is to one 1 to 4 before, in what stop.walks admits")               \
     X(excursion, double, MAX, each, "rad", "largest angle off its target on the way")              \
     X(peak_torque, double, MAX, each, "N m", "largest torque applied")                             \
     X(friction_used, double, MAX, touching, "1", "largest ratio |rT|/rN of a contact")             \

@@ -337,7 +337,7 @@ const struct row schema_rows[] = {
          .text = "when a robot counts as walking, which ends the run"}},
     {0, {.path = "stop.walks.steps", .type = FIELD_INTEGER, VALUE(walk_steps), .unit = "1",
          .fallback = 0, RANGE(0, 1000), .quiet = true,
-         .text = "steps in a row that are like the one 1, 2 or 4 before; 0: nobody walks",
+         .text = "steps in a row that are like the one 1 to 4 before; 0: nobody walks",
          .more = "Alike in angles and rates just after the footfall, legs exchanged, in the second "
                  "half of them no less than in the first; see the answers walked_steps, step_time, step_length, walking_speed, "
                  "cost_of_transport, gait_period and gait_change."}},

@@ -3,7 +3,7 @@
  * Feet that clatter on one spot make many footfalls: a step is one that lands a length away from
  * the foot that stood, the same way as the last step, and not at once after it. The state just
  * after a step, legs exchanged where the second one stands and the place along the ground left out,
- * is a point of the return map; where points repeat, one, two or four steps after, as often as is
+ * is a point of the return map; where points repeat, one to four steps after, as often as is
  * asked and in the second half of them no less well than in the first, the robot walks. That says
  * what it does, not for ever: a gait that wanders takes more steps to be sure of. What is no step,
  * or not alike, begins the count anew.
@@ -46,35 +46,53 @@ static double walk_off(const struct bundle *b, int lane, const double *section, 
     return off;
 }
 
-#define WALK_FLOOR 0.1 /* of what is admitted: so little may grow, as by a clock that goes on */
+#define WALK_SHRINKS 0.99 /* of a difference: it will be less */
+#define WALK_FLOOR 0.1    /* of what is admitted: so little may grow, as by a clock that goes on */
+
+/* Whether steps as many back as divide `period` are coming to be alike, too: what alternates on its
+ * way to a gait is alike in every second step before it is in each. */
+static bool walk_shortens(const struct walking *w, int lane, int period, const double *off)
+{
+    bool shortens = false;
+    for (int part = 1; part < period; part++)
+        shortens =
+            shortens || (period % part == 0 &&
+                         off[part] < WALK_SHRINKS * lane_get(&w->off[part - 1][period - 1], lane));
+    return shortens;
+}
 
 /* How the steps so far are alike, with one more at this section. */
 static void walk_compare(struct walking *w, struct bundle *b, int lane, const double *section)
 {
     const double steps = lane_get(&w->steps, lane), wanted = lane_get(&w->wanted, lane);
-    lane_set(&w->change, lane, INFINITY);
-    for (int k = WALK_PERIODS; k-- > 0;) {
+    double off[WALK_PERIODS + 1], change = INFINITY;
+    for (int period = 1; period <= WALK_PERIODS; period++) {
+        off[period] = steps > period ? walk_off(b, lane, section, period) : INFINITY;
+        change = fmin(off[period], change);
+    }
+    lane_set(&w->change, lane, change);
+    for (int period = WALK_PERIODS; period > 0; period--) {
+        const int k = period - 1;
         double alike = lane_get(&w->alike[k], lane);
         double first = lane_get(&w->first[k], lane), later = lane_get(&w->later[k], lane);
-        const double off =
-            steps > walk_period[k] ? walk_off(b, lane, section, walk_period[k]) : INFINITY;
-        lane_set(&w->change, lane, fmin(off, lane_get(&w->change, lane)));
-        alike = off <= 1 ? alike + 1 : 0;
-        if (alike >= wanted && fmax(later, off) > fmax(first, WALK_FLOOR))
+        alike = off[period] <= 1 ? alike + 1 : 0;
+        if (alike >= wanted && fmax(later, off[period]) > fmax(first, WALK_FLOOR))
             alike = 1; /* it grows: again from here */
         if (alike == 1) {
             lane_set(&w->since[k], lane, lane_get(&b->now.t, lane));
             first = later = 0;
         }
-        first = 2 * alike <= wanted ? fmax(first, off) : first;
-        later = 2 * alike <= wanted ? later : fmax(later, off);
-        if (alike >= wanted) {
-            lane_set(&w->period, lane, walk_period[k]); /* the shortest one last */
+        first = 2 * alike <= wanted ? fmax(first, off[period]) : first;
+        later = 2 * alike <= wanted ? later : fmax(later, off[period]);
+        if (alike >= wanted && !walk_shortens(w, lane, period, off)) {
+            lane_set(&w->period, lane, period); /* the shortest one last */
             lane_set(&w->settled, lane, lane_get(&w->since[k], lane));
         }
         lane_set(&w->alike[k], lane, alike);
         lane_set(&w->first[k], lane, first);
         lane_set(&w->later[k], lane, later);
+        for (int i = WALK_KEPT; i-- > 0;)
+            lane_set(&w->off[k][i], lane, i > 0 ? lane_get(&w->off[k][i - 1], lane) : off[period]);
     }
 }
 

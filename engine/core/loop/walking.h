@@ -5,8 +5,7 @@
 #include "engine/core/mode/between_events.h"
 
 /* Steps back that a gait may repeat after, and how far back is kept. */
-enum { WALK_PERIODS = 3, WALK_KEPT = 4 };
-static const int walk_period[WALK_PERIODS] = {1, 2, 4};
+enum { WALK_PERIODS = 4, WALK_KEPT = WALK_PERIODS };
 
 struct walking {
     lanes wanted;           /* steps that are to be alike; 0: nobody asks */
@@ -26,6 +25,7 @@ struct walking {
     /* By period: how many in a row were alike, since when, s; the largest difference of the first
      * half of those that are wanted, and of the others. */
     lanes alike[WALK_PERIODS], since[WALK_PERIODS], first[WALK_PERIODS], later[WALK_PERIODS];
+    lanes off[WALK_PERIODS][WALK_KEPT]; /* of the last steps, the newest first, by period */
     lanes ended; /* s, at which the last footfall ended the case; -1: none has */
 };
 

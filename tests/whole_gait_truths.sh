@@ -1,0 +1,7 @@
+#!/usr/bin/env bash
+# What is known of gaits from outside: compasses, wheels, published walkers, zero dynamics (gait_truths.py). Speaks TAP.
+# about: analysis/gait runner/run
+set -u
+# shellcheck source=tests/scratch.sh
+. "$(dirname "$0")/scratch.sh"
+"$python" "$tests/gait_truths.py" "$stance" "$shipped"
