@@ -520,7 +520,8 @@ void stance_case_robot(const stance_scene *scene, stance_case *c);
     X(slip_distance, double, SUM, own, "m", "distance slipped, summed over contacts")              \
     X(footfalls, int64_t, SUM, own, "1", "landings of another foot than the one that landed last") \
     X(walked_steps, int64_t, END, own, "1", "footfalls that are steps, see stop.walks")            \
-    X(step_time, double, END, own, "s", "mean time of the last four of them")                      \
+    X(step_time, double, END, own, "s",                                                            \
+      "mean time of the last four of them (of 3 where the gait repeats after 3)")                  \
     X(step_length, double, END, own, "m",                                                          \
       "mean length of the last four of them, along the ground")                                    \
     X(walking_speed, double, END, own, "m/s", "mean speed of the last four of them")               \

@@ -78,6 +78,28 @@ result $? "... of its first two seconds, which do not tell"
 [ "$(head -c 6 push.gif)" = GIF89a ] && [ "$(wc -c <push.gif)" -gt 100000 ]
 result $? "... that moves"
 
+# ---- costs, margins, sensitivity ---------------------------------------------------------------
+says "a gait has its cost, and what its impact asks for" '^  cost of transport  0\.0612[0-9]* *$' "$stance" gait "$walks" \
+    --sensitivity ground.slope=-0.001..0.001 --sensitivity controller.torque_limit=9.9..10.1
+grep -qE "^  the impact's +0\.566" log && grep -qE '^  ground.slope +-0.001 +0.001 +4\.2[0-9]*e-03 ' log
+result $? "... and varies on ground that is another one in each step"
+says "programs get that, too" '"path": "ground.slope", "from": -0.0+1[0-9]*, "to": 0.0+1[0-9]*, "period": 0.004' sh -c \
+    "'$stance' gait '$walks' --json --sensitivity ground.slope=-0.001..0.001 | tr -d '\n' | tr -s ' '"
+says "what comes to a gait of one step from both of its sides is no gait of two" '^0,1' sh -c "'$stance' run '$shipped/gaits/compass_cascade.yaml' \
+    --set 'sweep={}' --set ground.slope=0.075 --set 'stop.walks={steps: 16, angle: 1e-4, rate: 1e-3}' --quiet -o near.h5 &&
+    '$stance' table near.h5 --answer gait_period"
+cat >search.yaml <<END
+$(sed '/^optimise:/,$d' "$shipped/gaits/walk_search.yaml" | sed 's/count: 256/count: 32/')
+optimise:
+  vary: [{path: 'controller.outputs.y1.along[0]', from: -0.4, to: 0}]
+  candidates: 8
+  confirm: 32
+END
+expect "a search of gaits" 0 "$stance" optimise search.yaml -o search.h5 --quiet
+says "tells how many walk" 'share of the starts that walk' "$stance" summary search.h5
+grep -qE 'first candidate +0 +[1-9][0-9.]* \(' log
+result $? "... of fresh starts, too"
+
 # ---- pictures ----------------------------------------------------------------------------------
 expect "two steps of the cycle, recorded" 0 "$stance" run cycle.yaml --trace --set stop.footfalls=2 -o two.h5 --quiet
 expect "are drawn" 0 "$stance" plot two.h5 --format svg
@@ -163,6 +185,8 @@ gait "a method that does not stop at footfalls" "midpoint puts footfalls at the 
 gait "noise" "a gait with noise has no cycle" --set controller.noise=0.1
 gait "late torques" "remember the step before" --set controller.delay=1
 gait "a start that falls" "it falls after 0 footfalls, by hip; give a start that walks" --set initial.state.vq1=0
+gait "a number that is drawn, without an end" "--sensitivity takes PATH=FROM..TO" --sensitivity ground.slope=1
+gait "one that ends the gait" "with ground.friction" --sensitivity ground.friction=0.02..0.06
 gait "a path that is none" "unknown key 'slop'" --along ground.slop=0..1
 gait "a picture of no kind" "a file that ends in svg, png or pdf" --along ground.slope=0..0.1 -o along.txt
 gait "how a picture looks of none" "pictures are drawn by -o FILE with --along" --for column

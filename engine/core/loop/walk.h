@@ -185,7 +185,9 @@ static inline mask walk_goes(const struct bundle *b)
 static void walk_answer(const struct bundle *b, int lane, stance_result *r)
 {
     const struct walking *const w = &b->walk;
-    const int steps = (int)fmin(lane_get(&w->steps, lane), WALK_KEPT + 1), last = steps - 1;
+    const int steps = (int)fmin(lane_get(&w->steps, lane), WALK_KEPT + 1);
+    const int period = (int)lane_get(&w->period, lane), whole = period > 0 ? period : 1;
+    const int last = (steps - 1) / whole * whole; /* whole periods */
     r->walked_steps = r->gait_period = STANCE_NO_COUNT;
     r->step_time = r->step_length = r->walking_speed = r->cost_of_transport = r->gait_change = NAN;
     if (lane_get(&w->wanted, lane) <= 0)
@@ -205,8 +207,8 @@ static void walk_answer(const struct bundle *b, int lane, stance_result *r)
         r->gait_change = lane_get(&w->change, lane);
     if (r->outcome == STANCE_WALKS)
         r->settle_time = lane_get(&w->settled, lane);
-    if (lane_get(&w->period, lane) > 0)
-        r->gait_period = (int64_t)lane_get(&w->period, lane);
+    if (period > 0)
+        r->gait_period = period;
 }
 
 #endif
