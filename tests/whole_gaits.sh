@@ -85,6 +85,19 @@ grep -qE "^  the impact's +0\.566" log && grep -qE '^  ground.slope +-0.001 +0.0
 result $? "... and varies on ground that is another one in each step"
 says "programs get that, too" '"path": "ground.slope", "from": -0.0+1[0-9]*, "to": 0.0+1[0-9]*, "period": 0.004' sh -c \
     "'$stance' gait '$walks' --json --sensitivity ground.slope=-0.001..0.001 | tr -d '\n' | tr -s ' '"
+says "two steps of a gait of one are told" 'A gait of 2 steps, by capturing; it repeats after 1 already' "$stance" gait "$walks" \
+    --steps 2 --set controller.sample_time=0
+expect "footfalls as a table" 0 "$stance" run "$walks" --set stop.walks.steps=0 --quiet -o footfalls.h5 \
+    --set 'sweep={grid: [{path: stop.footfalls, from: 1, to: 6, count: 6}]}'
+"$python" - >log 2>&1 <<'END'
+import h5py, numpy as np
+f = h5py.File("footfalls.h5")
+when, state = f["end_time"][...], f["final_state"][...]
+assert (np.abs(np.diff(when) - 0.669) < 1e-3).all(), when
+phi = state[:, 2:3] + state[:, 3:5]  # of both legs: as far ahead as behind, in turn
+assert (np.abs(phi.sum(1)) < 1e-6).all() and (np.diff(np.sign(phi[:, 0])) != 0).all(), phi
+END
+result $? "... of times and states, a leg ahead in turn"
 says "what comes to a gait of one step from both of its sides is no gait of two" '^0,1' sh -c "'$stance' run '$shipped/gaits/compass_cascade.yaml' \
     --set 'sweep={}' --set ground.slope=0.075 --set 'stop.walks={steps: 16, angle: 1e-4, rate: 1e-3}' --quiet -o near.h5 &&
     '$stance' table near.h5 --answer gait_period"

@@ -28,7 +28,8 @@ static int fail(const struct scenario *s, const char *text)
 }
 
 static const char text[] =
-    "[title:{title}\n]A gait of {steps} step{steps#s}, by {method}\n\n"
+    "[title:{title}\n]A gait of {steps} step{steps#s}, by {method}[.shorter:; it repeats after "
+    "{repeats} already]\n\n"
     "  period       {period%.9g} s\n"
     "  step length  {step_length%.9g} m\n"
     "  speed        {speed%.6g} m/s\n\n"
@@ -112,10 +113,12 @@ static json_t *facts_of(const struct scenario *s, const struct return_map *map,
                      {"error", as_number(gait->error[i])}, {".number", as_text(number)});
     }
     const stance_result *const r = &gait->at.result;
+    const int repeats = gait_repeats(map, gait);
     return TABLE_OBJECT(
         {"title", as_text(s->title[0] ? s->title : NULL)},
-        {"steps", as_whole((uint64_t)map->steps)}, {"method", as_text(map->kernel->method->name)},
-        {"period", as_number(gait->at.time)},
+        {"steps", as_whole((uint64_t)map->steps)}, {"repeats", as_whole((uint64_t)repeats)},
+        {".shorter", as_truth(repeats < map->steps)},
+        {"method", as_text(map->kernel->method->name)}, {"period", as_number(gait->at.time)},
         {"step_length", as_number(gait->at.length / map->steps)},
         {"speed", as_number(gait->at.length / gait->at.time)},
         {"foot", as_text(scene->contact_name[map->foot[0]])},
@@ -157,6 +160,11 @@ static int write_scenario(const struct scenario *s, const char *path, const stru
     if (!written || !closed)
         fprintf(stderr, "stance gait: cannot write %s: %s\n", path,
                 strerror(result ? errno : ENOMEM));
+    else
+        printf("%s\n%s", path,
+               s->base.walk_steps > 0
+                   ? ""
+                   : "  (give it stop.walks.steps, and its runs are judged: they walk)\n");
     free(result);
     return written && closed ? EXIT_DONE : EXIT_IO;
 }
@@ -298,7 +306,8 @@ const struct command command_gait = {
     "that swings and normal forces are seen at the ends of time steps.\n"
     "--sensitivity tells the gait sensitivity norm of Hobbelen and Wisse (2007): standard "
     "deviations from step to step to first order in the number's.\n"
-    "  JSON: {title, steps, method, period, step_length, speed, foot, sampled, state: {name: "
+    "  JSON: {title, steps, repeats, method, period, step_length, speed, foot, sampled, state: "
+    "{name: "
     "value}, multipliers: [{re, im, modulus, error}] of conjugate ones that with im > 0, stable, "
     "peak_torque, friction_used, friction, slip_distance, cost_of_transport, impact_friction, "
     "least_normal_force, lift_speed, clearance, under_ground, residual, iterations, sensitivity: "

@@ -165,6 +165,20 @@ static bool judge(const struct return_map *map, struct gait *gait, struct work *
     return true;
 }
 
+int gait_repeats(const struct return_map *map, const struct gait *gait)
+{
+    struct return_map part = *map;
+    struct return_point point;
+    stance_message ignored;
+    for (part.steps = 1; part.steps < map->steps; part.steps++)
+        if (map->steps % part.steps == 0 && return_map_change(&part, &map->base, &ignored) &&
+            return_map_take(&part, 1, (const double(*)[RETURN_MAP_MOST])gait->z, &point,
+                            &ignored) &&
+            residual(map, gait->z, point.z) <= NEWTON_GOOD)
+            return part.steps;
+    return map->steps;
+}
+
 bool gait_find(const struct return_map *map, const double *z, struct gait *gait,
                stance_message *message)
 {

@@ -67,6 +67,9 @@ struct gait {
     double by[RETURN_MAP_MOST][2]; /* the return's time and length by each coordinate */
 };
 
+/* Footfalls after which it repeats already: the map's steps, or a divisor of them. */
+int gait_repeats(const struct return_map *map, const struct gait *gait);
+
 /* Newton's method from z[]. False, with a message: it does not converge. */
 bool gait_find(const struct return_map *map, const double *z, struct gait *gait,
                stance_message *message);

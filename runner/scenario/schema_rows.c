@@ -354,11 +354,13 @@ const struct row schema_rows[] = {
     {0, {.path = "stop.walks.rate", .type = FIELD_NUMBER, .use = USE_WALKS, .sweep = true,
          VALUE(walk_rate), .unit = "rad/s", .fallback = 0.1, ABOVE(0, LARGE), .quiet = true,
          .text = "largest difference of a rate between steps that are alike"}},
-    {0, {.path = "stop.footfalls", .type = FIELD_INTEGER, VALUE(footfalls), .unit = "1",
-         .fallback = 0, RANGE(0, 1e9), .quiet = true,
+    {0, {.path = "stop.footfalls", .type = FIELD_INTEGER, .sweep = true, VALUE(footfalls),
+         .unit = "1", .fallback = 0, RANGE(0, 1e9), .quiet = true,
          .text = "footfalls after which the run ends, just after the last; 0: it goes on",
          .more = "capturing, event-driven and lagrange end where it falls, the others at the end of "
-                 "its step. A footfall is the landing of another foot than the one that landed last."}},
+                 "its step. A footfall is the landing of another foot than the one that landed last. As "
+                 "an axis from 1 on it makes a table of footfalls: end_time is their time, "
+                 "final_state the state just after."}},
     {0, {.path = "stop.fall_height", .type = FIELD_NUMBER, .sweep = true,
          VALUE(robot[STANCE_ROBOT_FALL_HEIGHT]), .unit = "1", .fallback = STANCE_FALL_HEIGHT,
          RANGE(0, 1),
