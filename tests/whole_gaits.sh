@@ -85,6 +85,13 @@ grep -qE "^  the impact's +0\.566" log && grep -qE '^  ground.slope +-0.001 +0.0
 result $? "... and varies on ground that is another one in each step"
 says "programs get that, too" '"path": "ground.slope", "from": -0.0+1[0-9]*, "to": 0.0+1[0-9]*, "period": 0.004' sh -c \
     "'$stance' gait '$walks' --json --sensitivity ground.slope=-0.001..0.001 | tr -d '\n' | tr -s ' '"
+says "its phase by the clock is told" '^  controller.phase.clock=\[-0.26' "$stance" gait "$walks" --clock \
+    --set controller.sample_time=0
+clock=$(sed -n 's/^  controller.phase.clock=//p' log)
+says "... and to follow that does not hold" '^  5\.[0-9]+  -5\.' "$stance" gait "$walks" --settle 1 \
+    --set "controller.phase={clock: $clock, from: -0.25, to: 0.25}" --set controller.sample_time=0
+grep -q 'NOT stable' log
+result $? "... which is said"
 says "two steps of a gait of one are told" 'A gait of 2 steps, by capturing; it repeats after 1 already' "$stance" gait "$walks" \
     --steps 2 --set controller.sample_time=0
 expect "footfalls as a table" 0 "$stance" run "$walks" --set stop.walks.steps=0 --quiet -o footfalls.h5 \

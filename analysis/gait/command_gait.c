@@ -17,7 +17,7 @@ struct request {
     const char *path, *along;
     struct option_texts sensitivity;
     enum table_form form;
-    bool settled;
+    bool settled, clock;
     struct look look;
 };
 
@@ -48,6 +48,7 @@ static const char text[] =
     "  the foot behind leaves at {lift_speed%.3g} m/s\n"
     "  the other one comes {clearance%.3g} m high, ahead[.under:; before that {under_ground%.3g} m "
     "under the ground]\n"
+    "[.clock:\nIts phase by the clock, off by up to {.clock_off%.1e}\n  {.clock}\n]"
     "[.sensitivity:\nStandard deviations where a number is drawn anew in each return, evenly\n"
     "{.sensitivity}]"
     "\nIt returns to within {residual%.1e}, after {iterations} iteration{iterations#s} of "
@@ -90,7 +91,7 @@ static bool spread(const struct scenario *s, const struct return_map *map, const
 
 /* The gait as facts. */
 static json_t *facts_of(const struct scenario *s, const struct return_map *map,
-                        const struct gait *gait, const struct gait_margins *margins)
+                        const struct gait *gait, const struct gait_margins *margins, bool told)
 {
     const stance_scene *const scene = map->scene;
     double position[STANCE_MAX_COORDINATES], velocity[STANCE_MAX_COORDINATES];
@@ -112,6 +113,14 @@ static json_t *facts_of(const struct scenario *s, const struct return_map *map,
                      {"modulus", as_number(hypot(gait->re[i], gait->im[i]))},
                      {"error", as_number(gait->error[i])}, {".number", as_text(number)});
     }
+    json_t *const clock = isnan(margins->clock_off) ? NULL : json_array();
+    char set[32 * STANCE_MAX_COEFFICIENTS + 40] = "controller.phase.clock=[";
+    for (int i = 0; clock && i < STANCE_MAX_COEFFICIENTS; i++) {
+        table_append(clock, as_number(margins->clock[i]));
+        snprintf(set + strlen(set), sizeof set - strlen(set), "%s%.9g", i > 0 ? ", " : "",
+                 margins->clock[i]);
+    }
+    strcat(set, "]");
     const stance_result *const r = &gait->at.result;
     const int repeats = gait_repeats(map, gait);
     return TABLE_OBJECT(
@@ -133,8 +142,10 @@ static json_t *facts_of(const struct scenario *s, const struct return_map *map,
         {"impact_friction", as_number(margins->impact_friction)},
         {"least_normal_force", as_number(margins->least_normal_force)},
         {"lift_speed", as_number(margins->lift)}, {"clearance", as_number(margins->clearance)},
-        {"under_ground", as_number(margins->under)}, {".under", as_truth(margins->under > 0)},
-        {"residual", as_number(gait->residual)},
+        {"clock", clock ? as_tree(clock) : as_nothing(NULL)},
+        {".clock", clock && told ? as_text(set) : as_nothing(NULL)},
+        {".clock_off", as_number(margins->clock_off)}, {"under_ground", as_number(margins->under)},
+        {".under", as_truth(margins->under > 0)}, {"residual", as_number(gait->residual)},
         {"iterations", as_whole((uint64_t)gait->iterations)});
 }
 
@@ -179,7 +190,7 @@ static int say(const struct scenario *s, const struct request *request,
     if (!gait_margins_find(map, gait, &margins, &message))
         fail(s, message.text);
     else if (spread(s, map, gait, &request->sensitivity, &t)) {
-        json_t *const facts = facts_of(s, map, gait, &margins);
+        json_t *const facts = facts_of(s, map, gait, &margins, request->clock);
         if (request->sensitivity.count > 0)
             table_show(facts, "sensitivity", &t, "path from to period step_length speed error", 0);
         code = say_facts(facts, request->form == TABLE_AS_JSON, text, stdout) ? EXIT_DONE : EXIT_IO;
@@ -277,6 +288,9 @@ static const struct option options[] = {
      .without = "-o --along",
      .text = "by how much period, length and speed vary where this number of the scenario is drawn "
              "anew in each return, evenly between the two; may be repeated"},
+    {"--clock", OPTION_TO(struct request, clock), .without = "-o --along",
+     .text = "the phase on the gait as a polynomial of the time since the footfall, as --set takes "
+             "it in place of controller.phase.of: outputs that follow it wait for nobody"},
     {"--count", "COUNT", OPTION_TO(struct request, count), .low = 2, .high = 10000,
      .needs = "--along", .text = "values along it, 11 by default"},
     {"--settled", OPTION_TO(struct request, settled), .needs = "--along",
@@ -310,7 +324,8 @@ const struct command command_gait = {
     "{name: "
     "value}, multipliers: [{re, im, modulus, error}] of conjugate ones that with im > 0, stable, "
     "peak_torque, friction_used, friction, slip_distance, cost_of_transport, impact_friction, "
-    "least_normal_force, lift_speed, clearance, under_ground, residual, iterations, sensitivity: "
+    "least_normal_force, lift_speed, clearance, clock, under_ground, residual, iterations, "
+    "sensitivity: "
     "[{path, from, to, period, step_length, speed, error}]}; with --along {title, path, stopped, "
     "rows: [{value, period, step_length, speed, re, im, modulus, holds, place, repeats, settled, "
     "multipliers: [{re, im}]}]}, re, im and modulus of the largest multiplier, place flip, fold or "

@@ -1,6 +1,7 @@
 /* margins.c - the gait once more, with answers of walking, and its first step recorded. */
 #include "margins.h"
 
+#include <lapacke.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -38,6 +39,49 @@ static void look_at_feet(const struct return_map *map, const stance_trajectory *
         else
             m->under = fmax(m->under, -gap);
     }
+}
+
+/* The phase by the time of the first rows, least squares of powers of its part of their length. */
+static void fit_clock(const struct return_map *map, const stance_trajectory *record, int64_t rows,
+                      struct gait_margins *m)
+{
+    enum { N = STANCE_MAX_COEFFICIENTS };
+    const double *const phase = map->base.outputs.phase[0];
+    const double end = (double)rows * record->interval;
+    bool follows = map->base.follows && rows >= 2 * N;
+    double size = 0;
+    for (int j = 0; j < map->scene->coordinates; j++)
+        size += fabs(phase[j]);
+    follows = follows && size > 0;
+    double *const A = follows ? malloc((size_t)rows * (2 * N + 2) * sizeof *A) : NULL;
+    m->clock_off = NAN;
+    for (int i = 0; i < N; i++)
+        m->clock[i] = NAN;
+    if (!A)
+        return;
+    double *const powers = A + (size_t)rows * N, *const given = powers + (size_t)rows * N;
+    double *const x = given + rows;
+    for (int64_t k = 0; k < rows; k++) {
+        double power = 1;
+        given[k] = 0;
+        for (int j = 0; j < map->scene->coordinates; j++)
+            given[k] += phase[j] * record->position[k * map->scene->coordinates + j];
+        for (int i = 0; i < N; i++, power *= (double)k / (double)rows)
+            A[k * N + i] = powers[k * N + i] = power;
+    }
+    memcpy(x, given, (size_t)rows * sizeof *x);
+    if (LAPACKE_dgels(LAPACK_ROW_MAJOR, 'N', (lapack_int)rows, N, 1, A, N, x, 1) == 0) {
+        m->clock_off = 0;
+        for (int64_t k = 0; k < rows; k++) {
+            double off = -given[k];
+            for (int i = 0; i < N; i++)
+                off += powers[k * N + i] * x[i];
+            m->clock_off = fmax(m->clock_off, fabs(off));
+        }
+        for (int i = 0; i < N; i++)
+            m->clock[i] = x[i] / pow(end, i);
+    }
+    free(A);
 }
 
 /* Speed at which the foot that stood leaves the ground after the last footfall. */
@@ -87,6 +131,7 @@ bool gait_margins_find(const struct return_map *map, const struct gait *gait,
         const int64_t whole = (int64_t)(r[0].end_time / c[0].step);
         look_at_feet(map, &record, whole, gait->at.length, margins);
         margins->least_normal_force = least_force(map, &record, whole);
+        fit_clock(map, &record, whole, margins);
     } else {
         snprintf(message->text, sizeof message->text, "it does not take another step");
     }

@@ -12,6 +12,9 @@ struct gait_margins {
     /* m, of the other foot in the first step, at the ends of time steps: its height where it is
      * ahead, at most; its depth before that, at most, 0: it is above the ground. */
     double clearance, under;
+    /* Of outputs that follow the robot: their phase in the first step as a polynomial of the time,
+     * and how far it is off, at most; else NAN. */
+    double clock[STANCE_MAX_COEFFICIENTS], clock_off;
     double least_normal_force; /* N, of the foot that stands, the least mean over a time step */
 };
 
