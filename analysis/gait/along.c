@@ -143,7 +143,7 @@ static struct along_gait *note(struct follow *f, const char *place)
 /* After how many steps the times repeat; 0: after none. */
 static int repeats(const struct along_gait *row)
 {
-    for (int k = 1; k <= row->settled / 2; k *= 2) {
+    for (int k = 1; k <= row->settled / 2; k++) {
         bool same = true;
         for (int i = k; i < row->settled; i++)
             same = same && fabs(row->time[i] - row->time[i - k]) < SAME;
