@@ -70,6 +70,14 @@ for row, (weakest, strongest) in zip(f["outcome"][...], [(0, 15), (-30, 45), (0,
     assert survived == list(range(weakest, strongest + 1, 15)), (survived, weakest, strongest)
 END
 result $? "... are survived best in mid-step, and better forwards"
+for force in 0 20; do
+    "$stance" run "$shipped/gaits/walk_pushes.yaml" --set 'sweep={}' --set "robot.points.waist.force=[$force, 0]" \
+        --set robot.points.waist.from=0 --set stop.time=0.01 --trace --quiet -o "first$force.h5" >log 2>&1
+done
+"$python" -c 'import h5py
+first = [h5py.File(f"first{force}.h5")["trajectory/torque"][0, 0] for force in (0, 20)]
+assert abs(first[0] - first[1]).max() > 0.01, first' >log 2>&1
+result $? "a law with a model feels a push from its beginning on"
 expect "which is drawn, too" 0 "$stance" plot pushes.h5 --picture map
 says "a film of one" 'waist.from = 0.33 s.*force\[0\] = 30 N: walks' "$stance" replay pushes.h5 --near 'from=0.33,force[0]=30' \
     --set stop.time=2 -o push.gif
@@ -77,6 +85,13 @@ grep -q 'case 15: was walks in the file, and is undecided now' log
 result $? "... of its first two seconds, which do not tell"
 [ "$(head -c 6 push.gif)" = GIF89a ] && [ "$(wc -c <push.gif)" -gt 100000 ]
 result $? "... that moves"
+
+# ---- pushes --------------------------------------------------------------------------------------
+# Cases that end while they are pushed leave nothing to those that take their lanes.
+pushed=("$shipped/gaits/walk_pushes.yaml" --set stop.time=0.02 --set 'sweep.grid[0].count=12'
+    --set 'sweep.grid[1].count=7' --quiet --force)
+"$stance" run "${pushed[@]}" -o one.h5 >log 2>&1 && mpirun -n 3 "$stance" run "${pushed[@]}" -o three.h5 >>log 2>&1
+says "cases after pushed ones are what they are elsewhere" identical "$stance" compare one.h5 three.h5
 
 # ---- costs, margins, sensitivity ---------------------------------------------------------------
 says "a gait has its cost, and what its impact asks for" '^  cost of transport  0\.0612[0-9]* *$' "$stance" gait "$walks" \
@@ -207,6 +222,7 @@ gait "late torques" "remember the step before" --set controller.delay=1
 gait "a start that falls" "it falls after 0 footfalls, by hip; give a start that walks" --set initial.state.vq1=0
 gait "a number that is drawn, without an end" "--sensitivity takes PATH=FROM..TO" --sensitivity ground.slope=1
 gait "one that ends the gait" "with ground.friction" --sensitivity ground.friction=0.02..0.06
+gait "a range about another value" "the gait is not one of the middle, ground.slope=0.011" --sensitivity ground.slope=0.01..0.012
 gait "a path that is none" "unknown key 'slop'" --along ground.slop=0..1
 gait "a picture of no kind" "a file that ends in svg, png or pdf" --along ground.slope=0..0.1 -o along.txt
 gait "how a picture looks of none" "pictures are drawn by -o FILE with --along" --for column

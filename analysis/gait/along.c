@@ -72,6 +72,15 @@ static int take(const struct scenario *s, const stance_case *c, void *context)
     return good ? EXIT_DONE : EXIT_USAGE;
 }
 
+void along_blame(const char *path, double value, stance_message *message)
+{
+    char why[sizeof message->text];
+    if (!message->text[0])
+        return;
+    snprintf(why, sizeof why, "%s", message->text);
+    snprintf(message->text, sizeof why, "with %.40s %.6g: %.150s", path, value, why);
+}
+
 /* The gait at a value; false, with f->message: none is found. */
 static bool find(struct follow *f, double value)
 {
@@ -96,6 +105,8 @@ static bool find(struct follow *f, double value)
     memcpy(from, f->gait.z, sizeof from);
     const bool good = asked_first(&command_gait, s, take, f) == EXIT_DONE;
     scenario_drop(s);
+    if (!good)
+        along_blame(f->along->path, value, &f->message);
     if (good) {
         memcpy(f->before, from, sizeof from);
         f->last_before = f->last;
@@ -143,7 +154,7 @@ static struct along_gait *note(struct follow *f, const char *place)
 /* After how many steps the times repeat; 0: after none. */
 static int repeats(const struct along_gait *row)
 {
-    for (int k = 1; k <= row->settled / 2; k *= 2) {
+    for (int k = 1; k <= row->settled / 2; k++) {
         bool same = true;
         for (int i = k; i < row->settled; i++)
             same = same && fabs(row->time[i] - row->time[i - k]) < SAME;

@@ -54,6 +54,9 @@ char *along_initial(const struct return_map *map, const double *z, double height
 struct scenario *along_at(const char *file, const char *plain, const char *path, double value,
                           const struct return_map *map, const double *z);
 
+/* Says in a message, if there is one, of which value it is. */
+void along_blame(const char *path, double value, stance_message *message);
+
 /* Follows it, from the values of `s` but for the path's, and says so; returns an exit code. */
 int along_say(const struct scenario *s, const struct along *along, enum table_form form);
 

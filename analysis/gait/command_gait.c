@@ -83,7 +83,7 @@ static bool spread(const struct scenario *s, const struct return_map *map, const
             {{"period", "period (s)", "%.3e", .width = 11}, as_number(is.time)},
             {{"step_length", "step (m)", "%.3e", .width = 11}, as_number(is.length / map->steps)},
             {{"speed", "speed (m/s)", "%.3e", .width = 12}, as_number(is.speed)},
-            {{"error", "+-", "%.1e", .width = 8}, as_number(is.error)});
+            {{"error", "+- part", "%.1e", .width = 8}, as_number(is.error)});
         table_end_row(t);
     }
     return true;
@@ -319,7 +319,9 @@ const struct command command_gait = {
     "Cost of transport is sum of |work| of each actuator, over weight and way. Heights of the foot "
     "that swings and normal forces are seen at the ends of time steps.\n"
     "--sensitivity tells the gait sensitivity norm of Hobbelen and Wisse (2007): standard "
-    "deviations from step to step to first order in the number's.\n"
+    "deviations from step to step to first order in the number's, about a middle that has to be "
+    "the scenario's value; the foot behind begins each return on the ground of that return. The "
+    "error (+- part) is relative, by how much the whole range and half of it differ.\n"
     "  JSON: {title, steps, repeats, method, period, step_length, speed, foot, sampled, state: "
     "{name: "
     "value}, multipliers: [{re, im, modulus, error}] of conjugate ones that with im > 0, stable, "

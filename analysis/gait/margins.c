@@ -125,7 +125,7 @@ bool gait_margins_find(const struct return_map *map, const struct gait *gait,
         good = good && r[k].status == STANCE_DONE && r[k].footfalls >= c[k].footfalls;
     }
     if (good) {
-        *margins = (struct gait_margins){.cost = r[1].cost_of_transport,
+        *margins = (struct gait_margins){.cost = map->steps <= 4 ? r[1].cost_of_transport : NAN,
                                          .impact_friction = r[1].impact_friction,
                                          .lift = lift_of(map, &gait->at.result)};
         const int64_t whole = (int64_t)(r[0].end_time / c[0].step);

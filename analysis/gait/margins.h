@@ -5,7 +5,8 @@
 #include "return_map.h"
 
 struct gait_margins {
-    double cost;            /* the answer cost_of_transport; NAN: nothing is actuated */
+    double cost; /* the answer cost_of_transport; NAN: nothing is actuated, or it has more than 4
+                    steps */
     double impact_friction; /* the answer */
     double lift; /* m/s, at which the foot that stood leaves the ground after the footfall; 0: it
                   * stays there */
@@ -18,7 +19,7 @@ struct gait_margins {
     double least_normal_force; /* N, of the foot that stands, the least mean over a time step */
 };
 
-/* Lets the gait walk once more; the cost is that of its last four steps, if it has more. False,
+/* Lets the gait walk once more. False,
  * with a message: out of memory, or it falls. */
 bool gait_margins_find(const struct return_map *map, const struct gait *gait,
                        struct gait_margins *margins, stance_message *message);

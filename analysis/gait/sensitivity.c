@@ -19,6 +19,8 @@
 extern const struct command command_gait;
 
 enum { MEASURES = 3, STEPS_MOST = 100000 }; /* time, length, speed */
+#define MIDDLE 0.05 /* of what the range changes: so far off may the middle's return be */
+#define EXACT 1e-6  /* as gait.c admits */
 
 struct change {
     struct return_map map;
@@ -45,11 +47,8 @@ static bool at(const struct scenario *s, const char *path, double value, struct 
         along_at(s->file, s->text, path, value, &change->map, change->z);
     const bool good = changed && asked_first(&command_gait, changed, take, change) == EXIT_DONE;
     scenario_drop(changed);
-    if (!good && change->message->text[0]) {
-        char why[sizeof change->message->text];
-        snprintf(why, sizeof why, "%s", change->message->text);
-        snprintf(change->message->text, sizeof why, "with %.40s %.6g: %.150s", path, value, why);
-    }
+    if (!good)
+        along_blame(path, value, change->message);
     return good;
 }
 
@@ -99,7 +98,7 @@ bool gait_sensitivity_find(const struct scenario *s, const struct return_map *ma
 {
     const double middle = 0.5 * (along->from + along->to), range = along->to - along->from;
     double by[2][RETURN_MAP_MOST + 2], B[RETURN_MAP_MOST], D[MEASURES], variance[MEASURES];
-    double largest = 0, off = 0;
+    double largest = 0, off = 0, aside = 0;
     struct change *const change = malloc(2 * sizeof *change);
     bool good = change != NULL;
     if (!gait->stable) {
@@ -119,14 +118,27 @@ bool gait_sensitivity_find(const struct scenario *s, const struct return_map *ma
         by[k][map->n] = good ? (q->time - p->time) / width : 0;
         by[k][map->n + 1] = good ? (q->length - p->length) / width : 0;
     }
-    free(change);
-    if (!good)
-        return false;
-    for (int i = 0; i < map->n + 2; i++) {
+    good = good && at(s, along->path, middle, &change[0]);
+    for (int i = 0; good && i < map->n + 2; i++) {
+        const struct return_point *const p = &change[0].point;
+        const double here = i < map->n    ? p->z[i] - gait->z[i]
+                            : i == map->n ? p->time - gait->at.time
+                                          : p->length - gait->at.length;
+        aside = fmax(aside, fabs(here));
         largest = fmax(largest, fabs(by[1][i]));
         off = fmax(off, fabs(by[1][i] - by[0][i]));
         by[1][i] += (by[1][i] - by[0][i]) / 3;
     }
+    free(change);
+    if (good && aside > fmax(MIDDLE * largest * fabs(range), EXACT)) {
+        snprintf(message->text, sizeof message->text,
+                 "the gait is not one of the middle, %.60s=%.6g: give a range about the scenario's "
+                 "value",
+                 along->path, middle);
+        good = false;
+    }
+    if (!good)
+        return false;
     memcpy(B, by[1], sizeof B);
     measures(gait, by[1][map->n], by[1][map->n + 1], D);
     add_up(map, gait, B, D, variance);

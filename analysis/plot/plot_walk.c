@@ -64,12 +64,16 @@ size_t walk_footfalls(const struct plot_case *c, double time[WALK_FOOTFALLS])
     const struct results_trajectory *const t = c->t;
     const stance_scene *const scene = c->readable ? c->scenario.scene : NULL;
     size_t count = 0, made = 0;
-    int foot = -1, down = 0;
+    int foot = -1, stands = -1;
+    bool both = false;
     if (!scene || !scene->exchange.any || !t->force || !t->gap)
         return 0;
     for (int k = 0; k < plot_case_grounded(scene); k++)
-        down += fabs(t->gap[k]) < 1e-7;
-    if (down > 1)
+        if (fabs(t->gap[k]) < 1e-7) { /* both ends of a sole are one foot */
+            both = both || (stands >= 0 && scene->grip[k] != stands);
+            stands = scene->grip[k];
+        }
+    if (both)
         time[count++] = t->time[0];
     for (size_t row = 1; row < t->rows; row++)
         for (size_t k = 0; k < (size_t)plot_case_grounded(scene); k++) {

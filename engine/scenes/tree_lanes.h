@@ -171,6 +171,8 @@ static inline void scene_load_body(scene_body *b, int lane, const stance_tree_nu
         LOAD(spring);
     LOAD(end), LOAD(rough), LOAD(point), LOAD(lowest), LOAD(turn), LOAD(push);
 #undef LOAD
+    for (size_t i = 0; i < sizeof b->pull / sizeof(lanes); i++) /* not that of the case before */
+        lane_set((lanes *)b->pull + i, lane, 0);
 }
 
 /* What the structure lacks of the room that there is: nothing, unless it is read at run time. */

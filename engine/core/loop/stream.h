@@ -58,6 +58,15 @@ COLD void bundle_start(struct bundle *b, mask fresh, bool coupled)
         loaded[c] = mask_less(lanes_of(0), b->set.may_touch[c]) &
                     mask_less_equal(b->now.gap[c], lanes_of(STEP_CLOSED));
     const struct verdict v = bundle_judge(b, fresh, CONTACT_ALL, loaded, MASK_NONE);
+    /* A law with a model feels what pushes it from the beginning on. */
+    if (SCENE_PUSHES > 0) {
+#ifdef ADVANCE_PIECES
+        const lanes begins = b->n * b->h + b->piece_from, length = b->piece_to - b->piece_from;
+#else
+        const lanes begins = b->n * b->h, length = b->h;
+#endif
+        scene_push(&b->set.body, begins, length);
+    }
     bundle_sample(b, fresh);
     if (!coupled) { /* a law that acts all the time, without gains: its torque is constant */
         lanes torque[ACTUATORS];
