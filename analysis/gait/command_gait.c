@@ -117,10 +117,9 @@ static json_t *facts_of(const struct scenario *s, const struct return_map *map,
     char set[32 * STANCE_MAX_COEFFICIENTS + 40] = "controller.phase.clock=[";
     for (int i = 0; clock && i < STANCE_MAX_COEFFICIENTS; i++) {
         table_append(clock, as_number(margins->clock[i]));
-        snprintf(set + strlen(set), sizeof set - strlen(set), "%s%.9g", i > 0 ? ", " : "",
-                 margins->clock[i]);
+        snprintf(set + strlen(set), sizeof set - strlen(set), "%s%.9g%s", i > 0 ? ", " : "",
+                 margins->clock[i], i + 1 == STANCE_MAX_COEFFICIENTS ? "]" : "");
     }
-    strcat(set, "]");
     const stance_result *const r = &gait->at.result;
     const int repeats = gait_repeats(map, gait);
     return TABLE_OBJECT(

@@ -65,7 +65,7 @@ static void add_up(const struct return_map *map, const struct gait *gait, const 
                    const double *D, double variance[MEASURES])
 {
     const int n = map->n;
-    double z[RETURN_MAP_MOST], next[RETURN_MAP_MOST], least = 0;
+    double z[RETURN_MAP_MOST], next[RETURN_MAP_MOST] = {0}, least = 0;
     memcpy(z, B, sizeof z);
     for (int m = 0; m < MEASURES; m++)
         variance[m] = D[m] * D[m];

@@ -71,9 +71,10 @@ static struct range range_of(const struct case_page *page, struct columns column
         const double *const values = shown_of(page, c->t, &width);
         const double limit =
             columns.robust ? limit_of(values, c->t->rows, width, columns) : INFINITY;
-        for (size_t k = 0; k < c->t->rows * width; k += width) {
+        for (size_t row = 0; row < c->t->rows; row++) {
             bool beyond = false;
-            const double time = c->t->time[k / width];
+            const size_t k = row * width;
+            const double time = c->t->time[row];
             if (time < page->time.low || time > page->time.high)
                 continue;
             for (size_t i = k + columns.first; i < k + columns.end; i += columns.every) {

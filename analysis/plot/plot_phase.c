@@ -141,21 +141,22 @@ static void put_phase(struct gnuplot *g, const struct plot_case *c, int i, char 
     char name[200] = "", unit[60];
     struct plot_range range[2] = {PLOT_NOTHING, PLOT_NOTHING};
     const int twin = counterpart(scene, i, name, sizeof name);
-    const bool own = twin == i || strncmp(name, "-", 1) == 0, paired = !own;
+    const bool own = twin == i || strncmp(name, "-", 1) == 0;
+    const int legs = own ? 1 : 2;
     if (twin >= 0 && twin < i)
         return; /* it has been drawn with the other one */
     gnuplot_panel(g, 1, "");
-    for (int leg = 0; leg <= paired && c->other; leg++)
+    for (int leg = 0; leg < legs && c->other; leg++)
         put_curves(&(struct curve){g, c->other, i, leg > 0, range}, "0xb8b8b8", leg ? 2 : 1);
-    for (int leg = 0; leg <= paired; leg++)
+    for (int leg = 0; leg < legs; leg++)
         put_curves(&(struct curve){g, c, i, leg > 0, range},
                    own ? "hue[3]" : gnuplot_hue((size_t)leg), leg ? 2 : 1);
-    for (int leg = 0; leg <= paired; leg++) {
+    for (int leg = 0; leg < legs; leg++) {
         char *const of = legend[own ? 2 : leg];
         add_text(of, 200, "%s%s", of[0] ? ", " : "", leg ? name : q->name);
     }
     char both[260];
-    snprintf(both, sizeof both, paired ? "%s, %s" : "%s", q->name, name);
+    snprintf(both, sizeof both, legs == 2 ? "%s, %s" : "%s", q->name, name);
     gnuplot_axis(g, 'x', PLOT_LINEAR, plot_roomy(range[0], 0.06), both, q->unit);
     snprintf(unit, sizeof unit, "%s/s", q->unit);
     gnuplot_axis(g, 'y', PLOT_LINEAR, plot_roomy(range[1], 0.06), "rate", unit);
