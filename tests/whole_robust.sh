@@ -198,7 +198,7 @@ else
     skip "a disk that fills once the job has begun" "cannot mount"
 fi
 # ext2 reserves nothing: there it does.
-dd if=/dev/zero of=image bs=1M count=140 >/dev/null 2>&1
+dd if=/dev/zero of=image bs=1M count=150 >/dev/null 2>&1
 if mkfs.ext2 -q image 2>/dev/null && mount -o loop image "$disk" 2>/dev/null; then
     for n in "${fills[@]}"; do
         begin $n disk/full.h5 long.yaml

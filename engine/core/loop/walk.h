@@ -200,7 +200,7 @@ static void walk_answer(const struct bundle *b, int lane, stance_result *r)
         const double effort = lane_get(&w->after[0], lane) - lane_get(&w->after[last], lane);
         const stance_tree_numbers *const body = &b->which[lane]->body;
         const double weight = body->mass * hypot(body->gravity[0], body->gravity[1]);
-        if (SCENE_ACTUATORS > 0 && weight > 0)
+        if (b->which[lane]->scene->actuators > 0 && weight > 0)
             r->cost_of_transport = effort / (weight * fabs(r->step_length) * last);
     }
     if (isfinite(lane_get(&w->change, lane)))
