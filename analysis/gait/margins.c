@@ -23,18 +23,14 @@ static void look_at_feet(const struct return_map *map, const stance_trajectory *
                          int64_t rows, double direction, struct gait_margins *m)
 {
     const stance_scene *const scene = map->scene;
-    const double *const robot = map->base.robot;
-    double sine, cosine;
-    stance_sincos(robot[STANCE_ROBOT_SLOPE], &sine, &cosine);
     for (int64_t k = 0; k < rows; k++) {
         const double *const q = record->position + k * scene->coordinates;
         const double *const v = record->velocity + k * scene->coordinates;
         const double gap = record->gap[k * scene->contacts + map->foot[1]];
         double foot[2][2], speed[2];
         for (int leg = 0; leg < 2; leg++)
-            scene->contact_point(scene, robot, q, v, map->foot[leg], foot[leg], speed);
-        const double along = cosine * (foot[1][0] - foot[0][0]) - sine * (foot[1][1] - foot[0][1]);
-        if (along * direction > 0)
+            return_map_foot(map, q, v, leg, foot[leg], speed);
+        if ((foot[1][0] - foot[0][0]) * direction > 0)
             m->clearance = fmax(m->clearance, gap);
         else
             m->under = fmax(m->under, -gap);
@@ -87,11 +83,9 @@ static void fit_clock(const struct return_map *map, const stance_trajectory *rec
 /* Speed at which the foot that stood leaves the ground after the last footfall. */
 static double lift_of(const struct return_map *map, const stance_result *r)
 {
-    double point[2], speed[2], sine, cosine;
-    stance_sincos(map->base.robot[STANCE_ROBOT_SLOPE], &sine, &cosine);
-    map->scene->contact_point(map->scene, map->base.robot, r->position, r->velocity,
-                              map->foot[(map->steps - 1) % 2], point, speed);
-    return fmax(sine * speed[0] + cosine * speed[1], 0);
+    double place[2], speed[2];
+    return_map_foot(map, r->position, r->velocity, (map->steps - 1) % 2, place, speed);
+    return fmax(speed[1], 0);
 }
 
 bool gait_margins_find(const struct return_map *map, const struct gait *gait,

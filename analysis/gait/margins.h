@@ -19,8 +19,7 @@ struct gait_margins {
     double least_normal_force; /* N, of the foot that stands, the least mean over a time step */
 };
 
-/* Lets the gait walk once more. False,
- * with a message: out of memory, or it falls. */
+/* Lets the gait walk once more. False, with a message: out of memory, or it falls. */
 bool gait_margins_find(const struct return_map *map, const struct gait *gait,
                        struct gait_margins *margins, stance_message *message);
 

@@ -77,6 +77,17 @@ bool return_map_state(const struct return_map *map, const double *z, double *pos
     return fabs(gap) < 1e-12;
 }
 
+void return_map_foot(const struct return_map *map, const double *position, const double *velocity,
+                     int foot, double place[2], double speed[2])
+{
+    const double *const robot = map->base.robot;
+    double sine, cosine, x[2], v[2];
+    stance_sincos(robot[STANCE_ROBOT_SLOPE], &sine, &cosine);
+    map->scene->contact_point(map->scene, robot, position, velocity, map->foot[foot], x, v);
+    place[0] = cosine * x[0] - sine * x[1], place[1] = sine * x[0] + cosine * x[1];
+    speed[0] = cosine * v[0] - sine * v[1], speed[1] = sine * v[0] + cosine * v[1];
+}
+
 void return_map_lift(const struct return_map *map, double height, double *position)
 {
     const int left = map->scene->posture[map->follows];
@@ -136,7 +147,6 @@ static bool returned(const struct return_map *map, const stance_case *c, const s
 static bool take(const struct return_map *map, size_t count, const double (*z)[RETURN_MAP_MOST],
                  long before, struct return_point *point, stance_message *message)
 {
-    const stance_scene *const scene = map->scene;
     stance_case *const cases = calloc(count, sizeof *cases);
     stance_result *const results = malloc(count * sizeof *results);
     bool good = (cases && results) || refuse(message, "out of memory");
@@ -149,26 +159,22 @@ static bool take(const struct return_map *map, size_t count, const double (*z)[R
     if (good)
         map->kernel->run(cases, results, count);
     for (size_t i = 0; good && i < count; i++) {
-        double end[2], speed[2], sine, cosine;
+        double from[2], end[2], speed[2];
         good = returned(map, &cases[i], &results[i], before, message);
         if (!good)
             break;
         const bool second = map->steps % 2;
         section_of(map, results[i].position, results[i].velocity, second, point[i].z, NULL);
-        scene->contact_point(scene, map->base.robot, results[i].position, results[i].velocity,
-                             map->foot[second], end, speed);
+        return_map_foot(map, results[i].position, results[i].velocity, second, end, speed);
         if (hypot(speed[0], speed[1]) > SLIDES) {
             good =
                 refuse(message, "the foot that lands slides: no gait on feet that stick; give more "
                                 "ground.friction");
             break;
         }
-        stance_sincos(map->base.robot[STANCE_ROBOT_SLOPE], &sine, &cosine);
-        double from[2];
-        scene->contact_point(scene, map->base.robot, cases[i].position, cases[i].velocity,
-                             map->foot[0], from, speed);
+        return_map_foot(map, cases[i].position, cases[i].velocity, 0, from, speed);
         point[i].time = results[i].end_time;
-        point[i].length = cosine * (end[0] - from[0]) - sine * (end[1] - from[1]);
+        point[i].length = end[0] - from[0];
         point[i].result = results[i];
     }
     free(cases);

@@ -41,6 +41,9 @@ bool return_map_change(struct return_map *map, const stance_case *c, stance_mess
 /* Position and velocity at a point of the section, standing on the first leg's foot. */
 bool return_map_state(const struct return_map *map, const double *z, double *position,
                       double *velocity);
+/* Place (m) and speed (m/s) of foot 0 or 1 in a state, each along the ground and off it. */
+void return_map_foot(const struct return_map *map, const double *position, const double *velocity,
+                     int foot, double place[2], double speed[2]);
 /* Turns the angle that follows so that the second foot is about so high over the ground, m. */
 void return_map_lift(const struct return_map *map, double height, double *position);
 /* Maps points[count]; false, with a message: one of them falls, or makes no such step. */
