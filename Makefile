@@ -169,7 +169,7 @@ $(BUILD)/analysis/view/page_template.o: $(PAGE)
 $(BUILD)/runner/store/build_info.o: EXTRA = $(BUILD_INFO)
 $(BUILD)/runner/store/build_info.o: $(BUILD)/revision
 # Kernels that are compiled on demand: the sources that the program carries, and how it compiles them.
-carried = $(sort $(wildcard engine/*.h engine/core/*/*.h engine/scenes/tree_*.h)) $(METHODS:%=engine/methods/%.c)
+carried = $(sort $(wildcard engine/*.h engine/core/*/*.h engine/scenes/tree_*.h) $(wildcard runner/objects/law/*)) $(METHODS:%=engine/methods/%.c)
 $(BUILD)/runner/objects/sources.o: EXTRA = -DSTANCE_SOURCES='$(foreach f,$(carried),SOURCE("$(f)"))'
 $(BUILD)/runner/objects/sources.o: $(carried)
 $(BUILD)/runner/objects/compiler.o: EXTRA = \

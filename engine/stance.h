@@ -255,7 +255,10 @@ typedef enum stance_evidence {
     X(INITIAL, initial, "the initial state or the controller does not exist for this case")        \
     X(WORK, work,                                                                                  \
       "it takes more work than is allowed: too stiff, or events without end; try a shorter step, " \
-      "or method midpoint")
+      "or method midpoint")                                                                        \
+    X(PROGRAM, program,                                                                            \
+      "the program of controller.file gave torques that are not finite, or wrote where nothing "   \
+      "is its own")
 
 typedef enum stance_failure {
 #define STANCE_FAILURE_ENUM(NAME, name, text) STANCE_FAILURE_##NAME,
@@ -344,6 +347,33 @@ typedef struct stance_parameter {
     const char *fallback_text, *all, *more; /* of NAN; of the numbers together; may be NULL */
 } stance_parameter;
 
+/* A law of the user's own, compiled from C (runner/objects/program.h): what kernels call at each
+ * sample of a case. sample[] is what is measured and known then: STANCE_SAMPLE_HEAD numbers, the
+ * scene's coordinates, their rates, and for each contact 1 where it stands on the ground, else 0.
+ */
+enum { STANCE_PROGRAM_NUMBERS = 64 }; /* of its parameters, at most */
+enum {
+    STANCE_SAMPLE_TIME,   /* s */
+    STANCE_SAMPLE_PERIOD, /* s, to the next sample */
+    STANCE_SAMPLE_SINCE,  /* s, since the last footfall, or since the beginning */
+    STANCE_SAMPLE_FOOTFALLS,
+    STANCE_SAMPLE_FOOT, /* contact that landed last, at first one that stands; -1: none */
+    STANCE_SAMPLE_HEAD,
+    STANCE_SAMPLE_ROOM = STANCE_SAMPLE_HEAD + 2 * STANCE_MAX_COORDINATES + STANCE_MAX_CONTACTS,
+};
+typedef struct stance_program stance_program;
+struct stance_program {
+    bool remembers; /* what it commands depends on more than sample[] */
+    /* A case begins: where sample[] is to be written; what else it keeps is beside it. NULL: there
+     * is no memory. */
+    double *(*begin)(const stance_program *program, const struct stance_case *c);
+    /* Torques [actuators], not yet limited, for what stands in sample[]; NULL: they are of no use.
+     */
+    const double *(*act)(const stance_program *program, const struct stance_case *c,
+                         double *sample);
+    void (*end)(const stance_program *program, double *sample);
+};
+
 /* STANCE_LAW_PARAMETERS: of all laws together. */
 enum { STANCE_LAW_PARAMETERS = 64, STANCE_LAW_ROOM = STANCE_MAX_COORDINATES, STANCE_MAX_LAWS = 8 };
 
@@ -354,6 +384,7 @@ typedef struct stance_law {
     bool acts_far; /* may act outside the ellipsoid inside which a designed law does */
     bool servos;   /* controls the coordinates of a selection, each by a servo */
     bool samples;  /* needs a sample time above 0 */
+    bool program;  /* is compiled from a file of the user's, which says what it is told */
     int parameters;
     const stance_parameter *parameter; /* [parameters] */
     /* What mappings that hold parameters are ("phase" of "phase.from"), name and text; NULL ends;
@@ -369,7 +400,7 @@ typedef struct stance_law {
 
 /* The laws there are, NULL-terminated; the first one is `none`. */
 #define STANCE_LAWS(X)                                                                             \
-    X(none) X(hold) X(state_feedback) X(bimodal_feedback) X(decoupling) X(outputs)
+    X(none) X(hold) X(state_feedback) X(bimodal_feedback) X(decoupling) X(outputs) X(program)
 const stance_law *const *stance_laws(void);
 /* One by name, or NULL. */
 const stance_law *stance_law_find(const char *name);
@@ -440,6 +471,9 @@ typedef struct stance_case {
     bool follows; /* `decouples`, and `outputs` are held instead of what servos do */
     stance_outputs outputs;
     double switch_axis[2 * STANCE_MAX_POSTURE]; /* rad, rad/s, > 0 */
+    /* It acts instead, where the case does not switch or is outside the ellipsoid; NULL: none. */
+    const stance_program *program;
+    double parameter[STANCE_PROGRAM_NUMBERS]; /* of it */
     double torque_limit; /* N m, > 0, may be INFINITY; of an actuator, `body.limit` where smaller */
     double torque_limits[STANCE_MAX_ACTUATORS]; /* ... or this one; 0: none */
     int64_t sample_every; /* steps per sample, held between; 0: acts continuously inside the step */

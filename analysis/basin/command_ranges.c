@@ -265,6 +265,8 @@ static int prepare(const struct scenario *s, void *request)
     struct plan_error error = {0};
     stance_message message = {""};
     const struct kernels_choice choice = {.always = s->axes == 0};
+    if (!asked_law(s))
+        return EXIT_USAGE;
     if (!plan_make(&plan, s, false, 0, false, &error))
         return plan_error_print(s, &error);
     plan.patience = PLAN_PATIENCE_DESIGNS;
@@ -297,7 +299,7 @@ static int run(int argc, char **argv)
 }
 
 static const struct option options[] = {
-    {.rows = asked_options},
+    {.rows = asked_simulates},
     {"--of", "OUTCOME", OPTION_TO(struct request, of), .word = results_outcome_word,
      .text = "look for another outcome than stabilised, or than walks with stop.walks"},
     {OPTION_TIME_LIMIT},

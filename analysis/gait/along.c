@@ -321,7 +321,7 @@ struct scenario *along_at(const char *file, const char *plain, const char *path,
     char *const initial = map ? along_initial(map, z, CLEAR) : NULL;
     snprintf(set, sizeof set, "%.100s=%.17g", path, value);
     const char *const sets[] = {initial ? initial : set, set};
-    struct scenario *const s = scenario_new(file, plain, sets, 2, stderr);
+    struct scenario *const s = asked_again(file, plain, sets, 2);
     free(initial);
     return s;
 }

@@ -251,10 +251,12 @@ static int gait(const struct scenario *s, void *asked)
     struct request *const request = asked;
     if (look_given(&request->look) && !(request->along && request->path))
         return command_usage(&command_gait, "pictures are drawn by -o FILE with --along");
+    if (!asked_law(s))
+        return EXIT_USAGE;
     if (request->along)
         return follow(s, request);
     char *const plain = along_plain(s);
-    struct scenario *const one = plain ? scenario_new(s->file, plain, NULL, 0, stderr) : NULL;
+    struct scenario *const one = plain ? asked_again(s->file, plain, NULL, 0) : NULL;
     const int code = one ? asked_first(&command_gait, one, find, asked) : EXIT_USAGE;
     scenario_drop(one);
     free(plain);
@@ -269,7 +271,7 @@ static int run(int argc, char **argv)
 }
 
 static const struct option options[] = {
-    {.rows = asked_options},
+    {.rows = asked_simulates},
     {"--steps", "COUNT", OPTION_TO(struct request, steps), .low = 1, .high = 16,
      .text = "steps after which the gait repeats, 1 by default; 2 of one that limps"},
     {"--settle", "COUNT", OPTION_TO(struct request, settle), .low = 1, .high = 10000,

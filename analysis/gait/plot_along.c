@@ -113,7 +113,7 @@ static const char *unit_of(const struct scenario *s, const char *path)
     static char unit[24];
     struct schema *own = NULL;
     size_t index[2];
-    const struct schema *const schema = schema_of(s->scene, &own);
+    const struct schema *const schema = schema_of(s->scene, &s->law, &own);
     const struct scenario_field *const field =
         schema ? schema_find_concrete(schema, path, index) : NULL;
     snprintf(unit, sizeof unit, "%s", field && strcmp(field->unit, "1") != 0 ? field->unit : "");

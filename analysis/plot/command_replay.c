@@ -4,6 +4,7 @@
 
 #include "runner/base/message.h"
 #include "runner/base/sandbox.h"
+#include "runner/plan/law.h"
 #include "runner/ranks/parallel.h"
 
 #include <errno.h>
@@ -22,6 +23,7 @@ enum { MOST_CASES = 2, MOST_SETS = 32 };
 
 struct request {
     const char *file;
+    bool trust;
     struct numbers {
         uint64_t number[MOST_CASES];
         size_t count;
@@ -235,7 +237,7 @@ struct replay {
 static int run_again(const struct request *request, const struct replay *replay)
 {
     char index[32];
-    const char *arguments[16 + 2 * MOST_SETS] = {"stance", "run",        replay->scenario,
+    const char *arguments[17 + 2 * MOST_SETS] = {"stance", "run",        replay->scenario,
                                                  "--only", index,        "--trace",
                                                  "-o",     replay->file, "--quiet"};
     size_t count = 9;
@@ -243,6 +245,8 @@ static int run_again(const struct request *request, const struct replay *replay)
     int status;
     parallel_leave_launcher();
     snprintf(index, sizeof index, "%llu", (unsigned long long)replay->index);
+    if (request->trust)
+        arguments[count++] = "--trust";
     for (size_t k = 0; k < request->sets.count; k++) {
         arguments[count++] = "--set";
         arguments[count++] = request->sets.text[k];
@@ -412,6 +416,7 @@ static const struct option options[] = {
              "not named are those of the equilibrium, all else has its first value"},
     {"--set", "PATH=VALUE", TO(sets), .most = MOST_SETS,
      .text = "with a value of the scenario replaced, as `run` has it; may be repeated"},
+    {OPTION_TRUST(struct request, trust)},
     {.at = offsetof(struct request, look), .rows = look_options},
     {0},
 };

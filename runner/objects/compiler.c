@@ -222,6 +222,10 @@ static void complain_of(struct compilation *c, const struct compiler *compiler, 
         if ((unsigned char)*s < ' ')
             *s = s[1] && *s == '\n' ? '|' : ' ';
     const bool killed = status != -1 && WIFSIGNALED(status);
+    if (c->source[0] && error) { /* a law: its first error alone, with its place */
+        complain(&c->message, "%.*s", (int)strcspn(from, "|"), from);
+        return;
+    }
     complain(&c->message, "%.30s does not compile %s for %s (%s %d): %.130s", compiler->text,
              c->method, c->isa, killed ? "signal" : "exit code",
              status == -1 ? 127
@@ -238,23 +242,26 @@ struct running {
 
 static void object_name(const struct compilation *c, char name[80])
 {
-    snprintf(name, 80, "%s-%s.so", c->method, c->isa);
+    snprintf(name, 80, "%s-%s.so", c->source[0] ? "law" : c->method, c->isa);
 }
 
 static struct running begin(const struct compiler *compiler, int directory,
                             const struct compilation *c)
 {
-    char flags[FLAGS_SIZE], source[80], object[80], *argument[ARGUMENTS];
+    char flags[FLAGS_SIZE], method[80], object[80], *argument[ARGUMENTS];
     static char to[] = "-o";
-    snprintf(flags, sizeof flags, "%s", compiler_flags(c->isa));
-    snprintf(source, sizeof source, "engine/methods/%s.c", c->method);
+    snprintf(flags, sizeof flags, "%s %s", compiler_flags(c->isa), c->flags ? c->flags : "");
+    snprintf(method, sizeof method, "engine/methods/%s.c", c->method);
     object_name(c, object);
     memcpy(argument, compiler->word, compiler->words * sizeof *argument);
     size_t n = compiler->words;
-    n += split(flags, argument + n, ARGUMENTS - COMPILER_WORDS - 4);
+    n += split(flags, argument + n, ARGUMENTS - COMPILER_WORDS - 4 - COMPILER_SOURCES);
     argument[n++] = to;
     argument[n++] = object;
-    argument[n++] = source;
+    for (size_t i = 0; i < COMPILER_SOURCES && c->source[i]; i++)
+        argument[n++] = (char *)(uintptr_t)c->source[i];
+    if (!c->source[0])
+        argument[n++] = method;
     argument[n] = NULL;
     struct running running = {-1, memfd_create("messages", MFD_CLOEXEC)};
     if (running.output >= 0)
@@ -309,16 +316,18 @@ static int remove_one(const char *path, const struct stat *information, int kind
     return remove(path);
 }
 
-void compiler_run(const struct compiler *compiler, const char *tables, struct compilation *wanted,
-                  size_t count, struct watch *watch)
+void compiler_run(const struct compiler *compiler, const struct compiler_file *file, size_t files,
+                  struct compilation *wanted, size_t count, struct watch *watch)
 {
     const char *const named = getenv("TMPDIR"), *const base = named && named[0] ? named : "/tmp";
     char place[PATH_MAX];
     snprintf(place, sizeof place, "%s/stance-XXXXXX", base);
     const int directory =
         mkdtemp(place) ? open(place, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC) : -1;
-    if (directory >= 0 && sources_write(directory) &&
-        sources_write_file(directory, COMPILER_TABLES, tables, strlen(tables)))
+    bool written = directory >= 0 && sources_write(directory);
+    for (size_t i = 0; written && i < files; i++)
+        written = sources_write_file(directory, file[i].path, file[i].text, strlen(file[i].text));
+    if (written)
         run_all(compiler, directory, wanted, count, watch);
     else
         for (size_t i = 0; i < count; i++)

@@ -30,15 +30,23 @@ bool compiler_find(struct compiler *compiler, stance_message *why);
 const char *compiler_flags(const char *isa);
 const char *compiler_isa(size_t index);
 
-/* One kernel to be compiled, and what became of it. */
+/* One object to be compiled, and what became of it: a kernel, of the method's source, or a law, of
+ * its own sources and with more flags. */
+enum { COMPILER_SOURCES = 2 };
 struct compilation {
     const char *method, *isa;
-    struct image image;     /* none: it failed ... */
-    stance_message message; /* ... and why */
+    const char *source[COMPILER_SOURCES], *flags; /* NULL: a kernel's */
+    struct image image;                           /* none: it failed ... */
+    stance_message message;                       /* ... and why */
 };
 
-/* The header of tables that each of them is compiled with, see objects.h. */
+/* The header of tables that kernels are compiled with, see objects.h. */
 #define COMPILER_TABLES "tables.h"
+
+/* What stands beside the engine's sources in the directory that is compiled in. */
+struct compiler_file {
+    const char *path, *text;
+};
 
 /* How many cores this process has. */
 size_t compiler_cores(void);
@@ -46,7 +54,7 @@ size_t compiler_cores(void);
 /* Compiles in a directory of its own, below $TMPDIR or /tmp; as many at a time as there are
  * cores. Where it is to stop, all that were started are ended, with what they have started
  * themselves. */
-void compiler_run(const struct compiler *compiler, const char *tables, struct compilation *wanted,
-                  size_t count, struct watch *watch);
+void compiler_run(const struct compiler *compiler, const struct compiler_file *file, size_t files,
+                  struct compilation *wanted, size_t count, struct watch *watch);
 
 #endif

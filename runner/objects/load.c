@@ -15,29 +15,29 @@
 /* No file has to be there on every machine, and nobody can change what is loaded. The descriptor
  * stays open: its number is the library's name, by which the linker would give the same library for
  * another image. */
-static bool open_library(const struct image *image, struct object *object, stance_message *message)
+bool load_library(const struct image *image, void **library, int *descriptor,
+                  stance_message *message)
 {
     char path[40];
-    object->memory = memfd_create("stance-object", MFD_CLOEXEC);
-    if (object->memory < 0)
-        return complain(message, "no memory for a compiled kernel: %s", strerror(errno));
+    *descriptor = memfd_create("stance-object", MFD_CLOEXEC);
+    if (*descriptor < 0)
+        return complain(message, "no memory for a compiled object: %s", strerror(errno));
     for (size_t done = 0; done < image->size;) {
-        const ssize_t n = write(object->memory, image->bytes + done, image->size - done);
+        const ssize_t n = write(*descriptor, image->bytes + done, image->size - done);
         if (n < 0 && errno == EINTR)
             continue;
         if (n <= 0)
-            return complain(message, "no memory for a compiled kernel: %s", strerror(errno));
+            return complain(message, "no memory for a compiled object: %s", strerror(errno));
         done += (size_t)n;
     }
-    snprintf(path, sizeof path, "/proc/self/fd/%d", object->memory);
-    object->library = dlopen(path, RTLD_NOW | RTLD_LOCAL);
-    return object->library ||
-           complain(message, "a compiled kernel cannot be loaded: %.180s", dlerror());
+    snprintf(path, sizeof path, "/proc/self/fd/%d", *descriptor);
+    *library = dlopen(path, RTLD_NOW | RTLD_LOCAL);
+    return *library || complain(message, "a compiled object cannot be loaded: %.180s", dlerror());
 }
 
 bool load_object(const struct image *image, struct object *object, stance_message *message)
 {
-    if (!open_library(image, object, message))
+    if (!load_library(image, &object->library, &object->memory, message))
         return false;
     const stance_object *const exported = dlsym(object->library, "stance_kernel_object");
     if (!exported || exported->case_size != sizeof(stance_case) ||

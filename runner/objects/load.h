@@ -5,7 +5,11 @@
 #include "image.h"
 #include "objects.h"
 
-/* Loads an image from memory. object->kernel says scene, method and instruction set; the rest of it
+/* Loads an image from memory: a library, to be closed before the descriptor (-1: none). */
+bool load_library(const struct image *image, void **library, int *descriptor,
+                  stance_message *message);
+
+/* The same of a kernel. object->kernel says scene, method and instruction set; the rest of it
  * is filled in. */
 bool load_object(const struct image *image, struct object *object, stance_message *message);
 

@@ -124,7 +124,8 @@ static void compile(const struct objects_request *request, struct cache *cache,
     for (size_t i = 0; i < count; i++)
         wanted[i] =
             (struct compilation){.method = missing[i]->method->name, .isa = missing[i]->isa};
-    compiler_run(compiler, request->tables, wanted, count, watch);
+    const struct compiler_file tables = {COMPILER_TABLES, request->tables};
+    compiler_run(compiler, &tables, 1, wanted, count, watch);
     for (size_t i = 0; i < count; i++) {
         struct making *const m = missing[i];
         m->image = wanted[i].image;

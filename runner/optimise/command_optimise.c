@@ -436,7 +436,7 @@ static const struct option options[] = {
      .text = "file of the search; default results/<scenario name>-search.h5. stance summary and "
              "stance plot read it. Beside it <scenario name>-best.yaml, the scenario with the "
              "best candidate"},
-    {.rows = asked_options},
+    {.rows = asked_simulates},
     {"--force", TO(force), .text = "replace files of these names"},
     {"--resume", TO(resume), .without = "--force",
      .text = "go on with a search of the same scenario after its last whole generation. Begins "

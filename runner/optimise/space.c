@@ -64,6 +64,8 @@ static double law_unit(const struct scenario *s, int k)
 {
     const size_t offset = s->search.axis.offset[k] - offsetof(struct scenario_values, law_value);
     const size_t number = offset / sizeof(double), place = number % STANCE_LAW_ROOM;
+    if (offset >= sizeof s->base.law_value) /* of a law of the user's own */
+        return 1;
     int law = 0, parameter = (int)(number / STANCE_LAW_ROOM);
     while (parameter >= stance_laws()[law]->parameters)
         parameter -= stance_laws()[law++]->parameters;

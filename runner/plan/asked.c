@@ -1,7 +1,10 @@
 /* asked.c - commands that look at one scenario. */
 #include "asked.h"
 #include "instruction_set.h"
+#include "law.h"
 #include "plan.h"
+
+#include "runner/base/checksum.h"
 
 #include <errno.h>
 #include <stdio.h>
@@ -14,10 +17,39 @@ const struct option asked_options[] = {
     {OPTION_SET(struct asked, sets)},
     {0},
 };
+const struct option asked_simulates[] = {
+    {.rows = asked_options},
+    {OPTION_TRUST(struct asked, trust)},
+    {0},
+};
+
+bool asked_law(const struct scenario *s)
+{
+    char hash[CHECKSUM_SHA256_TEXT];
+    if (!s->law.source || s->program || law_is_trusted(s, hash))
+        return true;
+    fprintf(stderr,
+            "%s: controller.file: %s is C code that you have not run yet (SHA-256 %.12s...): read "
+            "it, and add --trust\n",
+            s->file, s->law.name, hash);
+    return false;
+}
 
 const char *asked_method(size_t k)
 {
     return stance_methods()[k] ? stance_methods()[k]->name : NULL;
+}
+
+struct scenario *asked_again(const char *file, const char *text, const char *const *sets,
+                             size_t count)
+{
+    stance_message message;
+    struct scenario *const s = scenario_new(file, text, sets, count, stderr);
+    if (!s || law_take(s, false, &message) != LAW_BROKEN)
+        return s;
+    fprintf(stderr, "%s\n", message.text);
+    scenario_drop(s);
+    return NULL;
 }
 
 int asked_work(const struct asked *asked, int (*work)(const struct scenario *s, void *request),
@@ -27,7 +59,11 @@ int asked_work(const struct asked *asked, int (*work)(const struct scenario *s, 
         scenario_new(asked->file, NULL, asked->sets.text, asked->sets.count, stderr);
     if (!s)
         return access(asked->file, R_OK) == 0 ? EXIT_USAGE : EXIT_IO;
-    const int code = work(s, request);
+    stance_message message;
+    const bool broken = law_take(s, asked->trust, &message) == LAW_BROKEN;
+    if (broken)
+        fprintf(stderr, "%s\n", message.text);
+    const int code = broken ? EXIT_USAGE : work(s, request);
     scenario_drop(s);
     return code;
 }

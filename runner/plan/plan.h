@@ -77,6 +77,12 @@ uint64_t plan_recorded_case(const struct plan *plan, uint64_t place);
 #define PLAN_PATIENCE_DESIGNS 1.5
 #define PLAN_PATIENCE_COST 0.6
 
+/* Whether cases may be simulated: not, where the scenario's law is not trusted (law.h). */
+static inline bool plan_simulates(const struct plan *plan)
+{
+    return !plan->scenario->law.source || plan->scenario->program;
+}
+
 /* Collective: computes every design whose status is pending, each rank a block, and gathers them on
  * rank 0. With patience at least one a rank, those of cases that plan_cost tries and of the corners
  * first, then evenly spread. false on every rank when no design exists at all, or plan->stop said

@@ -240,7 +240,7 @@ bool resolve_keep_design_inputs(const stance_scene *scene, struct scenario_value
                                 bool sampled)
 {
     struct schema *own;
-    const struct schema *const schema = schema_of(scene, &own);
+    const struct schema *const schema = schema_of(scene, NULL, &own);
     const double sample_time = values->sample_time;
     for (size_t k = 0; schema && k < schema->count; k++) {
         const struct scenario_field *field = &schema->field[k];
@@ -251,6 +251,8 @@ bool resolve_keep_design_inputs(const stance_scene *scene, struct scenario_value
     }
     free(own);
     values->settle = 0;
+    memset(values->parameter, 0, sizeof values->parameter);
+    values->program = NULL;
     values->sample_time = sampled ? sample_time : 0;
     return schema != NULL;
 }
@@ -270,6 +272,10 @@ bool resolve_design(const stance_scene *scene, const struct scenario_values *val
                                scenario_supports(scene, values), &start, message))
             return false;
         memcpy(design->start, start.position, (size_t)scene->coordinates * sizeof *design->start);
+        if (scenario_law(values)->program) { /* what it is told of where the run begins */
+            memcpy(design->equilibrium, design->start, sizeof design->equilibrium);
+            memcpy(design->torque, start.torque, sizeof design->torque);
+        }
     }
     if (scenario_law(values)->designed && !design_state_feedback(scene, values, design, message)) {
         clear_design(design);
@@ -417,7 +423,11 @@ static bool set_laws(const stance_scene *scene, const struct scenario_values *va
                      stance_message *message)
 {
     const stance_law *const law = scenario_law(values), *const far = scenario_far(values);
-    if (!law->designed)
+    if (law->program || far->program) {
+        out->program = values->program;
+        memcpy(out->parameter, values->parameter, sizeof out->parameter);
+    }
+    if (!law->designed && !(law->program && !values->state_given))
         return resolve_law(scene, values, law, out->position, &out->near, out, message);
     memcpy(out->near.feedforward, design->torque, sizeof out->near.feedforward);
     memcpy(out->near.gain, design->gain, sizeof out->near.gain);

@@ -2,10 +2,13 @@
 #include "crash.h"
 #include "parallel.h"
 
+#include "runner/base/command.h"
+
 #include <signal.h>
 #include <stddef.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/time.h>
 #include <unistd.h>
 
 enum { MOST_CASES = 64, STACK_SIZE = 1 << 16, LINE_SIZE = 2048 };
@@ -27,6 +30,9 @@ static struct {
     volatile uint64_t case_after[MOST_CASES]; /* index + 1; 0: the place is free */
     struct sigaction before[CRASHES];
     char stack[STACK_SIZE];
+    struct crash_law law;
+    uint64_t calls; /* of it, at the last tick */
+    int ticks;      /* in the same call */
 } last;
 
 /* ---- the line, by hand: printf is not for signal handlers ----------------------------------- */
@@ -78,10 +84,30 @@ static void add_cases(struct line *line)
     add_text(line, " in hand; what is marked done is whole, --resume goes on");
 }
 
+/* A law's last words are its own: nobody need look for a fault elsewhere. */
+static void blame_law(const char *what, const char *how)
+{
+    struct line line = {.length = 0};
+    add_text(&line, "stance: the law ");
+    add_text(&line, last.law.file);
+    add_text(&line, what);
+    add_text(&line, how);
+    add_text(&line, " in case ");
+    add_number(&line, last.law.index);
+    add_text(&line, "; what a file marks as done is whole\n");
+    _exit(write(STDERR_FILENO, line.text, line.length) < 0 ? EXIT_IO : EXIT_USAGE);
+}
+
 static void announce(int number, siginfo_t *info, void *context)
 {
     (void)info, (void)context;
     struct line line = {.length = 0};
+    if (last.law.file)
+        blame_law(number == SIGILL ? " reached beyond an array" : " crashed",
+                  number == SIGSEGV   ? " (SIGSEGV)"
+                  : number == SIGFPE  ? " (SIGFPE)"
+                  : number == SIGABRT ? " (SIGABRT)"
+                                      : "");
     add_text(&line, last.who);
     for (int k = 0; k < CRASHES; k++) {
         if (crashes[k].number == number) {
@@ -98,17 +124,44 @@ static void announce(int number, siginfo_t *info, void *context)
     raise(number);           /* blocked until this handler returns, then its next owner's */
 }
 
-void crash_watch(int rank)
+static void install(const char *who)
 {
-    char host[80];
-    parallel_host(host, sizeof host);
-    snprintf(last.who, sizeof last.who, "stance run: rank %d on %s crashed", rank, host);
     const stack_t stack = {.ss_sp = last.stack, .ss_size = sizeof last.stack};
+    snprintf(last.who, sizeof last.who, "%s", who);
     sigaltstack(&stack, NULL);
     struct sigaction action = {.sa_sigaction = announce, .sa_flags = SA_SIGINFO | SA_ONSTACK};
     sigemptyset(&action.sa_mask);
     for (int k = 0; k < CRASHES; k++)
         sigaction(crashes[k].number, &action, &last.before[k]);
+}
+
+static void tick(int number)
+{
+    (void)number;
+    last.ticks = last.law.file && last.law.calls == last.calls ? last.ticks + 1 : 0;
+    last.calls = last.law.calls;
+    if (last.ticks >= CRASH_PATIENCE)
+        blame_law(" has not returned for 10 s of processor time", "");
+}
+
+struct crash_law *crash_law_watch(void)
+{
+    const struct itimerval each = {{1, 0}, {1, 0}};
+    struct sigaction action = {.sa_handler = tick, .sa_flags = SA_RESTART | SA_ONSTACK};
+    sigemptyset(&action.sa_mask);
+    if (!last.who[0])
+        install("stance crashed");
+    sigaction(SIGVTALRM, &action, NULL);
+    setitimer(ITIMER_VIRTUAL, &each, NULL);
+    return &last.law;
+}
+
+void crash_watch(int rank)
+{
+    char host[80], who[sizeof last.who];
+    parallel_host(host, sizeof host);
+    snprintf(who, sizeof who, "stance run: rank %d on %s crashed", rank, host);
+    install(who);
 }
 
 void crash_stage(const char *doing)

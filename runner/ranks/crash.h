@@ -9,6 +9,7 @@
 #ifndef STANCE_RANKS_CRASH_H
 #define STANCE_RANKS_CRASH_H
 
+#include <stddef.h>
 #include <stdint.h>
 
 /* From now on SIGSEGV, SIGBUS, SIGFPE, SIGILL and SIGABRT are announced. After MPI has started. */
@@ -21,5 +22,26 @@ void crash_stage(const char *doing);
  * named. */
 int crash_take(uint64_t index);
 void crash_leave(int place);
+
+/* A law of the user's own that is at work, in this process: its crash is told as its own, and so is
+ * a call that does not return within CRASH_PATIENCE seconds of this process's time. */
+enum { CRASH_PATIENCE = 10 };
+struct crash_law {
+    const char *volatile file; /* NULL: none is */
+    volatile uint64_t index;   /* of the case */
+    volatile uint64_t calls;
+};
+/* From now on; crash_watch need not have been called. */
+struct crash_law *crash_law_watch(void);
+static inline void crash_law_begins(struct crash_law *law, const char *file, uint64_t index)
+{
+    law->calls++;
+    law->index = index;
+    law->file = file;
+}
+static inline void crash_law_ends(struct crash_law *law)
+{
+    law->file = NULL;
+}
 
 #endif

@@ -4,6 +4,7 @@
 
 #include "runner/base/sandbox.h"
 #include "runner/plan/instruction_set.h"
+#include "runner/plan/law.h"
 #include "runner/ranks/crash.h"
 #include "runner/ranks/deadline.h"
 #include "runner/store/build_info.h"
@@ -48,6 +49,24 @@ struct scenario *run_read_scenario(struct run *run, size_t sets)
     return s;
 }
 
+/* A law of the user's own: rank 0 asks whether it is trusted and compiles it, the others take it
+ * from the cache, or compile it where that is another machine's. */
+static bool take_law(struct run *run)
+{
+    stance_message message;
+    enum law_state state = LAW_NONE;
+    if (run->parallel.rank == 0)
+        state = law_take(run->scenario, run->options.asked.trust, &message);
+    parallel_broadcast(&run->parallel, &state, sizeof state);
+    if (run->parallel.rank > 0 && run->scenario && state == LAW_READY)
+        state = law_take(run->scenario, true, &message);
+    if (state == LAW_BROKEN && run->failure.code == EXIT_DONE)
+        run_fail(run, EXIT_USAGE, "%s", message.text);
+    if (state == LAW_UNTRUSTED && !run->options.dry_run && run->parallel.rank == 0)
+        run_fail(run, EXIT_USAGE, "%.300s: %s", run->scenario->file, message.text);
+    return state != LAW_BROKEN && (state != LAW_UNTRUSTED || run->options.dry_run);
+}
+
 bool run_share_scenario(struct run *run)
 {
     const struct parallel *parallel = &run->parallel;
@@ -59,13 +78,14 @@ bool run_share_scenario(struct run *run)
     if (!text)
         abort(); /* the others wait in the broadcast: MPI ends the job */
     parallel_broadcast(parallel, text, length);
-    if (parallel->rank == 0)
-        return true;
-    run->scenario = scenario_new(run->options.asked.file, text, NULL, 0, NULL);
-    free(text);
-    return run->scenario ||
-           run_fail(run, EXIT_IO, "stance %s: a rank cannot read the scenario that rank 0 reads",
-                    run->argv[0]);
+    if (parallel->rank > 0) {
+        run->scenario = scenario_new(run->options.asked.file, text, NULL, 0, NULL);
+        free(text);
+    }
+    if (!run->scenario)
+        run_fail(run, EXIT_IO, "stance %s: a rank cannot read the scenario that rank 0 reads",
+                 run->argv[0]);
+    return take_law(run) && run->scenario;
 }
 
 struct check {

@@ -35,7 +35,7 @@ static int check(const struct scenario *s, void *request)
     if (good) {
         snprintf(file, sizeof file, "results/%s.h5", s->name);
         report_plan(&plan, 1, file, json, "stance check");
-        if (!warnings_print(&plan, "stance check") && !s->search.given)
+        if (!warnings_print(&plan, "stance check") && !s->search.given && plan_simulates(&plan))
             warnings_try(&plan, "stance check");
     } else {
         code = plan_error_print(s, &error);
@@ -83,5 +83,8 @@ const struct command command_check = {
     "0: none, or they are in the cache, where nothing is touched. Without them "
     "seconds_on_one_rank is reckoned from those that are built in\n"
     "    refine                    null, or with sweep.refine {coarse_cases, probes (expected), "
-    "most_cases}: seconds_on_one_rank is then for all of them\n",
+    "most_cases}: seconds_on_one_rank is then for all of them\n"
+    "    law                       null, or {file, sha256, trusted} of controller.file: what it "
+    "says "
+    "is C code that `run` runs in its own process\n",
 };

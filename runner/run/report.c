@@ -1,9 +1,11 @@
 /* report.c - cases, dimensions, designs, file size and cost of a plan. */
 #include "report.h"
 
+#include "runner/base/checksum.h"
 #include "runner/base/units.h"
 #include "runner/base/words.h"
 #include "runner/plan/kernels.h"
+#include "runner/plan/law.h"
 #include "runner/plan/refine.h"
 #include "runner/store/store.h"
 
@@ -34,6 +36,11 @@ static void measure(struct estimate *e)
     const struct plan *const plan = e->plan;
     struct kernels *const kernels = calloc(1, sizeof *kernels);
     struct kernels_outlook outlook = {0, 1, true};
+    e->seconds = e->searching = -1;
+    if (!plan_simulates(plan)) {
+        free(kernels);
+        return;
+    }
     if (kernels)
         outlook = kernels_look(kernels, plan);
     const double share = outlook.brief ? 1 : outlook.share;
@@ -135,6 +142,15 @@ static void report_sample(const struct scenario *s)
     }
 }
 
+static json_t *law_json(const struct scenario *s)
+{
+    char hash[CHECKSUM_SHA256_TEXT];
+    if (!s->law.source)
+        return json_null();
+    const bool trusted = law_is_trusted(s, hash);
+    return json_pack("{s:s, s:s, s:b}", "file", s->law.name, "sha256", hash, "trusted", trusted);
+}
+
 static void report_json(const struct estimate *e)
 {
     const struct plan *const plan = e->plan;
@@ -148,7 +164,7 @@ static void report_json(const struct estimate *e)
         json_array_append_new(dimensions, json_pack("{s:s, s:i}", "name", "case", "count", 1));
     json_t *root = json_pack(
         "{s:s, s:s, s:s, s:I, s:o, s:I, s:I, s:I, s:I, s:s, s:I, s:i, s:o, s:b, s:f, s:o, "
-        "s:o}",
+        "s:o, s:o}",
         "scenario", s->file, "title", s->title, "scene", s->scene->name, "cases",
         (json_int_t)plan->rows, "dimensions", dimensions, "designs", (json_int_t)plan->designs,
         "designs_computed", (json_int_t)(plan->designs - plan->pending), "designs_failed",
@@ -159,7 +175,7 @@ static void report_json(const struct estimate *e)
         e->coarse ? json_pack("{s:I, s:I, s:I}", "coarse_cases", (json_int_t)e->coarse, "probes",
                               (json_int_t)llround(e->probes), "most_cases", (json_int_t)plan->rows)
                   : json_null(),
-        "sample", sample_json(plan));
+        "sample", sample_json(plan), "law", law_json(s));
     json_dumpf(root, stdout, JSON_INDENT(2));
     putchar('\n');
     json_decref(root);
@@ -185,6 +201,17 @@ static void report_designs(const struct estimate *e)
     else
         fputs(e->designs_failed == 0 ? "all exist" : "none exists", stdout);
     printf("\nunchecked   the other %zu and the initial states of their cases", e->plan->pending);
+}
+
+/* A law of the user's own, which a stranger's scenario may bring. */
+static void report_law(const struct scenario *s)
+{
+    char hash[CHECKSUM_SHA256_TEXT];
+    if (!s->law.source)
+        return;
+    const bool trusted = law_is_trusted(s, hash);
+    printf("\nlaw         %s, C code, SHA-256 %.12s...: %s", s->law.name, hash,
+           trusted ? "trusted" : "not trusted yet, `run` asks for --trust");
 }
 
 static void report_axis(const struct scenario_axis *axis)
@@ -221,7 +248,9 @@ static void report_cost(const struct estimate *e)
     char text[40], first[40];
     text_of_seconds(text, sizeof text, all);
     text_of_seconds(first, sizeof first, share * e->seconds / e->ranks);
-    if (!(e->seconds >= 0))
+    if (!plan_simulates(e->plan))
+        puts("cost        unknown: nothing is run by a law that is not trusted");
+    else if (!(e->seconds >= 0))
         printf("cost        unknown: %s\n", isnan(e->seconds)
                                                 ? "the cases tried take too long to tell"
                                                 : "none of the cases tried can be computed");
@@ -255,6 +284,7 @@ static void report_text(const struct estimate *e)
         printf("shard       %" PRIu64 "/%" PRIu64 ", %" PRIu64 " cases\n", plan->shard.number,
                plan->shard.count, plan_share(plan).count);
     report_designs(e);
+    report_law(s);
     report_step(s);
     if (plan->record_cases > 0)
         printf("\nrecorded    %" PRIu64 " trajectories of %" PRId64 " instants", plan->record_cases,

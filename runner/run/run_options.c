@@ -97,7 +97,7 @@ static const struct option options[] = {
               "tables",
      .text = "results file; default results/<scenario name>.h5 (one case: with -case<N>). An "
              "existing file is left alone and the exit code is 3"},
-    {.rows = asked_options},
+    {.rows = asked_simulates},
     {"--force", TO(force),
      .text = "replace the file of that name, whatever it holds; of a symbolic link the link, not "
              "the file that it names"},

@@ -639,7 +639,7 @@ bool scenario_describe(const char *path, bool json_schema, FILE *out, FILE *erro
     bool good = schemas != NULL && any != NULL;
 
     for (size_t i = 0; i <= count && good; i++)
-        good = schema_build(&schemas[i], i < count ? stance_scenes()[i] : any);
+        good = schema_build(&schemas[i], i < count ? stance_scenes()[i] : any, NULL);
     count++;
     if (!good) {
         fputs("stance describe: out of memory\n", errors);

@@ -421,7 +421,7 @@ static bool read_scene(struct reader *r)
     const struct tree_node *scene = tree_find(r->tree.root, "scene");
     int place;
 
-    r->schema = schema_of(NULL, &r->own_schema);
+    r->schema = schema_of(NULL, NULL, &r->own_schema);
     if (!r->schema)
         return problem_no_memory(&r->problems);
     if (scene &&
@@ -434,7 +434,7 @@ static bool read_scene(struct reader *r)
         if (!carried || (robot && robot->kind == TREE_MAP && tree_find(robot, "points")))
             r->s->scene = r->s->own_scene = mechanism_read(r, carried);
         const struct schema *const known =
-            r->s->scene ? schema_of(r->s->scene, &r->own_schema) : NULL;
+            r->s->scene ? schema_of(r->s->scene, &r->s->law, &r->own_schema) : NULL;
         if (known)
             r->schema = known;
         else if (r->s->scene) {
@@ -526,6 +526,7 @@ static void read_all(struct reader *r, const char *file, const char *text, const
                     "a scenario is a mapping that begins with \"stance: 1\"");
         return;
     }
+    law_file_read(r);
     if (!read_version(r) || !read_scene(r) || !named_read(r, sets, set_count))
         return;
     set_defaults(r);
@@ -600,6 +601,9 @@ void scenario_free(struct scenario *s)
     free(s->record_list);
     free(s->text);
     free(s->place);
+    if (s->program)
+        s->program_free(s->program);
+    law_file_free(&s->law);
     stance_scene_free(s->own_scene);
     memset(s, 0, sizeof *s);
 }

@@ -8,6 +8,7 @@
 #define STANCE_SCENARIO_SCENARIO_H
 
 #include "doe.h"
+#include "law_file.h"
 
 #include "engine/mechanism.h"
 
@@ -82,6 +83,8 @@ struct scenario_values {
     /* Of each law (stance_law_first) its parameters as stance_law.set takes them; NAN: as it is at
      * the beginning. What is a selection is an int in the first bytes of its place. */
     double law_value[STANCE_LAW_PARAMETERS * STANCE_LAW_ROOM];
+    double parameter[STANCE_PROGRAM_NUMBERS]; /* of a law of the user's own, see law_file.h */
+    const stance_program *program; /* it, compiled; NULL: not yet, it then commands nothing */
     int far;                      /* what acts far from the target, see scenario_far; 0: none */
     double near_angle, near_rate; /* semi-axes of the ellipsoid that is near */
     double sample_time;           /* 0: continuous */
@@ -206,6 +209,10 @@ struct scenario {
     size_t record_count;
     uint64_t answers; /* bit per row of STANCE_ANSWERS, then SCENARIO_FINAL_STATE; all ones by
                        * default */
+
+    struct law_file law; /* of the user's own; without a source there is none */
+    stance_program *program;
+    void (*program_free)(stance_program *program);
 
     char *text; /* resolved scenario: after --set, as YAML; what the file stores and hashes */
     /* Where fields stand, for errors found later (design, initial state). */

@@ -320,7 +320,7 @@ static bool add_row(struct schema *schema, const struct row *row)
     }
 }
 
-bool schema_build(struct schema *schema, const stance_scene *scene)
+bool schema_build(struct schema *schema, const stance_scene *scene, const struct law_file *law)
 {
     memset(schema, 0, offsetof(struct schema, field));
     schema->scene = scene;
@@ -330,13 +330,13 @@ bool schema_build(struct schema *schema, const stance_scene *scene)
     schema->scenes[schema->scene_count++] = MECHANISM_WORD;
     for (size_t i = 0; i < SCHEMA_MAX_WORDS && stance_methods()[i]; i++)
         schema->methods[schema->method_count++] = stance_methods()[i]->name;
-    for (const stance_law *const *law = stance_laws(); *law; law++) {
-        schema->laws[schema->law_count++] = (*law)->name;
-        if ((*law)->acts_far)
-            schema->far_laws[schema->far_law_count++] = (*law)->name;
+    for (const stance_law *const *is = stance_laws(); *is; is++) {
+        schema->laws[schema->law_count++] = (*is)->name;
+        if ((*is)->acts_far)
+            schema->far_laws[schema->far_law_count++] = (*is)->name;
     }
     for (size_t i = 0; i < schema_row_count; i++)
         if (!add_row(schema, &schema_rows[i]))
             return false;
-    return true;
+    return !law || law_file_rows(schema, law);
 }

@@ -39,6 +39,7 @@ enum field_use {
     USE_CONTROL, /* controller.kind is not none */
     USE_LAW,     /* controller.kind or controller.far is `law` */
     USE_FEEDBACK,
+    USE_PROGRAM, /* controller.kind or controller.far is a law of the user's own */
     USE_FAR, /* controller.far is not none */
     USE_PLACE,
     USE_LQR,
@@ -109,14 +110,15 @@ struct schema {
     struct scenario_field field[SCHEMA_MAX_FIELDS]; /* [count]; what lies behind is not set */
 };
 
-/* Writes the table out for a scene. False: it has more rows than fit (a scene that is too large).
- */
-bool schema_build(struct schema *schema, const stance_scene *scene);
+/* Writes the table out for a scene and a law of the user's own (NULL: none). False: it has more
+ * rows than fit (a scene that is too large). */
+bool schema_build(struct schema *schema, const stance_scene *scene, const struct law_file *law);
 
-/* The table of a scene. Those of stance_scenes() and of no known scene (NULL) are written once and
- * kept; that of a mechanism goes to *own, else NULL, to be freed by the caller. NULL: it has more
- * rows than fit, or out of memory. */
-const struct schema *schema_of(const stance_scene *scene, struct schema **own);
+/* The table of a scene and a law. Those of stance_scenes() and of no known scene (NULL), without a
+ * law, are written once and kept; another goes to *own, else NULL, to be freed by the caller. NULL:
+ * it has more rows than fit, or out of memory. */
+const struct schema *schema_of(const stance_scene *scene, const struct law_file *law,
+                               struct schema **own);
 
 /* The row of a path, "[]" for indices; NULL: none. */
 const struct scenario_field *schema_find(const struct schema *schema, const char *path);

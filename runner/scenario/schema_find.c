@@ -11,6 +11,8 @@ const struct schema_use schema_uses[] = {
     [USE_CONTROL] = {"with a controller.kind other than none", "controller.kind", USE_ALWAYS},
     [USE_LAW] = {NULL, "controller.kind", USE_ALWAYS},
     [USE_FEEDBACK] = {"with controller.kind state-feedback", "controller.kind", USE_ALWAYS},
+    [USE_PROGRAM] = {"with controller.kind program, or controller.far program", "controller.kind",
+                     USE_CONTROL},
     [USE_FAR] = {"with a controller.far other than none", "controller.far", USE_FEEDBACK},
     [USE_PLACE] = {"with controller.design place or place-schur", "controller.design",
                    USE_FEEDBACK},
@@ -36,6 +38,7 @@ bool schema_allows(enum field_use use, int law, const struct scenario_values *v)
         [USE_CONTROL] = v->law != 0,
         [USE_LAW] = is == own || scenario_far(v) == own,
         [USE_FEEDBACK] = is->designed,
+        [USE_PROGRAM] = is->program || scenario_far(v)->program,
         [USE_FAR] = scenario_far(v)->set != NULL,
         [USE_PLACE] = v->design == DESIGN_PLACE || v->design == DESIGN_PLACE_SCHUR,
         [USE_LQR] = v->design == DESIGN_LQR,
@@ -122,19 +125,22 @@ const struct scenario_field *schema_find_concrete(const struct schema *schema, c
     return schema_find(schema, general);
 }
 
-const struct schema *schema_of(const stance_scene *scene, struct schema **own)
+const struct schema *schema_of(const stance_scene *scene, const struct law_file *law,
+                               struct schema **own)
 {
     static struct schema *kept[SCHEMA_MAX_WORDS]; /* of no scene, then as stance_scenes() */
     const stance_scene *const *scenes = stance_scenes();
     size_t i = 0;
     *own = NULL;
-    if (scene)
+    if (law && law->parameters > 0)
+        i = SCHEMA_MAX_WORDS;
+    else if (scene)
         while (i < SCHEMA_MAX_WORDS && (i == 0 || scenes[i - 1] != scene))
             i = i > 0 && !scenes[i - 1] ? SCHEMA_MAX_WORDS : i + 1;
     if (i < SCHEMA_MAX_WORDS && kept[i])
         return kept[i];
     struct schema *schema = malloc(sizeof *schema);
-    if (!schema || !schema_build(schema, scene)) {
+    if (!schema || !schema_build(schema, scene, law)) {
         free(schema);
         return NULL;
     }
@@ -147,7 +153,7 @@ const stance_scene *schema_scene_with(const char *path)
     struct schema *own;
     size_t index[2];
     for (const stance_scene *const *scene = stance_scenes(); *scene; scene++) {
-        const struct schema *const schema = schema_of(*scene, &own);
+        const struct schema *const schema = schema_of(*scene, NULL, &own);
         if (schema && (schema_find(schema, path) || schema_find_concrete(schema, path, index)))
             return *scene;
     }

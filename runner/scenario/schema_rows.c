@@ -243,6 +243,18 @@ const struct row schema_rows[] = {
     {0, {.path = "controller.near.rate", .type = FIELD_NUMBER, .use = USE_FAR, .required = true,
          .sweep = true, VALUE(near_rate), .unit = "rad/s", .fallback = NAN, ABOVE(0, LARGE),
          .text = "its semi-axis in each rate"}},
+    {0, {.path = "controller.file", .type = FIELD_TEXT, .use = USE_PROGRAM, BY_HAND,
+         .fallback_text = "none: controller.source",
+         .text = "C file of the law, beside the scenario",
+         .more = "One function, called at each sample; stance_law.h says what it is told and "
+                 "gives. Its PARAMETERS are keys here, too: controller.NAME. It may do what any "
+                 "program may: one that this user has not trusted yet is run with --trust only."}},
+    {0, {.path = "controller.source", .type = FIELD_TEXT, .use = USE_PROGRAM, BY_HAND,
+         .fallback_text = "what controller.file holds", .text = "the law's text itself",
+         .more = "Results files hold it."}},
+    {0, {.path = "controller.data", .type = FIELD_NUMBERS, .use = USE_PROGRAM, BY_HAND,
+         .unit = "1", .fallback_text = "none", .text = "numbers for the law: its array data[DATA]",
+         .more = "A list, or the name of a file of numbers, such as a network's weights."}},
     {FAMILY_PARAMETERS, {.path = "controller.*", .type = FIELD_NUMBER, .use = USE_LAW,
          .sweep = true}},
     {0, {.path = "controller.sample_time", .type = FIELD_NUMBER, .use = USE_CONTROL, .sweep = true,

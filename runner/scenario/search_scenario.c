@@ -120,12 +120,13 @@ static bool add_law(struct axis_reader *a)
 {
     const struct schema *const schema = a->r->schema;
     const int before = a->axis->paths, law = a->r->s->base.law;
+    const bool own = scenario_law(&a->r->s->base)->program;
     bool good = true;
     for (size_t i = 0; good && i < schema->count; i++) {
         const struct scenario_field *const field = &schema->field[i];
         double value;
-        if (field->use != USE_LAW || field->law != law || !field->sweep ||
-            field->type != FIELD_NUMBER)
+        if (!(own ? field->use == USE_PROGRAM : field->use == USE_LAW && field->law == law) ||
+            !field->sweep || field->type != FIELD_NUMBER)
             continue;
         memcpy(&value, (const char *)&a->r->s->base + field->offset, sizeof value);
         if (!isfinite(value))

@@ -394,7 +394,7 @@ static void put_provenance(struct layout *l)
 {
     const struct plan *plan = l->plan;
     const struct scenario *s = plan->scenario;
-    char axes[SCENARIO_MAX_AXES * 98 + 8] = "case", compiler[1024], date[40], hash[80];
+    char axes[SCENARIO_MAX_AXES * 98 + 8] = "case", compiler[1024], date[40], hash[80], law[80];
     char libraries[BUILD_LIBRARIES_SIZE], shard[SHARD_TEXT], isas[INSTRUCTION_SETS_SIZE];
     const int32_t version = FORMAT_VERSION, ranks = l->ranks;
     time_t now = time(NULL);
@@ -410,6 +410,8 @@ static void put_provenance(struct layout *l)
     kernels_instruction_sets(plan, isas);
     shard_text(&plan->shard, shard);
     checksum_sha256(s->text, strlen(s->text), hash);
+    if (s->law.source)
+        checksum_sha256(s->law.source, strlen(s->law.source), law);
     const struct attribute attributes[] = {
         {"Conventions", KIND_text, "CF-1.8"},
         {"title", KIND_text, s->title},
@@ -426,6 +428,9 @@ static void put_provenance(struct layout *l)
         {"axes", KIND_text, axes},
         {"shard", KIND_text, plan->shard.count > 0 ? shard : NULL},
         {"scenario", KIND_text, s->text},
+        /* What the scenario's text holds, as it was: of a law of the user's own. */
+        {"law_source", KIND_text, s->law.source},
+        {"law_sha256", KIND_text, s->law.source ? law : NULL},
         {"scenario_sha256", KIND_text, hash}, /* the last one: the creation came to its end */
     };
     put_attributes(&l->make, l->make.file, attributes, sizeof attributes / sizeof attributes[0]);

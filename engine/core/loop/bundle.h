@@ -45,10 +45,11 @@ struct gathered {
 
 struct bundle {
     const stance_feed *feed;
-    mask live;                                       /* lanes that are not idle */
-    int filled;                                      /* how many */
-    int recorded, unusual, bending, choosy, walking; /* of these: see bundle_count */
-    double target_key[sizeof(struct setting) / sizeof(lanes) + 8 + CONTACTS]; /* see rest_target */
+    mask live;                                                        /* lanes that are not idle */
+    int filled;                                                       /* how many */
+    int recorded, unusual, bending, choosy, walking, programs, noisy; /* see bundle_count */
+    double target_key[sizeof(struct setting) / sizeof(lanes) + 8 + CONTACTS +
+                      STANCE_PROGRAM_NUMBERS]; /* see rest_target */
     bool target_known, target_holds;
     const stance_case *which[LANES]; /* NULL: idle */
     stance_result *result[LANES];
@@ -93,6 +94,7 @@ struct bundle {
     struct advance advance;
     struct actuators actuators;
     lanes pending[STANCE_MAX_DELAY][ACTUATORS]; /* commands under way, the next one first */
+    uintptr_t program[LANES];                   /* what a case's program keeps */
 };
 
 /* Is there any case of a kind that is counted? A hint, as mask_any. */
@@ -188,8 +190,8 @@ static void bundle_load_law(struct law *law, int lane, const stance_case *c)
     lane_set(&law->decouples, lane, c->decouples);
     lane_set(&law->follows, lane, c->follows);
     lane_set(&law->constant, lane, c->follows && c->outputs.constant);
-#ifdef SCENE_SERVOS
     lane_set(&law->footfall, lane, 0);
+#ifdef SCENE_SERVOS
     bundle_load_outputs(law, lane, c, 0);
 #endif
     lane_set(&law->switches, lane, c->switches);
@@ -238,11 +240,16 @@ static void bundle_clear_answers(struct bundle *b, int lane)
     window_load(&b->resting, lane);
 }
 
+static bool case_is_noisy(const stance_case *c)
+{
+    return c->noise != 0 || c->angle_noise != 0 || c->rate_noise != 0;
+}
+
 /* Is there more to its torques than a linear law of the present state? */
 static bool case_is_unusual(const stance_case *c)
 {
-    return c->noise != 0 || c->angle_noise != 0 || c->rate_noise != 0 || c->delay > 0 ||
-           actuators_lag(c) || c->decouples || c->switches;
+    return case_is_noisy(c) || c->delay > 0 || actuators_lag(c) || c->decouples || c->switches ||
+           c->program;
 }
 
 /* Counts a case among those that cost more, or (-1) no longer. */
@@ -253,6 +260,8 @@ static void bundle_count(struct bundle *b, const stance_case *c, int by)
     b->bending += c->bends ? by : 0;
     b->choosy += c->lands_ahead ? by : 0;
     b->walking += c->walk_steps > 0 ? by : 0;
+    b->programs += c->program ? by : 0;
+    b->noisy += case_is_noisy(c) ? by : 0;
 }
 
 /* Puts a case into a lane. The motion's derived parts follow in bundle_begin. */
@@ -278,6 +287,7 @@ static void bundle_load(struct bundle *b, int lane, const stance_case *c, stance
         lane_set(&b->actuators.torque[i], lane, rest);
         lane_set(&b->now.integral[i], lane, 0);
     }
+    b->program[lane] = c->program ? (uintptr_t)c->program->begin(c->program, c) : 0;
     lane_set(&b->delay, lane, (double)c->delay);
     lane_set(&b->lags, lane, actuators_lag(c));
     actuators_load(&b->actuators, lane, c);
@@ -298,7 +308,8 @@ static void bundle_load(struct bundle *b, int lane, const stance_case *c, stance
     lane_set(&b->piece_to, lane, c->step);
     report_clear_lane(&b->pieces, lane);
 #endif
-    lane_set(&b->judge_on_way, lane, c->settle);
+    /* What a program remembers no equilibrium tells: such a case has to stay there. */
+    lane_set(&b->judge_on_way, lane, c->settle && !(c->program && c->program->remembers));
     lane_set(&b->has_target, lane, c->has_target);
     for (int i = 0; i < OWN_CONTACTS; i++) {
         lane_set(&b->mine[i], lane, c->supports >> i & 1);

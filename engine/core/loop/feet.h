@@ -104,9 +104,7 @@ COLD void feet_count(struct bundle *b, mask live, const mask *before)
             (mask_less(b->foot, lanes_of(foot)) | mask_less(lanes_of(foot), b->foot));
         b->answer.footfalls += choose(other, lanes_of(1), lanes_of(0));
         b->foot = choose(other, lanes_of(foot), b->foot);
-#ifdef SCENE_SERVOS
         b->set.law.footfall = choose(other, b->now.t, b->set.law.footfall);
-#endif
         if (mask_any(other)) {
             feet_stand(b, other, c);
             walk_footfall(b, other, c);

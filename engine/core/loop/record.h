@@ -103,6 +103,8 @@ COLD void bundle_finish(struct bundle *b, int lane, stance_status status, stance
         r->position[i] = record_plain(r->position[i]);
         r->velocity[i] = record_plain(r->velocity[i]);
     }
+    if (c->program)
+        c->program->end(c->program, (double *)b->program[lane]);
     b->which[lane] = NULL;
     b->live &= LANES_NOT(mask_of_lane(lane));
     b->filled--;

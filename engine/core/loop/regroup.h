@@ -56,7 +56,8 @@ static void regroup_swap(struct bundle *a, int i, struct bundle *b, int j)
 static void regroup_recount(struct bundle *b)
 {
     b->live = MASK_NONE;
-    b->filled = b->recorded = b->unusual = b->bending = b->choosy = b->walking = 0;
+    b->filled = b->recorded = b->unusual = b->bending = b->choosy = b->walking = b->programs =
+        b->noisy = 0;
     for (int lane = 0; lane < LANES; lane++)
         if (b->which[lane]) {
             b->live |= mask_of_lane(lane);

@@ -216,6 +216,7 @@ COLD bool rest_holds(const struct bundle *b, int lane, const lanes *s, const lan
     struct setting wider = b->set;
     double off = INFINITY;
     lanes still[SCENE_COORDINATES], torque[ACTUATORS], rate[ACTUATORS];
+    double known[STANCE_SAMPLE_HEAD];
     const double h = lane_get(&b->h, lane), every = lane_get(&b->sample_every, lane);
     memset(&r, 0, sizeof r);
     r.angle = 1 / lane_get(&b->angle_scale, lane), r.speed = 1 / lane_get(&b->rate_scale, lane);
@@ -224,6 +225,9 @@ COLD bool rest_holds(const struct bundle *b, int lane, const lanes *s, const lan
     scene_push(&wider.body, lanes_of(INFINITY), b->h); /* nothing pushes any more */
     wider.friction = wider.friction * (1 + REST_EDGE);
     r.set = &wider;
+    r.of = b->which[lane];
+    program_known(b, lane, known);
+    r.known = known;
     r.lane = lane;
     r.t = b->steps * b->h;
     for (int i = 0; i < SCENE_COORDINATES; i++)
@@ -288,7 +292,7 @@ COLD bool rest_holds(const struct bundle *b, int lane, const lanes *s, const lan
 /* What is known of the target: circumstances of a case, and whether its equilibrium holds. */
 enum {
     REST_SETTING = sizeof(struct setting) / sizeof(lanes),
-    REST_KEY = REST_SETTING + 8 + CONTACTS
+    REST_KEY = REST_SETTING + 8 + CONTACTS + STANCE_PROGRAM_NUMBERS
 };
 
 /* The case in a lane, whatever its start: what rest_target depends on. */
@@ -298,13 +302,15 @@ static void rest_key(const struct bundle *b, int lane, double *key)
     const lanes rest[] = {b->h,           b->steps,        b->sample_every,  b->delay,
                           b->angle_scale, b->settle_steps, b->actuators.lag, b->actuators.rate};
     enum { REST_MINE = REST_SETTING + sizeof rest / sizeof *rest };
-    _Static_assert(REST_MINE + CONTACTS == REST_KEY, "room for all");
+    _Static_assert(REST_MINE + CONTACTS + STANCE_PROGRAM_NUMBERS == REST_KEY, "room for all");
     for (int i = 0; i < REST_SETTING; i++)
         key[i] = lane_get(&set[i], lane);
     for (int i = REST_SETTING; i < REST_MINE; i++)
         key[i] = lane_get(&rest[i - REST_SETTING], lane);
     for (int i = 0; i < CONTACTS; i++)
         key[REST_MINE + i] = lane_get(&b->mine[i], lane);
+    memcpy(&key[REST_MINE + CONTACTS], b->which[lane]->parameter,
+           STANCE_PROGRAM_NUMBERS * sizeof *key);
 }
 
 /* Is there an equilibrium at the target, on the supports, that holds? Of cases that differ in
@@ -333,12 +339,26 @@ COLD bool rest_target(struct bundle *b, int lane)
     return b->target_holds = rest_holds(b, lane, s, NULL, integral);
 }
 
+/* At the end of a case whose program remembers: has what a window watches held for settle.hold? */
+static mask rest_stays(const struct bundle *b, const struct window *w, int lane)
+{
+    const double since = lane_get(&w->since, lane);
+    return since >= 0 && lane_get(&b->n, lane) - since >= lane_get(&b->settle_steps, lane)
+               ? LANES_ALL
+               : MASK_NONE;
+}
+
 /* Lanes of a verdict without those where nothing holds: their window opens anew. */
 COLD void rest_confirm(struct bundle *b, mask *rested, mask *stabilised)
 {
     for (int lane = 0; lane < LANES; lane++) {
         if (!b->which[lane])
             continue;
+        if (b->which[lane]->program && b->which[lane]->program->remembers) {
+            *rested &= LANES_NOT(mask_of_lane(lane)) | rest_stays(b, &b->resting, lane);
+            *stabilised &= LANES_NOT(mask_of_lane(lane)) | rest_stays(b, &b->settled, lane);
+            continue;
+        }
         if (mask_get(*rested, lane) && !rest_holds(b, lane, b->now.s, b->now.w, b->now.integral)) {
             *rested &= LANES_NOT(mask_of_lane(lane));
             lane_set(&b->resting.begin, lane, -1);

@@ -4,6 +4,7 @@
 #define STANCE_CORE_LOOP_REST_LINEAR_H
 
 #include "matrix.h"
+#include "program.h"
 
 #define REST_ROUNDS 10
 #define REST_STILL 1e-8 /* m/s^2, rad/s^2: an acceleration that is none */
@@ -26,6 +27,8 @@ enum { REST_INPUTS = SCENE_ACTUATORS, REST_STATES = MATRIX_ROOM };
 /* The neighbourhood of a state of rest in one lane. */
 struct rest {
     const struct setting *set;
+    const stance_case *of;
+    const double *known; /* of a program: STANCE_SAMPLE_HEAD numbers */
     int lane;
     double angle, speed, hold, T; /* what settle asks, and the time from sample to sample */
     lanes t;
@@ -50,6 +53,25 @@ static bool rest_fallen(const struct rest *r, const lanes *s)
     return mask_get(motion_fallen(r->set, s, &trig), r->lane);
 }
 
+/* What a program that remembers nothing commands; the feet are those of the mode. */
+COLD void rest_program(const struct rest *r, const lanes *s, const lanes *w, lanes *torque)
+{
+    const stance_program *const program = r->of->program;
+    scene_trig trig;
+    struct program_measured is;
+    scene_trigonometry(s, &trig);
+    program_measure(r->set, true, s, w, &trig, &is);
+    double *const sample = mask_get(is.near, r->lane) ? NULL : program->begin(program, r->of);
+    if (!sample)
+        return;
+    memcpy(sample, r->known, STANCE_SAMPLE_HEAD * sizeof *sample);
+    program_sample(&is, r->mode.closed, r->lane, sample);
+    const double *const command = program->act(program, r->of, sample);
+    for (int i = 0; i < OWN_ACTUATORS; i++)
+        lane_set(&torque[i], r->lane, command ? command[i] : NAN);
+    program->end(program, sample);
+}
+
 /* Torques that the law commands, limited, and the rates of its integrals. */
 COLD void rest_law(const struct rest *r, const lanes *s, const lanes *w, const lanes *integral,
                    lanes *torque, lanes *rate)
@@ -66,6 +88,8 @@ COLD void rest_law(const struct rest *r, const lanes *s, const lanes *w, const l
         for (int i = 0; i < REST_INPUTS; i++)
             rate[i] = choose(servos, e.integral_rate[i], rate[i]);
     }
+    if (REST_INPUTS > 0 && r->of->program)
+        rest_program(r, s, w, torque);
     law_clip(law, torque);
 }
 

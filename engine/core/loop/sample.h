@@ -4,7 +4,7 @@
 #ifndef STANCE_CORE_LOOP_SAMPLE_H
 #define STANCE_CORE_LOOP_SAMPLE_H
 
-#include "bundle.h"
+#include "program.h"
 
 #include <Random123/philox.h>
 
@@ -99,17 +99,62 @@ static void bundle_decouple(struct bundle *b, mask due, const lanes *s, const la
     b->answer.ambiguous_steps += choose(servos, e.several, lanes_of(0));
 }
 
-/* Commands of cases that ask for more than a linear law of the present state. */
-COLD void bundle_sample_unusual(struct bundle *b, mask due, lanes *torque)
+/* What programs command for what was measured, in the lanes of `due` where they act; those in which
+ * it is of no use. */
+COLD mask bundle_program(struct bundle *b, mask due, const lanes *s, const lanes *w,
+                         const scene_trig *trig, lanes *torque)
 {
-    lanes s[SCENE_COORDINATES], w[SCENE_COORDINATES];
-    scene_trig trig;
+    struct program_measured is;
+    mask closed[CONTACTS], useless = MASK_NONE;
+    program_measure(&b->set, mask_any(due & mask_less(lanes_of(0), b->set.law.switches)), s, w,
+                    trig, &is);
+    for (int c = 0; c < OWN_CONTACTS; c++) /* feet feel what they do */
+        closed[c] = mask_less(lanes_of(0), b->set.may_touch[c]) &
+                    mask_less_equal(b->now.gap[c], lanes_of(STEP_CLOSED)) &
+                    mask_less_equal(lanes_abs(b->now.approach[c]), lanes_of(SAMPLE_REST));
+    for (int lane = 0; lane < LANES; lane++) {
+        const stance_case *const c = b->which[lane];
+        double *const sample = (double *)b->program[lane];
+        const double *command = NULL;
+        if (!c || !c->program || !mask_get(due & LANES_NOT(is.near), lane))
+            continue;
+        SCENE_BEGIN(c);
+        if (sample) {
+            program_known(b, lane, sample);
+            program_sample(&is, closed, lane, sample);
+            command = c->program->act(c->program, c, sample);
+        }
+        if (!command) {
+            useless |= mask_of_lane(lane);
+            lane_set(&b->failure, lane, STANCE_FAILURE_PROGRAM);
+        }
+        for (int i = 0; i < OWN_ACTUATORS; i++)
+            lane_set(&torque[i], lane, command ? command[i] : 0);
+    }
+    return useless;
+}
+
+/* Commands of cases that ask for more than a linear law of the present state; those in which a
+ * program fails. */
+COLD mask bundle_sample_unusual(struct bundle *b, mask due, lanes *torque)
+{
+    mask useless = MASK_NONE;
+    lanes measured[2][SCENE_COORDINATES];
+    scene_trig seen;
     const mask delayed = due & mask_less(lanes_of(0), b->delay);
-    bundle_measure(b, due, s, w, &trig);
+    const bool noisy = bundle_some(b->noisy);
+    if (noisy)
+        bundle_measure(b, due, measured[0], measured[1], &seen);
+    const lanes *const s = noisy ? measured[0] : b->now.s, *const w =
+                                                               noisy ? measured[1] : b->now.w;
+    const scene_trig *const trig = noisy ? &seen : &b->now.trig;
     law_sampled(&b->set.law, s, w, torque);
     if (mask_any(due & mask_less(lanes_of(0), b->set.law.decouples + b->set.law.switches)))
-        bundle_decouple(b, due, s, w, &trig, torque);
-    bundle_shake(b, due, torque);
+        bundle_decouple(b, due, s, w, trig, torque);
+    if (bundle_some(b->programs))
+        useless = bundle_program(b, due, s, w, trig, torque);
+    if (noisy)
+        bundle_shake(b, due, torque);
     law_clip(&b->set.law, torque);
     for (int i = 0; i < SCENE_ACTUATORS && mask_any(delayed); i++) {
         const lanes now = torque[i];
@@ -122,17 +167,20 @@ COLD void bundle_sample_unusual(struct bundle *b, mask due, lanes *torque)
     }
     for (int i = 0; i < SCENE_ACTUATORS; i++)
         b->actuators.command[i] = choose(due, torque[i], b->actuators.command[i]);
+    return useless;
 }
 
-/* New torques in the lanes whose sampling instant it is, or whose actuators lag. */
-HOT void bundle_sample(struct bundle *b, mask live)
+/* New torques in the lanes whose sampling instant it is, or whose actuators lag; those in which a
+ * program fails. */
+HOT mask bundle_sample(struct bundle *b, mask live)
 {
+    mask useless = MASK_NONE;
     const bool unusual = SCENE_ACTUATORS > 0 && bundle_some(b->unusual);
     const mask due = live & mask_less_equal(b->next_sample, b->n);
     if (mask_any(due)) {
         lanes torque[ACTUATORS];
         if (unusual) {
-            bundle_sample_unusual(b, due, torque);
+            useless = bundle_sample_unusual(b, due, torque);
         } else {
             if (bundle_some(b->bending))
                 law_sampled(&b->set.law, b->now.s, b->now.w, torque);
@@ -147,6 +195,7 @@ HOT void bundle_sample(struct bundle *b, mask live)
     const mask lag = live & mask_less(lanes_of(0), b->lags);
     if (unusual && mask_any(lag))
         actuators_follow(&b->actuators, lag, b->n, b->h, b->torque);
+    return useless;
 }
 
 #endif

@@ -67,7 +67,7 @@ COLD void bundle_start(struct bundle *b, mask fresh, bool coupled)
 #endif
         scene_push(&b->set.body, begins, length);
     }
-    bundle_sample(b, fresh);
+    const mask useless = bundle_sample(b, fresh);
     if (!coupled) { /* a law that acts all the time, without gains: its torque is constant */
         lanes torque[ACTUATORS];
         const mask constant = fresh & mask_less_equal(lanes_of(INFINITY), b->next_sample);
@@ -86,7 +86,7 @@ COLD void bundle_start(struct bundle *b, mask fresh, bool coupled)
             account_largest(false, fresh, lanes_abs(b->torque[i]), &b->answer.peak_torque);
     }
     bundle_record_due(b, fresh);
-    bundle_end(b, fresh, MASK_NONE, &v, mask_less_equal(b->steps, lanes_of(0)));
+    bundle_end(b, fresh, useless, &v, mask_less_equal(b->steps, lanes_of(0)));
 }
 
 /* What follows from a step of the lanes in `ok`. */
@@ -286,7 +286,11 @@ HOT void stream_push(struct bundle *b)
 HOT int stream_step(struct bundle *b, bool coupled)
 {
     stream_push(b);
-    bundle_sample(b, b->live);
+    const mask useless = bundle_sample(b, b->live);
+    if (mask_any(useless)) {
+        const struct verdict none = {0};
+        bundle_end(b, b->live, useless, &none, MASK_NONE);
+    }
 #ifdef ADVANCE_ORDINARY
     if (stream_try_ordinary(b, coupled))
         return 1;
@@ -373,8 +377,13 @@ static bool bundle_stream(const stance_feed *feed)
     for (int k = 0; k < 2 * STREAM_BUNDLES; k++)
         all[k].feed = feed;
     const bool done = stream_go(&stream);
-    for (int k = 0; k < 2 * STREAM_BUNDLES; k++)
+    for (int k = 0; k < 2 * STREAM_BUNDLES; k++) {
         advance_free(&all[k].advance);
+        for (int lane = 0; lane < LANES; lane++) /* given up: told to leave */
+            if (all[k].which[lane] && all[k].which[lane]->program)
+                all[k].which[lane]->program->end(all[k].which[lane]->program,
+                                                 (double *)all[k].program[lane]);
+    }
     return done;
 }
 

@@ -1,0 +1,405 @@
+/* law_file.c - see law_file.h. */
+#include "law_file.h"
+#include "reader.h"
+#include "schema_laws.h"
+#include "tree_nodes.h"
+
+#include <ctype.h>
+#include <errno.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+enum {
+    MOST_BYTES = 1 << 18, /* of a source */
+    MOST_DATA = 1 << 14,  /* numbers */
+    MOST_DATA_BYTES = 1 << 19,
+    MOST_ROWS = STANCE_PROGRAM_NUMBERS,
+    PATH = 1300,
+};
+static const char word[] = "program"; /* what asks for a law's file */
+
+/* ---- files ----------------------------------------------------------------------------------- */
+
+/* Beside the scenario, unless it is absolute. */
+static void beside(const struct reader *r, const char *name, char path[PATH])
+{
+    const char *const slash = strrchr(r->s->file, '/');
+    const int directory = name[0] == '/' || !slash ? 0 : (int)(slash - r->s->file) + 1;
+    snprintf(path, PATH, "%.*s%s", directory, r->s->file, name);
+}
+
+/* A whole text; NULL: a problem of the key at `mark`. Of the tree's memory. */
+static const char *whole(struct reader *r, const char *key, const struct tree_node *node,
+                         size_t most)
+{
+    char path[PATH];
+    struct stat status;
+    beside(r, node->text, path);
+    char *const text = tree_allocate(&r->tree, most + 2);
+    FILE *const in = text ? fopen(path, "rb") : NULL;
+    const char *wrong = NULL;
+    size_t length = 0;
+    if (!text)
+        wrong = "out of memory";
+    else if (!in || fstat(fileno(in), &status) != 0)
+        wrong = strerror(errno);
+    else if (!S_ISREG(status.st_mode))
+        wrong = "is no regular file";
+    else if ((length = fread(text, 1, most + 1, in)) > most)
+        wrong = "is larger than may be (256 KiB of source, 512 KiB of numbers)";
+    else if (ferror(in))
+        wrong = strerror(errno);
+    if (in)
+        fclose(in);
+    if (wrong) {
+        problem_add(&r->problems, node->mark, "%s: %.200s: %s", key, path, wrong);
+        return NULL;
+    }
+    struct problems ignored = {0};
+    if (memchr(text, '\0', length) || !tree_check_text(text, length, &ignored)) {
+        problem_add(&r->problems, node->mark, "%s: %.200s: is no text in UTF-8", key, path);
+        return NULL;
+    }
+    return text;
+}
+
+/* Appends a scalar to a mapping or a list. */
+static bool put(struct reader *r, struct tree_node *parent, const char *key, const char *text,
+                bool quoted, struct mark mark)
+{
+    struct tree_node *const node = tree_new(&r->tree, TREE_SCALAR, mark);
+    const struct tree_key name = {key, mark};
+    if (!node)
+        return problem_no_memory(&r->problems);
+    node->text = text;
+    node->quoted = quoted;
+    return tree_append(&r->tree, parent, key ? &name : NULL, node) ||
+           problem_no_memory(&r->problems);
+}
+
+/* Numbers of a file, between blanks, commas or lines; # begins a comment. The name becomes a list.
+ */
+static void read_numbers(struct reader *r, struct tree_node *node)
+{
+    const char *const text = whole(r, "controller.data", node, MOST_DATA_BYTES);
+    const struct tree_node named = *node;
+    int line = 1;
+    if (!text)
+        return;
+    *node = (struct tree_node){.kind = TREE_LIST, .mark = named.mark};
+    for (const char *at = text; *at;) {
+        const size_t blank = strspn(at, " \t\r,;\n");
+        for (size_t i = 0; i < blank; i++)
+            line += at[i] == '\n';
+        at += blank;
+        if (*at == '#')
+            at += strcspn(at, "\n");
+        const size_t length = strcspn(at, " \t\r,;\n#");
+        if (length == 0)
+            continue;
+        char *const number = tree_copy(&r->tree, at, length);
+        double value;
+        bool finite;
+        if (!number || !number_parse(number, &value, &finite)) {
+            problem_add(&r->problems, named.mark,
+                        "controller.data: %.200s:%d: '%.40s' is no number", named.text, line,
+                        number ? number : "");
+            return;
+        }
+        if (node->count == MOST_DATA) {
+            problem_add(&r->problems, named.mark, "controller.data: more than %d numbers",
+                        MOST_DATA);
+            return;
+        }
+        if (!put(r, node, NULL, number, false, named.mark))
+            return;
+        at += length;
+    }
+}
+
+/* ---- what PARAMETERS declares ---------------------------------------------------------------- */
+
+/* The text of a law, read letter by letter. */
+struct cursor {
+    struct reader *r;
+    struct mark mark; /* of the scenario's key */
+    const char *file, *text, *at;
+};
+
+static bool refuse(const struct cursor *c, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+static bool refuse(const struct cursor *c, const char *format, ...)
+{
+    char what[300];
+    int line = 1;
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(what, sizeof what, format, arguments);
+    va_end(arguments);
+    for (const char *at = c->text; at < c->at; at++)
+        line += *at == '\n';
+    return problem_add(&c->r->problems, c->mark, "controller.file: %.200s:%d: %s", c->file, line,
+                       what);
+}
+
+/* Past blanks, continued lines and comments. */
+static void pass(struct cursor *c)
+{
+    for (;;)
+        if (c->at[0] == '\\' && (c->at[1] == '\n' || (c->at[1] == '\r' && c->at[2] == '\n')))
+            c->at += c->at[1] == '\n' ? 2 : 3;
+        else if (c->at[0] == ' ' || c->at[0] == '\t')
+            c->at++;
+        else if (c->at[0] == '/' && c->at[1] == '*' && strstr(c->at + 2, "*/"))
+            c->at = strstr(c->at + 2, "*/") + 2;
+        else
+            return;
+}
+
+static bool take(struct cursor *c, char letter, const char *of)
+{
+    pass(c);
+    if (*c->at != letter)
+        return refuse(c, "%s: '%c' is missing: X(name, default, \"unit\", low, high, \"text\")", of,
+                      letter);
+    c->at++;
+    return true;
+}
+
+static bool take_name(struct cursor *c, char *name, size_t size)
+{
+    size_t n = 0;
+    pass(c);
+    while (isalnum((unsigned char)c->at[n]) || c->at[n] == '_')
+        n++;
+    if (n == 0 || isdigit((unsigned char)c->at[0]))
+        return refuse(c, "PARAMETERS: a name is missing");
+    if (n >= size)
+        return refuse(c, "PARAMETERS: %.40s...: names have at most %zu letters", c->at, size - 1);
+    snprintf(name, size, "%.*s", (int)n, c->at);
+    c->at += n;
+    return true;
+}
+
+static bool take_number(struct cursor *c, const char *of, double *value)
+{
+    char *end;
+    pass(c);
+    *value = strtod(c->at, &end);
+    if (end == c->at || !isfinite(*value))
+        return refuse(c, "%s: a number is missing: X(name, default, \"unit\", low, high, \"text\")",
+                      of);
+    c->at = end;
+    return true;
+}
+
+/* A string, or several one after the other. */
+static bool take_text(struct cursor *c, const char *of, char *text, size_t size)
+{
+    size_t n = 0;
+    pass(c);
+    if (*c->at != '"')
+        return refuse(c,
+                      "%s: a text in quotes is missing: X(name, default, \"unit\", low, high, "
+                      "\"text\")",
+                      of);
+    while (*c->at == '"') {
+        for (c->at++; *c->at && *c->at != '"' && *c->at != '\n'; c->at++) {
+            c->at += *c->at == '\\' && c->at[1];
+            if (n + 1 < size && (unsigned char)*c->at >= ' ')
+                text[n++] = *c->at;
+        }
+        if (*c->at != '"')
+            return refuse(c, "%s: a text does not end on its line", of);
+        c->at++;
+        pass(c);
+    }
+    text[n] = '\0';
+    return true;
+}
+
+static bool take_row(struct cursor *c, struct law_file *law)
+{
+    struct law_parameter *const p = &law->parameter[law->parameters];
+    double count = 0;
+    *p = (struct law_parameter){.place = law->numbers};
+    if (!take_name(c, p->name, sizeof p->name))
+        return false;
+    pass(c);
+    if (*c->at == '[') {
+        c->at++;
+        if (!take_number(c, p->name, &count) || !take(c, ']', p->name))
+            return false;
+        if (!(count >= 1 && count <= STANCE_PROGRAM_NUMBERS && count == floor(count)))
+            return refuse(c, "%s: a list has 1 to %d numbers", p->name, STANCE_PROGRAM_NUMBERS);
+        p->count = (size_t)count;
+    }
+    if (!take(c, ',', p->name) || !take_number(c, p->name, &p->fallback) ||
+        !take(c, ',', p->name) || !take_text(c, p->name, p->unit, sizeof p->unit) ||
+        !take(c, ',', p->name) || !take_number(c, p->name, &p->low) || !take(c, ',', p->name) ||
+        !take_number(c, p->name, &p->high) || !take(c, ',', p->name) ||
+        !take_text(c, p->name, p->text, sizeof p->text) || !take(c, ')', p->name))
+        return false;
+    if (!(p->low <= p->fallback && p->fallback <= p->high))
+        return refuse(c, "%s: its default %g lies outside its range %g ... %g", p->name,
+                      p->fallback, p->low, p->high);
+    for (size_t i = 0; i < law->parameters; i++)
+        if (strcmp(law->parameter[i].name, p->name) == 0)
+            return refuse(c, "PARAMETERS: %s stands there twice", p->name);
+    law->numbers += p->count > 0 ? p->count : 1;
+    law->parameters++;
+    return true;
+}
+
+/* Behind "# define PARAMETERS" at the beginning of a line. */
+static const char *find_define(const char *text)
+{
+    for (const char *line = text; line; line = strchr(line, '\n'), line += line ? 1 : 0) {
+        const char *at = line + strspn(line, " \t");
+        if (*at != '#')
+            continue;
+        at += 1 + strspn(at + 1, " \t");
+        if (strncmp(at, "define", 6) != 0)
+            continue;
+        at += 6 + strspn(at + 6, " \t");
+        if (strncmp(at, "PARAMETERS", 10) == 0 && at[10] == '(')
+            return at + 11;
+    }
+    return NULL;
+}
+
+static void read_parameters(struct cursor *c, struct law_file *law)
+{
+    char macro[32];
+    c->at = find_define(c->text);
+    if (!c->at)
+        return;
+    law->parameter = calloc(MOST_ROWS + 1, sizeof *law->parameter);
+    if (!law->parameter) {
+        problem_no_memory(&c->r->problems);
+        return;
+    }
+    if (!take_name(c, macro, sizeof macro) || !take(c, ')', "PARAMETERS"))
+        return;
+    for (;;) {
+        char name[32];
+        pass(c);
+        if (*c->at == '\n' || *c->at == '\r' || *c->at == '\0' ||
+            (c->at[0] == '/' && c->at[1] == '/'))
+            return;
+        if (!take_name(c, name, sizeof name))
+            return;
+        if (strcmp(name, macro) != 0) {
+            refuse(c, "PARAMETERS: %s(...) is expected, not %s", macro, name);
+            return;
+        }
+        if (!take(c, '(', "PARAMETERS") || !take_row(c, law))
+            return;
+        if (law->numbers > STANCE_PROGRAM_NUMBERS) {
+            refuse(c, "PARAMETERS: more than %d numbers", STANCE_PROGRAM_NUMBERS);
+            return;
+        }
+    }
+}
+
+/* ---- reading --------------------------------------------------------------------------------- */
+
+static bool is_word(const struct tree_node *map, const char *key)
+{
+    const struct tree_node *const node = tree_find(map, key);
+    return node && node->kind == TREE_SCALAR && strcmp(node->text, word) == 0;
+}
+
+static void read_data(struct reader *r, const struct tree_node *data, struct law_file *law)
+{
+    const struct scenario_field any = {.type = FIELD_NUMBER, .low = -INFINITY, .high = INFINITY};
+    if (!field_list(&r->problems, "controller.data", "a list of numbers, or the name of a file",
+                    data))
+        return;
+    if (data->count > MOST_DATA) {
+        problem_add(&r->problems, data->mark, "controller.data: more than %d numbers", MOST_DATA);
+        return;
+    }
+    law->data = malloc(data->count * sizeof *law->data);
+    if (!law->data) {
+        problem_no_memory(&r->problems);
+        return;
+    }
+    for (size_t i = 0; i < data->count; i++)
+        if (!field_number(&r->problems, &any, "controller.data", data->item[i], &law->data[i]))
+            return;
+    law->data_count = data->count;
+}
+
+void law_file_read(struct reader *r)
+{
+    struct law_file *const law = &r->s->law;
+    struct tree_node *const map = tree_find(r->tree.root, "controller");
+    if (!map || map->kind != TREE_MAP || !(is_word(map, "kind") || is_word(map, "far")))
+        return;
+    const struct tree_node *const file = tree_find(map, "file"), *const own =
+                                                                     tree_find(map, "source");
+    struct tree_node *const data = tree_find(map, "data");
+    if ((!file && !own) || (file && file->kind != TREE_SCALAR) ||
+        (own && own->kind != TREE_SCALAR)) /* reported with the other keys */
+        return;
+    snprintf(law->name, sizeof law->name, "%s", file ? file->text : "controller.source");
+    const struct mark mark = file ? file->mark : own->mark;
+    const char *const text = own ? own->text : whole(r, "controller.file", file, MOST_BYTES);
+    if (!text || (!own && !put(r, map, "source", text, true, mark)))
+        return;
+    if (data && data->kind == TREE_SCALAR)
+        read_numbers(r, data);
+    law->source = strdup(text);
+    if (!law->source) {
+        problem_no_memory(&r->problems);
+        return;
+    }
+    if (data && r->problems.count == 0)
+        read_data(r, data, law);
+    struct cursor c = {.r = r, .mark = mark, .file = law->name, .text = law->source};
+    read_parameters(&c, law);
+}
+
+void law_file_free(struct law_file *law)
+{
+    free((char *)(uintptr_t)law->source);
+    free(law->data);
+    free(law->parameter);
+    *law = (struct law_file){0};
+}
+
+bool law_file_rows(struct schema *schema, const struct law_file *law)
+{
+    for (size_t i = 0; i < law->parameters; i++) {
+        const struct law_parameter *const p = &law->parameter[i];
+        struct scenario_field row = {
+            .type = FIELD_NUMBER,
+            .use = USE_PROGRAM,
+            .sweep = true,
+            .offset = offsetof(struct scenario_values, parameter) + p->place * sizeof(double),
+            .fallback = p->fallback,
+            .low = p->low,
+            .high = p->high,
+            .items = p->count,
+            .path = "controller.*",
+        };
+        snprintf(row.unit, sizeof row.unit, "%s", p->unit[0] ? p->unit : "1");
+        snprintf(row.text, sizeof row.text, "%s", p->text);
+        struct scenario_field *const field = schema_add(schema, &row, "", p->name);
+        if (!field)
+            return false;
+        if (p->count == 0)
+            continue;
+        struct scenario_field *const item = schema_add(schema, &row, p->name, "[]");
+        if (!item)
+            return false;
+        field->type = FIELD_NUMBERS;
+        field->sweep = false;
+        field->offset = NO_OFFSET;
+    }
+    return true;
+}
