@@ -257,8 +257,7 @@ typedef enum stance_evidence {
       "it takes more work than is allowed: too stiff, or events without end; try a shorter step, " \
       "or method midpoint")                                                                        \
     X(PROGRAM, program,                                                                            \
-      "the program of controller.file gave torques that are not finite, or wrote where nothing "   \
-      "is its own")
+      "the law of controller.file gave torques that are not finite")
 
 typedef enum stance_failure {
 #define STANCE_FAILURE_ENUM(NAME, name, text) STANCE_FAILURE_##NAME,

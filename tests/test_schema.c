@@ -21,7 +21,7 @@ static bool describe(const char *path, bool json_schema)
          *failed = fmemopen(errors, sizeof errors, "w");
     assert_non_null(out);
     assert_non_null(failed);
-    bool good = scenario_describe(path, json_schema, out, failed);
+    bool good = scenario_describe(path, json_schema, NULL, out, failed);
     fputc('\0', out);
     fputc('\0', failed);
     fclose(out);

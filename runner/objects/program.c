@@ -43,13 +43,14 @@ static const double guard = 0x1.57a11ce0badc0p-731;
 
 /* Of a case, with a guard before and behind each: sample, memory, torques. All from the sample on.
  */
+enum { GUARD = 16 }; /* numbers: room for what runs a little too far */
 static double *memory_of(const struct program *p, double *sample)
 {
-    return sample + p->sample + 1;
+    return sample + p->sample + GUARD;
 }
 static double *torque_of(const struct program *p, double *sample)
 {
-    return sample + p->sample + p->memory + 2;
+    return sample + p->sample + p->memory + 2 * GUARD;
 }
 
 static bool guarded(const struct program *p, double *sample)
@@ -62,10 +63,11 @@ static bool guarded(const struct program *p, double *sample)
 static double *begin(const stance_program *program, const stance_case *c)
 {
     const struct program *const p = (const struct program *)program;
-    double *const all = calloc((size_t)(p->sample + p->memory + p->torques + 4), sizeof *all);
+    double *const all =
+        calloc((size_t)(p->sample + p->memory + p->torques + 4 * GUARD), sizeof *all);
     if (!all)
         return NULL;
-    double *const sample = all + 1, *const out = torque_of(p, sample);
+    double *const sample = all + GUARD, *const out = torque_of(p, sample);
     sample[-1] = sample[p->sample] = out[-1] = out[p->torques] = guard;
     double *const target = sample + p->measured, *const rest = target + p->coordinates;
     for (int i = 0; i < p->coordinates; i++)
@@ -80,7 +82,7 @@ static double *begin(const stance_program *program, const stance_case *c)
 static void end(const stance_program *program, double *sample)
 {
     (void)program;
-    free(sample ? sample - 1 : NULL);
+    free(sample ? sample - GUARD : NULL);
 }
 
 static uint64_t case_of(const struct program *p, const stance_case *c)
@@ -89,11 +91,12 @@ static uint64_t case_of(const struct program *p, const stance_case *c)
 }
 
 /* Says it once; the case fails by itself. */
-static const double *fault(const struct program *p, const stance_case *c, const char *what)
+static const double *useless(const struct program *p, const stance_case *c)
 {
     if (!p->said)
-        cache_say("the law %s %s in case %llu, or others: such cases fail", p->file, what,
-                  (unsigned long long)case_of(p, c));
+        cache_say("the law %s gives torques that are not finite in case %llu, or others: such "
+                  "cases fail",
+                  p->file, (unsigned long long)case_of(p, c));
     ((struct program *)(uintptr_t)p)->said = true;
     return NULL;
 }
@@ -109,10 +112,9 @@ static const double *act(const stance_program *program, const stance_case *c, do
     crash_law_ends(p->watch);
     for (int i = 0; i < p->torques; i++)
         sum += out[i] - out[i];
-    if (guarded(p, sample) && sum == 0)
-        return out;
-    return fault(p, c,
-                 sum == 0 ? "writes beyond what is its own" : "gives torques that are not finite");
+    if (!guarded(p, sample))
+        crash_law_fault(p->file, " wrote beyond what is its own", case_of(p, c));
+    return sum == 0 ? out : useless(p, c);
 }
 
 /* ---- the scenario's names, as C -------------------------------------------------------------- */
@@ -175,6 +177,7 @@ static char *names_text(const struct program_text *text, const stance_scene *sce
     print_names(out, "COORDINATES", "COORDINATES", scene->coordinates, coordinate_name, scene);
     print_names(out, "CONTACTS", "CONTACTS", scene->contacts, contact_name, scene);
     print_names(out, "ACTUATORS", "ACTUATORS", scene->actuators, actuator_name, scene);
+    fprintf(out, "enum { POSTURES = %d };\n", scene->postures);
     fprintf(out, "enum { DATA = %zu };\nstatic const double data[DATA] = {", text->count);
     for (size_t i = 0; i < text->count; i++)
         fprintf(out, "%s%a", i ? ", " : "", text->data[i]);
@@ -208,7 +211,10 @@ static char *source_text(const struct program_text *text)
 /* Arrays whose size is known are not left; what is undefined is looked at in the object. */
 #define LAW_FLAGS                                                                                  \
     "-I" LAW_DIRECTORY " -Werror=implicit-function-declaration -Werror=implicit-int "              \
-    "-Werror=incompatible-pointer-types -fsanitize=bounds -fsanitize-undefined-trap-on-error"
+    "-Werror=incompatible-pointer-types -fsanitize-undefined-trap-on-error"
+/* gcc takes an array at the end of a struct for one without end, unless told otherwise. */
+#define LAW_FLAGS_GCC LAW_FLAGS " -fsanitize=bounds-strict"
+#define LAW_FLAGS_CLANG LAW_FLAGS " -fsanitize=bounds"
 
 /* One lane; of processors without fused multiply-adds two, which emulate them. */
 static const char *law_isa(void)
@@ -222,6 +228,11 @@ static const char *law_isa(void)
     return last;
 }
 
+static const char *law_flags(const struct compiler *compiler)
+{
+    return strstr(compiler->version, "clang") ? LAW_FLAGS_CLANG : LAW_FLAGS_GCC;
+}
+
 void program_hash(const char *source, char hash[CHECKSUM_SHA256_TEXT])
 {
     checksum_sha256(source, strlen(source), hash);
@@ -231,7 +242,7 @@ void program_hash(const char *source, char hash[CHECKSUM_SHA256_TEXT])
 static bool name_it(const char *source, const char *names, const struct compiler *compiler,
                     char name[CACHE_NAME], struct image_label *label)
 {
-    const char *const part[] = {source, names, LAW_FLAGS, compiler_flags(law_isa())};
+    const char *const part[] = {source, names, law_flags(compiler), compiler_flags(law_isa())};
     char *all = NULL, hash[CHECKSUM_SHA256_TEXT];
     size_t size, embedded;
     const char *const engine = sources(&embedded);
@@ -258,7 +269,7 @@ static bool compile(const struct program_text *text, const char *source, const c
     const struct compiler_file files[] = {{"names.h", names}, {"law.c", source}};
     struct compilation law = {.method = text->file,
                               .isa = law_isa(),
-                              .flags = LAW_FLAGS,
+                              .flags = law_flags(compiler),
                               .source = {"law.c", LAW_DIRECTORY "/law_math.c"}};
     struct watch watch = {.doing = "compiling a law", .progress = progress_begin(true)};
     watch_begin(&watch);
@@ -326,6 +337,7 @@ static bool calls_known(const struct image *image, const Elf64_Shdr *symbols, co
 static bool look_into(const struct image *image, const char *file, stance_message *message)
 {
     static const char *const lasting[] = {".data", ".bss", ".tdata", ".tbss"};
+    static const char *const early[] = {".init_array", ".fini_array", ".ctors", ".dtors"};
     Elf64_Ehdr head = {0};
     Elf64_Shdr names, is;
     if (image->size > sizeof head)
@@ -341,6 +353,12 @@ static bool look_into(const struct image *image, const char *file, stance_messag
                 return complain(message,
                                 "%.80s: has variables that outlive a call of law (static, or "
                                 "outside functions): make them const, or MEMORY",
+                                file);
+        for (size_t k = 0; k < sizeof early / sizeof *early; k++)
+            if (is.sh_size > 0 && strcmp(name, early[k]) == 0)
+                return complain(message,
+                                "%.80s: has constructors or destructors: law alone is "
+                                "called",
                                 file);
         if (is.sh_type == SHT_DYNSYM && !calls_known(image, &is, file, message))
             return false;

@@ -85,15 +85,14 @@ static void add_cases(struct line *line)
 }
 
 /* A law's last words are its own: nobody need look for a fault elsewhere. */
-static void blame_law(const char *what, const char *how)
+void crash_law_fault(const char *file, const char *what, uint64_t index)
 {
     struct line line = {.length = 0};
     add_text(&line, "stance: the law ");
-    add_text(&line, last.law.file);
+    add_text(&line, file);
     add_text(&line, what);
-    add_text(&line, how);
     add_text(&line, " in case ");
-    add_number(&line, last.law.index);
+    add_number(&line, index);
     add_text(&line, "; what a file marks as done is whole\n");
     _exit(write(STDERR_FILENO, line.text, line.length) < 0 ? EXIT_IO : EXIT_USAGE);
 }
@@ -103,11 +102,12 @@ static void announce(int number, siginfo_t *info, void *context)
     (void)info, (void)context;
     struct line line = {.length = 0};
     if (last.law.file)
-        blame_law(number == SIGILL ? " reached beyond an array" : " crashed",
-                  number == SIGSEGV   ? " (SIGSEGV)"
-                  : number == SIGFPE  ? " (SIGFPE)"
-                  : number == SIGABRT ? " (SIGABRT)"
-                                      : "");
+        crash_law_fault(last.law.file,
+                        number == SIGILL    ? " reached beyond an array"
+                        : number == SIGSEGV ? " crashed (SIGSEGV)"
+                        : number == SIGFPE  ? " crashed (SIGFPE)"
+                                            : " crashed",
+                        last.law.index);
     add_text(&line, last.who);
     for (int k = 0; k < CRASHES; k++) {
         if (crashes[k].number == number) {
@@ -141,7 +141,8 @@ static void tick(int number)
     last.ticks = last.law.file && last.law.calls == last.calls ? last.ticks + 1 : 0;
     last.calls = last.law.calls;
     if (last.ticks >= CRASH_PATIENCE)
-        blame_law(" has not returned for 10 s of processor time", "");
+        crash_law_fault(last.law.file, " has not returned for 10 s of processor time",
+                        last.law.index);
 }
 
 struct crash_law *crash_law_watch(void)

@@ -39,6 +39,10 @@ static inline void crash_law_begins(struct crash_law *law, const char *file, uin
     law->index = index;
     law->file = file;
 }
+/* It did what nobody can go on after: ends the process with one line, "the law FILE WHAT in case
+ * N".
+ */
+__attribute__((noreturn)) void crash_law_fault(const char *file, const char *what, uint64_t index);
 static inline void crash_law_ends(struct crash_law *law)
 {
     law->file = NULL;

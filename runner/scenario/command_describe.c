@@ -6,7 +6,7 @@
 extern const struct command command_describe; /* below */
 
 struct request {
-    const char *path;
+    const char *path, *of;
     bool schema;
 };
 
@@ -17,13 +17,18 @@ static int run_describe(int argc, char **argv)
 
     if (code != COMMAND_GOES_ON)
         return code;
-    if (scenario_describe(request.path, request.schema, stdout, stderr))
-        return EXIT_DONE;
-    return request.path ? EXIT_USAGE : EXIT_IO;
+    struct scenario *const of = request.of ? scenario_new(request.of, NULL, NULL, 0, stderr) : NULL;
+    if (request.of && !of)
+        return EXIT_USAGE;
+    const bool good = scenario_describe(request.path, request.schema, of, stdout, stderr);
+    scenario_drop(of);
+    return good ? EXIT_DONE : request.path ? EXIT_USAGE : EXIT_IO;
 }
 
 static const struct option options[] = {
     {"PATH", OPTION_TO(struct request, path), .text = "a path"},
+    {"--of", "SCENARIO", OPTION_TO(struct request, of),
+     .text = "of this one: with the names of its robot and the parameters of its law"},
     {"--schema", OPTION_TO(struct request, schema), .without = "PATH",
      .text = "JSON Schema (draft 2020-12), for editors"},
     {0},

@@ -428,6 +428,18 @@ static json_t *map_schema(const struct schema *schema, const char *path)
     if (json_array_size(required) > 0)
         json_object_set(object, "required", required);
     json_decref(required);
+    if (strcmp(path, "controller") == 0) { /* a law of the user's own has keys of its own */
+        json_t *known = json_array();
+        for (size_t i = 0; i < count; i++)
+            json_array_append_new(known, json_string(names[i]));
+        json_object_set_new(object, "additionalProperties",
+                            json_pack("{s:[s,s]}", "type", "number", "array"));
+        json_object_set_new(object, "if",
+                            json_pack("{s:[{s:{s:{s:s}},s:[s]},{s:{s:{s:s}},s:[s]}]}", "anyOf",
+                                      "properties", "kind", "const", "program", "required", "kind",
+                                      "properties", "far", "const", "program", "required", "far"));
+        json_object_set_new(object, "else", json_pack("{s:{s:o}}", "propertyNames", "enum", known));
+    }
     if (strcmp(path, "initial") == 0) {
         json_object_set_new(object, "not",
                             json_pack("{s:[s,s]}", "required", "equilibrium", "state"));
@@ -629,17 +641,22 @@ static bool print_path(const char *path, FILE *out, FILE *errors, const struct s
     return found;
 }
 
-bool scenario_describe(const char *path, bool json_schema, FILE *out, FILE *errors)
+bool scenario_describe(const char *path, bool json_schema, const struct scenario *of, FILE *out,
+                       FILE *errors)
 {
     size_t count = 0;
-    while (stance_scenes()[count])
+    while (!of && stance_scenes()[count])
         count++;
     struct schema *schemas = calloc(count + 1, sizeof *schemas);
     stance_scene *any = mechanism_pattern();
     bool good = schemas != NULL && any != NULL;
 
     for (size_t i = 0; i <= count && good; i++)
-        good = schema_build(&schemas[i], i < count ? stance_scenes()[i] : any, NULL);
+        good = schema_build(&schemas[i],
+                            i < count ? stance_scenes()[i]
+                            : of      ? of->scene
+                                      : any,
+                            of ? &of->law : NULL);
     count++;
     if (!good) {
         fputs("stance describe: out of memory\n", errors);

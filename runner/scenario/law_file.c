@@ -364,6 +364,23 @@ void law_file_read(struct reader *r)
     read_parameters(&c, law);
 }
 
+void law_file_check(struct reader *r)
+{
+    const struct law_file *const law = &r->s->law;
+    for (size_t i = 0; i < law->parameters; i++) {
+        char path[96];
+        size_t found = 0;
+        snprintf(path, sizeof path, "controller.%s", law->parameter[i].name);
+        for (size_t k = 0; k < r->schema->count; k++)
+            found += strcmp(r->schema->field[k].path, path) == 0;
+        if (found > 1)
+            problem_add(&r->problems, r->tree.root->mark,
+                        "controller.file: %.200s: its parameter %s is a key that every controller "
+                        "has: give it another name",
+                        law->name, law->parameter[i].name);
+    }
+}
+
 void law_file_free(struct law_file *law)
 {
     free((char *)(uintptr_t)law->source);

@@ -37,6 +37,8 @@ struct law_file {
  * controller.kind or .far is `program`. Problems are the reader's; what is wrong in a law stands
  * behind its own file and line. */
 void law_file_read(struct reader *r);
+/* With the table of keys: no parameter has the name of another key. */
+void law_file_check(struct reader *r);
 void law_file_free(struct law_file *law);
 
 /* The rows of the parameters, as schema_build adds rows; false: no room. */

@@ -529,6 +529,7 @@ static void read_all(struct reader *r, const char *file, const char *text, const
     law_file_read(r);
     if (!read_version(r) || !read_scene(r) || !named_read(r, sets, set_count))
         return;
+    law_file_check(r);
     set_defaults(r);
     read_map(r, r->tree.root, "");
     read_by_hand(r);

@@ -85,9 +85,9 @@ struct scenario_values {
     double law_value[STANCE_LAW_PARAMETERS * STANCE_LAW_ROOM];
     double parameter[STANCE_PROGRAM_NUMBERS]; /* of a law of the user's own, see law_file.h */
     const stance_program *program; /* it, compiled; NULL: not yet, it then commands nothing */
-    int far;                      /* what acts far from the target, see scenario_far; 0: none */
-    double near_angle, near_rate; /* semi-axes of the ellipsoid that is near */
-    double sample_time;           /* 0: continuous */
+    int far;                       /* what acts far from the target, see scenario_far; 0: none */
+    double near_angle, near_rate;  /* semi-axes of the ellipsoid that is near */
+    double sample_time;            /* 0: continuous */
     double torque_limits[STANCE_MAX_ACTUATORS], torque_rate; /* INFINITY: none */
 
     int method;             /* index into stance_methods() */
@@ -305,8 +305,10 @@ bool scenario_selection_name(const stance_scene *scene, int selection, char name
 const double *scenario_law_value(const struct scenario_values *values, const char *law,
                                  const char *parameter);
 
-/* Documentation of the format from the table: all of it, one path, or JSON Schema.
+/* Documentation of the format from the table: all of it, one path, or JSON Schema; of any scenario,
+ * or (not NULL) with the names of the robot and the law of that one.
  * false: no such path, or no memory (a message on `errors`); errors of `out` are the caller's. */
-bool scenario_describe(const char *path, bool json_schema, FILE *out, FILE *errors);
+bool scenario_describe(const char *path, bool json_schema, const struct scenario *of, FILE *out,
+                       FILE *errors);
 
 #endif

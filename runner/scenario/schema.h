@@ -40,7 +40,7 @@ enum field_use {
     USE_LAW,     /* controller.kind or controller.far is `law` */
     USE_FEEDBACK,
     USE_PROGRAM, /* controller.kind or controller.far is a law of the user's own */
-    USE_FAR, /* controller.far is not none */
+    USE_FAR,     /* controller.far is not none */
     USE_PLACE,
     USE_LQR,
     USE_MODEL, /* a design from the model: all but gains */

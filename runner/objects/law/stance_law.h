@@ -22,7 +22,8 @@
  * controller.data are the array data[DATA].
  *
  * Names are those of the scenario, with _ for what C does not allow, and _ behind C's own words;
- * all[] has the same numbers in the order of the scenario. Angles rad, places m, torques N m,
+ * all[] has the same numbers in the order of the scenario, in which the last POSTURES coordinates
+ * are what moves the robot in itself: all but the place of a free root. Angles rad, places m, torques N m,
  * forces of what slides N.
  *
  * sin, cos, exp, tanh, sqrt, fabs, fma, fmin, fmax, floor and copysign compute the same bits on
@@ -39,7 +40,7 @@
 #define LAW_COORDINATES(X) X(x)
 #define LAW_CONTACTS(X) X(foot)
 #define LAW_ACTUATORS(X) X(hip)
-enum { COORDINATES = 1, CONTACTS = 1, ACTUATORS = 1, DATA = 1 };
+enum { COORDINATES = 1, CONTACTS = 1, ACTUATORS = 1, POSTURES = 1, DATA = 1 };
 static const double data[DATA];
 #endif
 
