@@ -89,7 +89,7 @@ cat >>servo.yaml <<'Y'
 optimise: {vary: [law], candidates: 12, grow: [8], confirm: 8}
 Y
 expect "a search varies them" 0 "$stance" optimise servo.yaml -o search.h5 --force \
-    --set sweep.grid=[] --set 'sweep.sample={method: sobol, count: 8, vary: [{path: initial.offset.theta, from: -0.02, to: 0.02}]}'
+    --set 'sweep.grid=[{path: ground.friction, values: [0.8]}]' --set 'sweep.sample={method: sobol, count: 8, vary: [{path: initial.offset.theta, from: -0.02, to: 0.02}]}'
 sed -i '$d' servo.yaml
 
 # ---- part of the results --------------------------------------------------------------------------
@@ -113,7 +113,7 @@ result $? "... in one line"
 mv away.c servo.c
 timeout "$patience" mpirun -n 2 "$stance" run servo.yaml -o two.h5 >log 2>&1
 "$stance" compare servo.h5 two.h5 >log 2>&1
-! grep -vE '^attribute (ranks|hosts|date)|two.h5$|^  |timing' log | grep -q .
+grep -q '^identical' log
 result $? "two ranks give the same file"
 expect "a scenario without that kind refuses its keys" 2 "$stance" check "$shipped/basin_one_foot.yaml" --set controller.file=servo.c
 
@@ -168,13 +168,13 @@ wrong endless 2 'law endless.c has not returned for 10 s of processor time in ca
 wrong lasting 2 'lasting.c: has variables that outlive a call' <<<"static double last;
 $head { last += 1; out->hip1 = last; }"
 wrong prints 2 'prints.c: calls printf, which is none of' <<<"int printf(const char *, ...);
-$head { printf(\"x\"); }"
+$head { printf(\"%d\\n\", (int)now->time); }"
 wrong system 2 'system.c: calls system, which is none of' <<<"#include <stdlib.h>
 $head { system(\"true\"); }"
 wrong power 2 'power.c: calls pow, which is none of' <<<"$head { out->hip1 = pow(now->time, 2.5); }"
 wrong lacks 2 'lacks.c: has no function law' <<<'#include "stance_law.h"'
 wrong empty 2 'empty.c: does not include stance_law.h' <<<'static const int x = 1;'
-wrong early 2 'early.c: has constructors' <<<"__attribute__((constructor)) void f(void) {}
+wrong early 2 'early.c: has constructors' <<<"__attribute__((constructor)) void f(void) { __asm__ volatile(\"nop\"); }
 $head {}"
 wrong default 2 '^default.yaml:5:35: controller.file: default.c:1: a: its default 5 lies outside its range 0 ... 1$' <<<"#define PARAMETERS(X) X(a, 5, \"m\", 0, 1, \"too large\")
 $head {}"
@@ -184,7 +184,7 @@ wrong taken 2 'taken.c: its parameter delay is a key that every controller has' 
 $head {}"
 wrong many 2 'many.c:1: PARAMETERS: more than 64 numbers' <<<"#define PARAMETERS(X) X(a[40], 0, \"1\", 0, 1, \"a\") X(b[40], 0, \"1\", 0, 1, \"b\")
 $head {}"
-wrong macro 2 'macro.c: its PARAMETERS are 3 numbers to the compiler and' <<<"#define N 3
+wrong macro 2 'macro.c:2: a: a number is missing' <<<"#define N 3
 #define PARAMETERS(X) X(a[N], 0, \"1\", 0, 1, \"a\")
 $head {}"
 head -c 300000 /dev/zero | tr '\0' ' ' >large.c

@@ -124,22 +124,22 @@ static bool add_law(struct axis_reader *a)
     bool good = true;
     for (size_t i = 0; good && i < schema->count; i++) {
         const struct scenario_field *const field = &schema->field[i];
-        double value;
         if (!(own ? field->use == USE_PROGRAM : field->use == USE_LAW && field->law == law) ||
             !field->sweep || field->type != FIELD_NUMBER)
             continue;
-        memcpy(&value, (const char *)&a->r->s->base + field->offset, sizeof value);
-        if (!isfinite(value))
-            continue; /* as it is by default, which is no number */
-        struct tree_node node = *a->node;
-        node.text = field->path;
-        node.kind = TREE_SCALAR;
-        good = add_path(a, &node);
-        if (!good)
-            continue;
-        if (field->low >= 0 && value > 0) {
-            last_varied(a)->scale = SCALE_RATIO;
-            last_varied(a)->unit = weight_unit;
+        for (size_t k = 0; good && k < schema_items(field); k++) {
+            char path[128];
+            const double value = schema_number(field, &a->r->s->base, k);
+            if (!isfinite(value))
+                continue; /* as it is by default, which is no number */
+            struct tree_node node = *a->node;
+            node.text = schema_item_path(field, k, path);
+            node.kind = TREE_SCALAR;
+            good = add_path(a, &node);
+            if (good && field->low >= 0 && value > 0) {
+                last_varied(a)->scale = SCALE_RATIO;
+                last_varied(a)->unit = weight_unit;
+            }
         }
     }
     return good && (a->axis->paths > before ||
