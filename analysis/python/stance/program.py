@@ -1,19 +1,19 @@
-"""The program: where it is, how it is called and stopped."""
+"""The program: where it is, how it is called and stopped, what is wrong as an exception."""
 from __future__ import annotations
 
 import contextlib
 import functools
 import json
+import operator
 import os
 import pathlib
+import re
 import shutil
 import signal
 import subprocess
 import tempfile
 import warnings
 from typing import Any, Callable, Iterable, Mapping, Optional, Union
-
-from .errors import Error, OptionError, of_program
 
 VERSION = "0.1.0"
 File = Union[str, "os.PathLike[str]"]
@@ -22,9 +22,56 @@ MPI = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "PM
        "OMPI_MCA_btl_vader_single_copy_mechanism": "none", "OMPI_MCA_rmaps_base_oversubscribe": "1"}
 
 
+class Error(Exception):
+    """What `stance` did not do, and why. message: the program's, a line for each mistake; file, line, column (from 1):
+    where the first one of a scenario is, else None; code: exit code (2 bad use or scenario, 3 input or output, 4 stopped),
+    None where it did not run. (A file that is missing is Python's FileNotFoundError.)"""
+
+    def __init__(self, message: str, file: Optional[str] = None, line: Optional[int] = None,
+                 column: Optional[int] = None, code: Optional[int] = None):
+        super().__init__(message)
+        self.message, self.file, self.line, self.column, self.code = message, file, line, column, code
+
+    def __str__(self) -> str:  # a KeyError would quote it
+        return self.message
+
+
+class ScenarioError(Error, ValueError):
+    """A mistake in a scenario."""
+
+
+class PathError(ScenarioError, KeyError):
+    """The format has no such path, or this scenario nothing there."""
+
+
+class OptionError(Error, ValueError):
+    """An argument that the program does not take so."""
+
+
+class ExistsError(Error, FileExistsError):
+    """The file is there: force=True replaces it, resume=True goes on with it."""
+
+
+def of_program(command: str, code: int, said: str) -> Exception:
+    """The exception for what a command wrote to standard error when it ended with this code (negative: a signal)."""
+    said = re.sub(r"(?ms)^-{20,}\n.*?^-{20,}\n?", "", said)  # mpirun's own, between rulers
+    lines = [line for line in dict.fromkeys(re.split(r"[\r\n]+", said))
+             if line and not re.match(r"stance: compiling|.*\bwarning: ", line)]
+    place = re.search(r"(?m)^(.+?):(\d+):(\d+): ", "\n".join(lines))
+    if place or code == 2 and any(line.startswith("--set ") for line in lines):
+        where = (place[1], int(place[2]), int(place[3])) if place else (None,) * 3
+        return ScenarioError("\n".join(lines), *where, code)
+    message = "\n".join(re.sub(r"^stance( \w+)*: ", "", line) for line in lines)
+    message = re.sub(r"--(force|resume)\b", r"\1=True", message)  # as it is written in Python
+    message = re.sub(r"(?<![\w-])--([a-z][a-z-]*)\b", lambda option: option[1].replace("-", "_") + "=", message)
+    if message.startswith("unknown option "):
+        return TypeError(f"stance {command}: {message.replace('option', 'argument', 1)}")
+    kind = ExistsError if " exists; force=True" in message else OptionError if code == 2 else Error
+    return kind(message or f"stance {command}: {'signal' if code < 0 else 'exit code'} {abs(code)}", code=code)
+
+
 def program() -> str:
-    """The program's file: $STANCE, else bin/stance in a folder above the package (where `make install` put both, or
-    in a checkout), else the first on PATH."""
+    """Its file: $STANCE, else bin/stance above the package (as `make install` and checkouts have it), else on PATH."""
     asked = os.environ.get("STANCE")
     above = (str(folder / "bin/stance") for folder in pathlib.Path(__file__).resolve().parents)
     found = shutil.which(asked) if asked else next(filter(None, map(shutil.which, above)), shutil.which("stance"))
@@ -44,7 +91,7 @@ def same_version(file: str) -> None:
 
 
 def name_of(file: File, there: bool = True) -> str:
-    """A file's name as the program takes it. FileNotFoundError where it has to be `there`, TypeError of no name."""
+    """A file's name as the program takes it. FileNotFoundError where it should be `there`, TypeError of no name."""
     name = os.fsdecode(file)
     if there and not os.path.exists(name):
         raise FileNotFoundError(2, "No such file", name)
@@ -53,11 +100,8 @@ def name_of(file: File, there: bool = True) -> str:
 
 def as_yaml(value: Any) -> str:
     """A value in one line of JSON, which YAML holds. NumPy's numbers and arrays are taken, too."""
-    def plain(other: Any) -> Any:
-        if hasattr(other, "tolist"):
-            return other.tolist()
-        raise TypeError(f"a scenario holds numbers, words, lists and dicts, not {type(other).__name__}")
-    return json.dumps(value, default=plain, ensure_ascii=False, allow_nan=False)
+    return json.dumps(value, ensure_ascii=False, allow_nan=False,
+                      default=lambda v: v.tolist() if hasattr(v, "tolist") else json.JSONEncoder().default(v))
 
 
 def options(given: Mapping[str, Any]) -> list[str]:
@@ -76,37 +120,38 @@ def options(given: Mapping[str, Any]) -> list[str]:
         if isinstance(value, Mapping):
             value = [f"{key}={as_yaml(v) if name == 'set' else word(v)}" for key, v in value.items()]
         several = [word(v) for v in value] if isinstance(value, list) else [word(value)] if value is not None else []
-        if name in ("near", "answers", "format"):  # those that take all in one
-            several = [",".join(several)] if several else []
+        several = [",".join(several)] if several and name in ("near", "answers", "format") else several
         option = "--" + name.rstrip("_").replace("_", "-")
         words += [option] if value is True else [w for v in several for w in (option, v)] if value is not False else []
     return words
 
 
 def call(command: str, *words: str, ranks: int = 1, codes: Iterable[int] = (0,),
-         watch: Optional[Callable[[], None]] = None) -> str:
+         watch: Optional[Callable[[bool], None]] = None) -> str:
     """What the command prints. Its warnings become Python's; an exit code that is not among `codes` an exception.
-    `watch` is called twice a second meanwhile. Ctrl-C (KeyboardInterrupt) stops it as it stops a run."""
-    arguments, environment = [program(), *command.split(), *words], None
-    if not isinstance(ranks, int):
-        raise TypeError(f"ranks is a whole number, not {type(ranks).__name__}")
-    if ranks != 1:
-        mpirun = shutil.which("mpirun")
-        if not mpirun or ranks < 1:
+    `watch` is called twice a second, and when it has ended (True). Ctrl-C (KeyboardInterrupt) stops it."""
+    arguments = [program(), *command.split(), *words]
+    if operator.index(ranks) != 1:
+        if ranks < 1 or not shutil.which("mpirun"):
             raise OptionError("mpirun is not on PATH: ranks=1 does without" if ranks > 1 else "ranks is 1 at least")
-        arguments, environment = [mpirun, "-n", str(ranks), *arguments], {**MPI, **os.environ}
+        arguments = ["mpirun", "-n", str(ranks), *arguments]
     # In a session of its own: a terminal's Ctrl-C comes from here alone, and so that mpirun passes it on.
     with tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as err:
-        with subprocess.Popen(arguments, stdin=subprocess.DEVNULL, stdout=out, stderr=err, env=environment,
-                              start_new_session=True) as process:
+        with subprocess.Popen(arguments, stdin=subprocess.DEVNULL, stdout=out, stderr=err,
+                              env={**MPI, **os.environ}, start_new_session=True) as process:
             try:
                 while process.returncode is None:
                     with contextlib.suppress(subprocess.TimeoutExpired):
                         process.wait(0.5 if watch else None)
                     if watch:
-                        watch()
-            except BaseException:
-                stop(process, signal.SIGINT if ranks == 1 else signal.SIGUSR1)
+                        watch(process.returncode is not None)
+            except BaseException:  # a run writes what has ended; a second Ctrl-C, or a minute, is its end
+                process.send_signal(signal.SIGINT if ranks == 1 else signal.SIGUSR1)
+                try:
+                    process.wait(60)
+                finally:
+                    with contextlib.suppress(ProcessLookupError):
+                        os.killpg(process.pid, signal.SIGKILL)
                 raise
         printed, said = (file.seek(0) or file.read().decode(errors="replace") for file in (out, err))
     if process.returncode not in codes:
@@ -115,12 +160,3 @@ def call(command: str, *words: str, ranks: int = 1, codes: Iterable[int] = (0,),
         if "warning: " in line:
             warnings.warn(line.partition("warning: ")[2], stacklevel=3)
     return printed
-
-
-def stop(process: subprocess.Popen, by: int) -> None:
-    """Waits for what a signal stops: a run writes what has ended. A second Ctrl-C, or a minute, kills it."""
-    process.send_signal(by)
-    try:
-        process.wait(60)
-    except (KeyboardInterrupt, subprocess.TimeoutExpired):
-        os.killpg(process.pid, signal.SIGKILL)

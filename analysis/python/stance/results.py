@@ -1,6 +1,7 @@
-"""Results files: xarray of what is in them, and what the program says of them."""
+"""Results files: xarray of what is in them, what the program says of them, and draws."""
 from __future__ import annotations
 
+import contextlib
 import difflib
 import functools
 import io
@@ -8,7 +9,6 @@ import json
 import operator
 import os
 import pathlib
-import posixpath
 import tempfile
 from typing import Any, Callable, Mapping, Optional, Union
 
@@ -18,9 +18,7 @@ import pandas
 import xarray
 
 from . import scenarios
-from .errors import Error
-from .picture import Picture
-from .program import File, call, name_of, options
+from .program import Error, File, call, name_of, options
 
 
 def open(file: File) -> Union[Results, Search]:  # pylint: disable=redefined-builtin
@@ -44,29 +42,27 @@ def read(file: str, group: str = "/") -> xarray.Dataset:
     """A group of the file, in memory, the file closed again. Axes are dimensions, with values, `units`, `long_name`;
     codes are words; what a case does not have is NaN or "none"."""
     def attributes(node: Any) -> dict[str, Any]:
-        values = {name: value.item() if getattr(value, "size", 0) == 1 else value for name, value in node.attrs.items()}
-        return {name: value.decode() if isinstance(value, bytes) else value for name, value in values.items()}
+        return {name: value.decode() if isinstance(value, bytes) else value.item() if value.size == 1 else value
+                for name, value in node.attrs.items() if node.name == "/" or name in ("units", "long_name")}
 
     def variable(dims: list[str], node: h5py.Dataset) -> tuple[list[str], Any, dict[str, Any]]:
-        values = node.asstr()[...] if h5py.check_string_dtype(node.dtype) else node[...]
-        shown = {name: text for name, text in attributes(node).items() if name in ("units", "long_name")}
-        fill = node.attrs.get("_FillValue")
+        fill, values = node.attrs.get("_FillValue"), (node.asstr() if h5py.check_string_dtype(node.dtype) else node)[...]
         if "flag_meanings" in node.attrs:
             words = numpy.array(node.attrs["flag_meanings"].decode().split(), dtype=object)
             values = numpy.asarray(words[numpy.searchsorted(node.attrs["flag_values"], values)], dtype=object)
         elif values.dtype.kind == "i" and fill is not None and (values == fill).any():
             values = numpy.where(values == fill, numpy.nan, values)
-        return dims, values, shown
+        return dims, values, attributes(node)
 
     try:
         h5 = h5py.File(file, "r", locking=False)
-    except OSError:
-        raise Error(f"{file} is not a results file; stance run makes one", file) from None
+    except OSError as error:
+        raise Error(f"{file} is not a results file, which stance run makes: {error}", file) from None
     with h5:
         data, coordinates = {}, {}
         for name, node in h5[group].items():
             if isinstance(node, h5py.Dataset) and name != "checksum" and "CLASS" not in node.attrs:
-                scales = {posixpath.basename(dimension[0].name): dimension[0] for dimension in node.dims}
+                scales = {dimension[0].name.rpartition("/")[2]: dimension[0] for dimension in node.dims}
                 # Paths are axes, what moves along with them, and factors of a sample.
                 (coordinates if "." in name else data)[name] = variable(list(scales), node)
                 coordinates.update({dim: variable([dim], scale) for dim, scale in scales.items()
@@ -78,16 +74,44 @@ def read(file: str, group: str = "/") -> xarray.Dataset:
     return dataset
 
 
+class Picture:
+    """What a command draws, as a notebook shows it: pictures by their names, such as map and settle_time, of which
+    picture["map"] is one; svg: text of the first."""
+
+    def __init__(self, draw: Callable[..., str], only: Optional[str] = None):
+        """draw(words ...) calls the command with these, too, and returns the names of files that it prints."""
+        self._draw = (lambda *words: draw("--picture", only, *words)) if only else draw
+        with tempfile.TemporaryDirectory() as folder:
+            files = map(pathlib.Path, self._draw("-o", folder, "--format", "svg").splitlines())
+            self._svg = {f.stem.rpartition("-")[2]: f.read_text("utf-8") for f in files if f.suffix == ".svg"}
+        self.names, self.svg = list(self._svg), next(iter(self._svg.values()))
+
+    def __getitem__(self, name: str) -> Picture:
+        if name not in self._svg:
+            raise KeyError(f"no picture {name!r}; there are {', '.join(self.names)}")
+        return Picture(self._draw, name)
+
+    def save(self, path: File, **style: Any) -> None:
+        """Draws it into a file, whose ending says what it is (pdf, svg, png; of a replay gif: a film), or all into a
+        folder. style: options of the command, such as for_="column", size="88x60"."""
+        self._draw("-o", name_of(path, there=False), *options(style))
+
+    def _repr_svg_(self) -> str:
+        return self.svg
+
+    def __repr__(self) -> str:
+        return f"<stance picture: {', '.join(self.names)}>"
+
+
 class File_:
-    """A file of the program's. data: an xarray Dataset of all that it holds, read once into memory; file.NAME and
-    file["NAME"] are its variables."""
+    """A file of the program's; file.NAME and file["NAME"] are variables of its data."""
 
     def __init__(self, file: File):
         self.file = name_of(file)
 
     @functools.cached_property
     def data(self) -> xarray.Dataset:
-        """Everything, over the dimensions that its attribute `axes` names, the last one fastest."""
+        """All of it, read once into memory."""
         return read(self.file)
 
     @property
@@ -96,7 +120,7 @@ class File_:
         return scenarios.Scenario(text=self.data.attrs["scenario"], name=pathlib.Path(self.file).stem)
 
     def summary(self, **given: Any) -> Any:
-        """What came out: a dict, or with frame=True a data frame (`stance summary -h` has keys and columns)."""
+        """What came out: a dict, or with frame=True a data frame (keys and columns: `stance summary -h`)."""
         return answer(call, "summary", given, self.file)
 
     def plot(self, answer: Optional[str] = None, **given: Any) -> Picture:  # pylint: disable=redefined-outer-name
@@ -106,11 +130,10 @@ class File_:
     def view(self, **given: Any) -> Any:
         """Makes a page for the browser beside the file (`stance view -h`): a frame in a notebook, else its path."""
         page = call("view", self.file, *options(given)).partition("\n")[0]
-        try:
+        with contextlib.suppress(ImportError):
             from IPython.display import IFrame  # pylint: disable=import-outside-toplevel
-        except ImportError:
-            return page
-        return IFrame(os.path.relpath(page), "100%", 700)
+            return IFrame(os.path.relpath(page), "100%", 700)
+        return page
 
     def __getitem__(self, name: str) -> xarray.DataArray:
         if name not in self.data.variables:
@@ -171,11 +194,11 @@ class Results(File_):
         if not first <= case < first + self.status.size:
             raise IndexError(f"the cases of {self.file} are {first} ... {first + self.status.size - 1}")
         with h5py.File(self.file, "r", locking=False) as h5:
-            recorded = "trajectory" in h5 and case in h5["trajectory/case"][...]
             texts = [*(h5["history/scenario"].asstr()[...] if "history" in h5 else ()), self.data.attrs["scenario"]]
-        number = int(self.scenario_number.values.flat[case]) if len(texts) > 1 else 0
+            recorded = "trajectory" in h5 and case in h5["trajectory/case"][...]
+        number = int(self.scenario_number.values.flat[case - first]) if len(texts) > 1 else 0
         with tempfile.TemporaryDirectory() as folder:
-            file = self.file if recorded else os.path.join(folder, "case.h5")
+            file = self.file if recorded else folder + "/case.h5"
             if not recorded:
                 scenarios.Scenario(text=texts[number]).run(output=file, only=case, trace=True)
             return read(file, "trajectory").sel(case=case).dropna("time", how="all", subset=["position"])
@@ -187,8 +210,7 @@ class Search(File_):
     @property
     def best(self) -> scenarios.Scenario:
         """The scenario with the best candidate, NAME-best.yaml beside the file."""
-        stem = os.path.splitext(self.file)[0]
-        return scenarios.scenario((stem[:-7] if stem.endswith("-search") else stem) + "-best.yaml")
+        return scenarios.scenario(self.file.removesuffix(".h5").removesuffix("-search") + "-best.yaml")
 
     @property
     def convergence(self) -> pandas.DataFrame:
