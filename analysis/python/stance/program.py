@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import contextlib
 import functools
+import itertools
 import json
 import operator
 import os
@@ -12,6 +13,7 @@ import shutil
 import signal
 import subprocess
 import tempfile
+import traceback
 import warnings
 from typing import Any, Callable, Iterable, Mapping, Optional, Union
 
@@ -23,9 +25,9 @@ MPI = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "PM
 
 
 class Error(Exception):
-    """What `stance` did not do, and why. message: the program's, a line for each mistake; file, line, column (from 1):
-    where the first one of a scenario is, else None; code: exit code (2 bad use or scenario, 3 input or output, 4 stopped),
-    None where it did not run. (A file that is missing is Python's FileNotFoundError.)"""
+    """What `stance` did not do. message: why, a line a mistake; file, line, column (from 1): of a scenario's first one,
+    else None; code: exit code (2 bad use or scenario, 3 input or output, 4 stopped), None where it did not run.
+    (A file that is missing is Python's FileNotFoundError.)"""
 
     def __init__(self, message: str, file: Optional[str] = None, line: Optional[int] = None,
                  column: Optional[int] = None, code: Optional[int] = None):
@@ -105,9 +107,8 @@ def as_yaml(value: Any) -> str:
 
 
 def options(given: Mapping[str, Any]) -> list[str]:
-    """Keyword arguments as the program's options: time_limit="55m" is --time-limit 55m, for_="page" --for page; what
-    is True stands alone; a list repeats the option, a dict does with NAME=VALUE; (1, 2) is a range, with None for no
-    end."""
+    """Keyword arguments as the program's options: time_limit="55m" is --time-limit 55m, for_="page" --for page; True
+    stands alone; a list repeats it, a dict does with NAME=VALUE; (1, 2) is a range, with None for no end."""
     def word(value: Any) -> str:
         if isinstance(value, tuple):
             return "..".join("" if end is None else word(end) for end in value)
@@ -156,7 +157,8 @@ def call(command: str, *words: str, ranks: int = 1, codes: Iterable[int] = (0,),
         printed, said = (file.seek(0) or file.read().decode(errors="replace") for file in (out, err))
     if process.returncode not in codes:
         raise of_program(command, process.returncode, said)
-    for line in said.splitlines():
-        if "warning: " in line:
-            warnings.warn(line.partition("warning: ")[2], stacklevel=3)
+    callers = (frame.f_globals["__name__"].partition(".")[0] for frame, _ in traceback.walk_stack(None))
+    level = 2 + sum(1 for _ in itertools.takewhile("stance".__eq__, callers))
+    for told in re.findall("warning: (.*)", said):
+        warnings.warn(told, stacklevel=level)
     return printed

@@ -46,12 +46,12 @@ def read(file: str, group: str = "/") -> xarray.Dataset:
                 for name, value in node.attrs.items() if node.name == "/" or name in ("units", "long_name")}
 
     def variable(dims: list[str], node: h5py.Dataset) -> tuple[list[str], Any, dict[str, Any]]:
-        fill, values = node.attrs.get("_FillValue"), (node.asstr() if h5py.check_string_dtype(node.dtype) else node)[...]
+        values = (node.asstr() if h5py.check_string_dtype(node.dtype) else node)[...]
         if "flag_meanings" in node.attrs:
             words = numpy.array(node.attrs["flag_meanings"].decode().split(), dtype=object)
             values = numpy.asarray(words[numpy.searchsorted(node.attrs["flag_values"], values)], dtype=object)
-        elif values.dtype.kind == "i" and fill is not None and (values == fill).any():
-            values = numpy.where(values == fill, numpy.nan, values)
+        elif values.dtype == numpy.int64 and (missing := values == -2**63).any():  # not 0, the _FillValue of old files
+            values = numpy.where(missing, numpy.nan, values)
         return dims, values, attributes(node)
 
     try:
@@ -214,7 +214,6 @@ class Search(File_):
 
     @property
     def convergence(self) -> pandas.DataFrame:
-        """A row for each generation: stage, starts, candidates until then, step of the distribution, the stage's best
-        candidate so far and its objective."""
+        """A row for each generation: the stage's best candidate so far and its objective, step of the distribution."""
         frame = self.data[["stage", "starts", "candidates", "step", "best"]].to_dataframe()
         return frame.assign(objective=self.objective.values[frame["best"].astype(int)])

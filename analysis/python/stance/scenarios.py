@@ -107,12 +107,11 @@ class Scenario:
     def ranges(self, **given: Any) -> dict[str, Any]:
         """Ranges of starts that show the domain (`stance ranges -h`); "grid" is what sweep.grid takes."""
         found = json.loads(self._call("ranges", "--json", *options(given)))
-        which = "whole" if found["resolved"] else "close"
-        return {**found, "grid": [{"paths": line["paths"], **line[which]} for line in found["axes"]]}
+        kind = "whole" if found["resolved"] else "close"
+        return {**found, "grid": [{"paths": line["paths"], **line[kind]} for line in found["axes"]]}
 
     def gait(self, **given: Any) -> Any:
-        """A walker's cycle with its multipliers (`stance gait -h`); along={path: (from, to)} follows it, frame=True
-        then gives a data frame."""
+        """A walker's cycle, with its multipliers; along={path: (from, to)} follows it (`stance gait -h`)."""
         return results.answer(self._call, "gait", given)
 
     def plot_model(self, **given: Any) -> results.Picture:
@@ -142,19 +141,19 @@ class Scenario:
     def _compute(self, command: str, ending: str, ranks: int, output: Optional[File], progress: Progress,
                  given: Mapping[str, Any]) -> str:
         if output is None:  # as the program names it
-            parts = [f"{part}{given[name]}" for name, part in (("only", "-case"), ("extend", "-"))
-                     if given.get(name) is not None]
+            parts = [part + str(given[option]).replace("/", "-of-") for option, part in
+                     (("only", "-case"), ("extend", "-"), ("shard", ".shard-")) if given.get(option) is not None]
             os.makedirs("results", exist_ok=True)
             output = os.path.join("results", "".join([self.name, *parts, ending]))
         file = name_of(output, there=False)
-        watch = functools.partial(tell, file, bar if progress is True else progress) if progress else None
+        old = os.stat(file).st_mtime_ns if given.get("force") and os.path.exists(file) else None
+        watch = functools.partial(tell, file, old, bar if progress is True else progress) if progress else None
         self._call(command, "-o", file, *options(given), ranks=ranks, watch=watch,
                    codes=(0, 1, 4) if given.get("time_limit") else (0, 1))
         return file
 
     def __repr__(self) -> str:
-        sets = "".join(f", {path}={as_yaml(value)}" for path, value in self._sets.items())
-        return f"<stance scenario {self.file or self.name}{sets}>"
+        return f"<stance scenario {self.file or self.name} {as_yaml(self._sets)}>"
 
 
 def bar(done: int, total: int) -> None:
@@ -162,11 +161,11 @@ def bar(done: int, total: int) -> None:
     print(f"\r{'#' * (40 * done // total):.<40} {done} of {total}", end="", file=sys.stderr, flush=True)
 
 
-def tell(file: str, say: Callable[[int, int], None], ended: bool) -> None:
-    """Says what `stance status` knows of a run or a search."""
-    with contextlib.suppress(Error):  # there is no file yet
+def tell(file: str, old: Optional[int], say: Callable[[int, int], None], ended: bool) -> None:
+    """Says what `stance status` knows of a run or a search. old: when a file that is replaced was written last."""
+    with contextlib.suppress(Error, FileNotFoundError):  # there is none yet
         now = json.loads(call("status", "--json", file))
-        if ended or now["running"]:
+        if ended or now["running"] and os.stat(file).st_mtime_ns != old:
             say(*(now[n] for n in (("done", "cases") if "cases" in now else ("generations", "most_generations"))))
         if ended and say is bar:
             print(file=sys.stderr)
@@ -180,7 +179,6 @@ def steps(path: str) -> list[Union[str, int]]:
 @functools.lru_cache(None)
 def known(path: str) -> None:
     """PathError, which names the nearest, where the format has no such path."""
-    steps(path)
     try:
         call("describe", re.sub(r"(\[\d+\])+$", "", path))
     except OptionError as error:
