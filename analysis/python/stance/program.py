@@ -122,7 +122,7 @@ def options(given: Mapping[str, Any]) -> list[str]:
             value = [f"{key}={as_yaml(v) if name == 'set' else word(v)}" for key, v in value.items()]
         several = [word(v) for v in value] if isinstance(value, list) else [word(value)] if value is not None else []
         several = [",".join(several)] if several and name in ("near", "answers", "format") else several
-        option = "--" + name.rstrip("_").replace("_", "-")
+        option = "-o" if name == "output" else "--" + name.rstrip("_").replace("_", "-")
         words += [option] if value is True else [w for v in several for w in (option, v)] if value is not False else []
     return words
 
@@ -157,7 +157,7 @@ def call(command: str, *words: str, ranks: int = 1, codes: Iterable[int] = (0,),
         printed, said = (file.seek(0) or file.read().decode(errors="replace") for file in (out, err))
     if process.returncode not in codes:
         raise of_program(command, process.returncode, said)
-    callers = (frame.f_globals["__name__"].partition(".")[0] for frame, _ in traceback.walk_stack(None))
+    callers = (frame.f_globals.get("__name__", "").partition(".")[0] for frame, _ in traceback.walk_stack(None))
     level = 2 + sum(1 for _ in itertools.takewhile("stance".__eq__, callers))
     for told in re.findall("warning: (.*)", said):
         warnings.warn(told, stacklevel=level)

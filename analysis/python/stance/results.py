@@ -55,7 +55,7 @@ def read(file: str, group: str = "/") -> xarray.Dataset:
         return dims, values, attributes(node)
 
     try:
-        h5 = h5py.File(file, "r", locking=False)
+        h5 = h5py.File(file)
     except OSError as error:
         raise Error(f"{file} is not a results file, which stance run makes: {error}", file) from None
     with h5:
@@ -193,7 +193,7 @@ class Results(File_):
         case = first if case is None else operator.index(case)
         if not first <= case < first + self.status.size:
             raise IndexError(f"the cases of {self.file} are {first} ... {first + self.status.size - 1}")
-        with h5py.File(self.file, "r", locking=False) as h5:
+        with h5py.File(self.file) as h5:
             texts = [*(h5["history/scenario"].asstr()[...] if "history" in h5 else ()), self.data.attrs["scenario"]]
             recorded = "trajectory" in h5 and case in h5["trajectory/case"][...]
         number = int(self.scenario_number.values.flat[case - first]) if len(texts) > 1 else 0

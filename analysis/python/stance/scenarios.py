@@ -40,10 +40,10 @@ class Scenario:
 
     def __getitem__(self, path: str) -> Any:
         try:
-            if path in self._sets:
-                return self._sets[path]
             return functools.reduce(operator.getitem, steps(path), load(self.text))
         except (LookupError, TypeError):
+            if path in self._sets:
+                return self._sets[path]
             known(path)
             raise PathError(f"{path} is not in the scenario (stance describe {path} has its default)") from None
 
