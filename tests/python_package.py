@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """The Python package: `import stance`, see analysis/python. Where this is called stands own.yaml. Speaks TAP.
 
-    python_package.py page PAGE     every line of code of a page, in order, each block a check
+    python_package.py page PAGE     every line of code of a page, in order, each block a check, and that of the READMEs
     python_package.py package       types, names, errors, words, ranks, Ctrl-C
     python_package.py notebook PAGE its first block in a notebook, and the picture shown
 """
@@ -26,6 +26,7 @@ from tap import PATIENCE, tap
 
 import stance
 
+TOP = pathlib.Path(__file__).resolve().parent.parent
 TWO = [stance.axis("initial.offset.body", -0.3, 0.2, 6), stance.axis("initial.offset.vbody", -1, 0.6, 9)]
 
 
@@ -63,7 +64,10 @@ def of_page(page):
         assert names["picture"].names == ["map", "settle_time", "curve"] and names["seen"][-1] == 1
         assert names["swing"].outcome.dims == ("initial.offset.rod", "initial.offset.vrod")
         assert names["swing"].share() > 0
-    return [check(*each) for each in enumerate(blocks(page), 1)] + [what_it_tells]
+    others = [block for name in ("README.md", "runner/README.md") for block in blocks(TOP / name)
+              if re.match(r"import (stance|h5py)\n|study = stance\.", block)]
+    assert len(others) == 3, others
+    return [check(*each) for each in enumerate(blocks(page) + others, 1)] + [what_it_tells]
 
 
 def in_notebook(page):
@@ -185,11 +189,11 @@ def keys_are_read_and_set():
     assert words["ground.friction"] == 0.1 and words["ground.law"] == "off" and words["ground.slope"] == 0.1
     assert "# a comment" in words.text and words.set(title="a: b")["title"] == "a: b"
     robot = own()
-    other = robot.copy().set({"robot.bodies.foot.centre[1]": numpy.float32(0.5), "sweep.grid[1].count": 2})
+    other = robot.copy().set({"robot.bodies.foot.centre[1]": numpy.float32(0.5), "sweep.grid[1].count": 5})
     assert other["robot.bodies.foot.centre"] == [0.04, 0.5] and robot["robot.bodies.foot.centre[1]"] == 0.03
-    assert other["sweep.grid"][1]["count"] == 2 and robot["sweep.grid[1].count"] == 9 and other.check()["cases"] == 12
+    assert other["sweep.grid"][1]["count"] == 5 and robot["sweep.grid[1].count"] == 9 and other.check()["cases"] == 30
     saved = other.save("saved ü.yaml")
-    assert saved.check()["cases"] == 12 and saved["robot.bodies.foot.centre[1]"] == 0.5
+    assert saved.check()["cases"] == 30 and saved["robot.bodies.foot.centre[1]"] == 0.5
     assert other.set({"sweep": {}}).check()["cases"] == 1 and copy.copy(other)["ground.friction"] == 0.7
     assert "own.yaml" in repr(other) and pickle.loads(pickle.dumps(other)).check()["cases"] == 1
 
@@ -239,6 +243,22 @@ def mistakes_have_line_and_column():
     assert error.line is None
 
 
+def a_run_is_stopped_without_progress():
+    def interrupt(*_):
+        raise KeyboardInterrupt
+    before = signal.signal(signal.SIGALRM, interrupt)
+    study = own(**{"sweep.grid": [dict(line, count=801) for line in TWO]})
+    try:
+        signal.setitimer(signal.ITIMER_REAL, 1.5)
+        fails(KeyboardInterrupt, lambda: study.run(output="quiet.h5"))
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, before)
+    if os.path.exists("quiet.h5"):  # it was not as early as that
+        status = subprocess.run([stance.program(), "status", "--json", "quiet.h5"], capture_output=True, check=True).stdout
+        assert b'"running": false' in status, status
+
+
 def two_ranks_are_one():
     seen = []
     two = own().run(output="two.h5", ranks=2, progress=lambda done, total: seen.append((done, total)))
@@ -253,28 +273,38 @@ def results_go_where_the_program_puts_them():
     assert (own().run(shard="2/3").status == "pending").sum() == 36
 
 
-def stopped_and_resumed(ranks):
-    """Ctrl-C in mid-run: what has ended is kept, and the rest computed later."""
-    many = [stance.axis("initial.offset.body", -0.3, 0.2, 400), stance.axis("initial.offset.vbody", -1, 0.6, 400)]
-    study = own(**{"sweep.grid": many})
-    name = f"stopped{ranks}.h5"
+class Enough(Exception):
+    """Raised by who is told of progress."""
 
-    def stop_once(done, _total):
-        if done > 0 and not stopped:
-            stopped.append(done)
+
+def stopped_and_resumed(ranks):
+    """Ctrl-C in mid-run, and an exception of who is told of it: what has ended is kept, the rest computed later."""
+    study, name, last = own(**{"sweep.grid": [dict(line, count=401) for line in TWO]}), f"stopped{ranks}.h5", []
+
+    def interrupt(done, total):
+        assert total == 401**2
+        if done > 0 and not last:
+            last.append(done)
             os.kill(os.getpid(), signal.SIGINT)
             time.sleep(1)
-    stopped = []
-    fails(KeyboardInterrupt, lambda: study.run(output=name, ranks=ranks, progress=stop_once))
-    part = stance.open(name)
-    pending = int((part.status == "pending").sum())
-    assert 0 < pending < 160000 - stopped[0] + 1, (pending, stopped)
-    assert numpy.isnan(part.settle_time.values[part.status == "pending"]).all() and numpy.isnan(part.steps).any()
-    assert part.summary()["cases"]["pending"] == pending
-    going_on = study.run(output=name, ranks=ranks, resume=True, time_limit="1s")
-    assert int((going_on.status == "pending").sum()) < pending
-    first = own(**{"sweep.grid": many}).run(output="first.h5", force=True, only=0)
-    assert first.end_time.item() == going_on.end_time.values.flat[0] or going_on.status.values.flat[0] == "pending"
+
+    def enough(done, _total):
+        if done > last[0] + 100:
+            raise Enough
+
+    def pending():
+        part = stance.open(name)
+        waits = part.status.values == "pending"
+        assert numpy.isnan(part.settle_time.values[waits]).all() and numpy.isnan(part.steps.values[waits]).all()
+        assert part.summary()["cases"]["pending"] == waits.sum()
+        return waits.sum()
+    fails(KeyboardInterrupt, lambda: study.run(output=name, ranks=ranks, progress=interrupt))
+    first = pending()
+    assert 0 < first <= 401**2 - last[0], (first, last)
+    last[0] = 401**2 - first
+    fails(Enough, lambda: study.run(output=name, ranks=ranks, progress=enough, resume=True))
+    assert 0 < pending() < first
+    assert study.run(output=name, ranks=ranks, resume=True, time_limit="1s").status.shape == (401, 401)
 
 
 def one_rank_is_stopped_and_resumed():
@@ -338,6 +368,7 @@ PACKAGE = [a_dataset_has_axes_units_and_words, numbers_are_those_of_other_reader
            a_dict_is_a_scenario, keys_are_read_and_set, wrong_names_are_told, wrong_types_are_told,
            missing_and_other_files_are_told, mistakes_have_line_and_column, two_ranks_are_one,
            results_go_where_the_program_puts_them, one_rank_is_stopped_and_resumed, two_ranks_are_stopped_and_resumed,
+           a_run_is_stopped_without_progress,
            pictures_are_svg, a_page_is_made, warnings_are_pythons, the_program_is_found]
 
 if __name__ == "__main__":

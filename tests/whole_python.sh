@@ -14,11 +14,11 @@ here() { # folder: a fresh one, with the README's robot
 }
 checks() { # what python_package.py tells, counted on here
     "$python" "$tests/python_package.py" "$@" >log 2>&1
-    while read -r first second _ rest; do
-        case $first in
-        ok) echo "ok $((++count)) - ${rest#- }" ;;
-        not) echo "not ok $((++count)) - ${rest#* - }" && failed=$((failed + 1)) ;;
-        '#') echo "# $second $_ $rest" ;;
+    while read -r line; do
+        case $line in
+        "ok "*) echo "ok $((++count)) - ${line#* - }" ;;
+        "not ok "*) echo "not ok $((++count)) - ${line#* - }" && failed=$((failed + 1)) ;;
+        "# "*) echo "$line" ;;
         esac
     done <log
     grep -qE '^1\.\.[0-9]+$' log
@@ -64,7 +64,7 @@ import stance
 assert stance.__file__.startswith(sys.argv[1]) and stance.program() == sys.argv[1] + "/bin/stance", stance.program()
 assert stance.scenario("own.yaml").check()["cases"] == 1' "$scratch/dest ü$prefix"
     expect "make uninstall" 0 "${made[@]}" PREFIX=$prefix uninstall
-    [ -z "$(find "$scratch/dest ü" -name '*.py*' -o -name stance)" ]
+    [ -z "$(find "$scratch/dest ü" -name '*.py*' -o -name stance 2>/dev/null)" ]
     result $? "... leaves nothing of it, nor what Python made of it"
 done
 echo "1..$count"
