@@ -111,7 +111,7 @@ class File_:
 
     @functools.cached_property
     def data(self) -> xarray.Dataset:
-        """All of it, read once into memory."""
+        """Axes and answers, read once into memory."""
         return read(self.file)
 
     @property
