@@ -60,7 +60,7 @@ def of_program(command: str, code: int, said: str) -> Exception:
     lines = [line for line in dict.fromkeys(re.split(r"[\r\n]+", said))
              if line and not re.match(r"stance: compiling|.*\bwarning: ", line)]
     place = re.search(r"(?m)^(.+?):(\d+):(\d+): ", "\n".join(lines))
-    if place or code == 2 and not any(re.match("stance[: ]", line) for line in lines):  # FILE: or --set PATH=VALUE:
+    if place or code == 2 and lines and not re.match("stance[: ]", lines[0]):  # FILE: or --set PATH=VALUE:
         where = (place[1], int(place[2]), int(place[3])) if place else (None,) * 3
         return ScenarioError("\n".join(lines), *where, code)
     message = "\n".join(re.sub(r"^stance( \w+)*: ", "", line) for line in lines)
