@@ -518,7 +518,7 @@ sanitize: golden-memory
 
 STAGE = $(BUILD)/stage
 install: $(PROGRAM) $(archives)
-	@bash runner/install/stage.sh $(PROGRAM) $(BUILD) $(STAGE) '$(PREFIX)'
+	@bash runner/install/stage.sh $(PROGRAM) $(BUILD) $(STAGE) '$(PREFIX)' '$(PYTHON)'
 	@bash runner/install/put.sh install $(STAGE) '$(DESTDIR)$(PREFIX)'
 uninstall:
 	@bash runner/install/put.sh uninstall '$(DESTDIR)$(PREFIX)'
@@ -549,6 +549,6 @@ help:
 	@echo 'make lint       format, clang-tidy, cppcheck, symbol prefixes, include rules'
 	@echo 'make sanitize   the tests under the address and undefined-behaviour sanitizers'
 	@echo 'make fuzz       damaged scenarios and results files, FUZZ_SECONDS=30 long or FUZZ_RUNS= many'
-	@echo 'make install    program, library, manual pages, completion, schema, scenarios: PREFIX=/usr/local DESTDIR='
+	@echo 'make install    program, library, Python package, manual pages, completion, schema, scenarios: PREFIX=/usr/local DESTDIR='
 	@echo 'make uninstall  removes what install puts there'
 	@echo 'make MPI=0      a build for one rank, with serial HDF5 and without MPI'

@@ -37,6 +37,7 @@ analysis/plot: $numbers analysis/draw analysis/optimise analysis/summary analysi
 analysis/bench: $numbers analysis/draw analysis/optimise analysis/summary analysis/basin analysis/sensitivity analysis/plot
 analysis/view: $numbers analysis/draw analysis/optimise analysis/summary analysis/basin analysis/sensitivity analysis/plot analysis/bench
 analysis/view/wasm: $runner
+analysis/python/stance: $numbers analysis/draw analysis/optimise analysis/summary analysis/basin analysis/sensitivity analysis/compare analysis/gait analysis/plot analysis/view
 runner: $runner"
 if (($# > 0)); then
     awk -v wanted="$*" '{ name = $1; sub(/:$/, "", name); $1 = ""; may[name] = $0 }

@@ -26,7 +26,10 @@ else
     root=$2
     [ -e "$root/$list" ] || { echo "nothing is installed in $root" >&2 && exit 1; }
     record=$(cat "$root/$list")
-    grep -v '/$' <<<"$record" | while read -r f; do rm -f "$root/$f"; done
+    grep -v '/$' <<<"$record" | while read -r f; do
+        rm -f "$root/$f"
+        case $f in *.py) rm -rf "$root/$(dirname "$f")/__pycache__" ;; esac # what Python made of it
+    done
     # The deepest first; what holds something else stays.
     grep '/$' <<<"$record" | grep -vx './' | sort -ru | while read -r f; do rmdir --ignore-fail-on-non-empty "$root/$f" 2>/dev/null || true; done
     for ((above = $(grep -cx './' <<<"$record"); above > 0; above--)); do

@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # What `make install` installs, put below a folder as it is to stand below PREFIX. Manual pages, completion
 # and schema are made here, of what the program says.
-# Usage: stage.sh STANCE BUILD FOLDER PREFIX
+# Usage: stage.sh STANCE BUILD FOLDER PREFIX PYTHON
 set -eu
-stance=$1 build=$2 folder=$3 prefix=$4 here=$(dirname "$0")
+stance=$1 build=$2 folder=$3 prefix=$4 python=$5 here=$(dirname "$0")
 # What a program needs beside the archives of the engine and of control design.
 libs="-llapacke -lslicot -llapack -lblas -lsundials_arkode -lsundials_nvecserial -lm"
 put() { # mode, where, files ...
@@ -20,6 +20,10 @@ put 644 share/doc/stance LICENSE README.md CHANGELOG.md CITATION.cff
 for f in $(cd scenarios && find . -name '*.yaml' -o -name '*.sh' -o -name '*.c'); do
     put 644 "share/stance/scenarios/$(dirname "$f")" "scenarios/$f"
 done
+# Where this Python looks below PREFIX, if it does; else where PYTHONPATH would say.
+packages=$("$python" -I -c 'import site, sys; root = sys.argv[1] + "/lib/python"
+print(*(p[len(root) - 10:] for p in site.getsitepackages() if p.startswith(root)), sep="\n")' "$prefix" 2>/dev/null | head -n 1)
+put 644 "${packages:-lib/python3/dist-packages}/stance" analysis/python/stance/*.py
 
 mkdir -p "$folder"/lib/pkgconfig "$folder"/share/{man/man{1,5},bash-completion/completions,zsh/site-functions,fish/vendor_completions.d}
 cat >"$folder/lib/pkgconfig/stance.pc" <<END
