@@ -25,9 +25,8 @@ MPI = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "PM
 
 
 class Error(Exception):
-    """What `stance` did not do. message: why, a line a mistake; file, line, column (from 1): of a scenario's first one,
-    else None; code: exit code (2 bad use or scenario, 3 input or output, 4 stopped), None where it did not run.
-    (A file that is missing is Python's FileNotFoundError.)"""
+    """What `stance` did not do. message: why, a line a mistake; file, line, column (from 1): of a scenario's first one;
+    code: exit code (2 bad use or scenario, 3 input or output, 4 stopped); None: there is none."""
 
     def __init__(self, message: str, file: Optional[str] = None, line: Optional[int] = None,
                  column: Optional[int] = None, code: Optional[int] = None):
@@ -73,13 +72,13 @@ def of_program(command: str, code: int, said: str) -> Exception:
 
 
 def program() -> str:
-    """Its file: $STANCE, else bin/stance above the package (as `make install` and checkouts have it), else on PATH."""
+    """Its file: $STANCE, else bin/stance above the package, else on PATH."""
     asked = os.environ.get("STANCE")
     above = (str(folder / "bin/stance") for folder in pathlib.Path(__file__).resolve().parents)
     found = shutil.which(asked) if asked else next(filter(None, map(shutil.which, above)), shutil.which("stance"))
     if not found:
         what = f"$STANCE names {asked}, which is no program" if asked else "the program `stance` is not on PATH"
-        raise Error(what + ": `make install` puts it and this package in one place, or set STANCE to bin/stance")
+        raise Error(what + ": `make install` puts both in one place, or set STANCE to bin/stance")
     same_version(found)
     return found
 
@@ -129,13 +128,13 @@ def options(given: Mapping[str, Any]) -> list[str]:
 
 def call(command: str, *words: str, ranks: int = 1, codes: Iterable[int] = (0,),
          watch: Optional[Callable[[bool], None]] = None) -> str:
-    """What the command prints. Its warnings become Python's; an exit code that is not among `codes` an exception.
-    `watch` is called twice a second, and when it has ended (True). Ctrl-C (KeyboardInterrupt) stops it."""
+    """What the command prints. Warnings become Python's, an exit code that is not among `codes` an exception; Ctrl-C
+    stops it. `watch` is called twice a second, and with True at the end."""
     arguments = [program(), *command.split(), *words]
     if operator.index(ranks) != 1:
         if ranks < 1 or not shutil.which("mpirun"):
             raise OptionError("mpirun is not on PATH: ranks=1 does without" if ranks > 1 else "ranks is 1 at least")
-        arguments = ["mpirun", "-n", str(ranks), *arguments]
+        arguments[:0] = ["mpirun", "-n", str(ranks)]
     # In a session of its own: a terminal's Ctrl-C comes from here alone, and so that mpirun passes it on.
     with tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as err:
         with subprocess.Popen(arguments, stdin=subprocess.DEVNULL, stdout=out, stderr=err,

@@ -99,9 +99,6 @@ class Picture:
     def _repr_svg_(self) -> str:
         return self.svg
 
-    def __repr__(self) -> str:
-        return f"<stance picture: {', '.join(self.names)}>"
-
 
 class File_:
     """A file of the program's; file.NAME and file["NAME"] are variables of its data."""
@@ -186,9 +183,8 @@ class Results(File_):
         return Picture(lambda *words: call("replay", self.file, *options({"case": case, **given}), *words))
 
     def trajectory(self, case: Optional[int] = None) -> xarray.Dataset:
-        """One case until its end, over `time` (s), from the file, or simulated again: position and velocity (time,
-        coordinate), torque (time, actuator), force (time, contact, component; N), gap (time, contact; m).
-        case: its flat index, which a file of one case has no need of; else IndexError."""
+        """One case, by its flat index, until its end, from the file or simulated again, over `time` (s): position and
+        velocity (time, coordinate), torque (time, actuator), force (time, contact, component; N), gap (m)."""
         first = int(self.data["case"][0]) if "case" in self.data else 0
         case = first if case is None else operator.index(case)
         if not first <= case < first + self.status.size:
@@ -215,5 +211,5 @@ class Search(File_):
     @property
     def convergence(self) -> pandas.DataFrame:
         """A row for each generation: the stage's best candidate so far and its objective, step of the distribution."""
-        frame = self.data[["stage", "starts", "candidates", "step", "best"]].to_dataframe()
-        return frame.assign(objective=self.objective.values[frame["best"].astype(int)])
+        of = self.data[["stage", "starts", "candidates", "step", "best"]].to_dataframe()
+        return of.assign(objective=self.objective.values[of["best"].astype(int)])

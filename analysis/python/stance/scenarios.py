@@ -18,10 +18,11 @@ from .program import Error, File, OptionError, PathError, as_yaml, call, name_of
 
 Progress = Union[bool, Callable[[int, int], None]]  # True, or called with numbers of cases, done and all
 
+
 def scenario(what: Union[File, Mapping[str, Any]], name: str = "scenario") -> Scenario:
     """A file, or a dict with the keys of `stance describe` (`stance: 1` may be left out) whose results go by `name`."""
     if isinstance(what, Mapping):
-        return Scenario(text=dump(json.loads(as_yaml({"stance": 1, **what}))), name=name)
+        return Scenario(text=dump(placed("", json.loads(as_yaml({"stance": 1, **what})))), name=name)
     return Scenario(file=name_of(what))
 
 
@@ -48,9 +49,10 @@ class Scenario:
             raise PathError(f"{path} is not in the scenario (stance describe {path} has its default)") from None
 
     def __setitem__(self, path: str, value: Any) -> None:
-        known(path)
+        known(path, path.startswith("controller.") and "program" in self.text)  # a law in C has keys of its own
         others = {p: v for p, v in self._sets.items() if not (p + ".").replace("[", ".").startswith(path + ".")}
-        self._sets = {**others, path: json.loads(as_yaml(value))}
+        value = json.loads(as_yaml(value))
+        self._sets = {**others, path: value if self.file else placed(path, value)}
 
     def set(self, values: Mapping[str, Any] = (), **more: Any) -> Scenario:
         """Sets several, {path: value} or title="...", and returns the scenario itself."""
@@ -60,7 +62,7 @@ class Scenario:
 
     def copy(self) -> Scenario:
         """Another one, to be set otherwise."""
-        return copy.copy(self)  # what is set is no dict that changes
+        return copy.copy(self)
 
     @property
     def text(self) -> str:
@@ -148,16 +150,22 @@ class Scenario:
         file = name_of(output, there=False)
         old = os.stat(file).st_mtime_ns if given.get("force") and os.path.exists(file) else None
         watch = functools.partial(tell, file, old, bar if progress is True else progress) if progress else None
-        self._call(command, "-o", file, *options(given), ranks=ranks, watch=watch,
-                   codes=(0, 1, 4) if given.get("time_limit") else (0, 1))
+        codes = (0, 1, 4) if given.get("time_limit") else (0, 1)
+        self._call(command, "-o", file, *options(given), ranks=ranks, watch=watch, codes=codes)
         return file
 
     def __repr__(self) -> str:
         return f"<stance scenario {self.file or self.name} {as_yaml(self._sets)}>"
 
 
+def placed(path: str, value: Any) -> Any:
+    """A value where there is no file: those that a law in C is of are beside the caller."""
+    if isinstance(value, dict):
+        return {key: placed(f"{path}.{key}" if path else key, one) for key, one in value.items()}
+    return os.path.abspath(value) if path in ("controller.file", "controller.data") and isinstance(value, str) else value
+
+
 def bar(done: int, total: int) -> None:
-    """A line on standard error, written over."""
     print(f"\r{'#' * (40 * done // total):.<40} {done} of {total}", end="", file=sys.stderr, flush=True)
 
 
@@ -171,16 +179,15 @@ def tell(file: str, old: Optional[int], say: Callable[[int, int], None], ended: 
             print(file=sys.stderr)
 
 
-def steps(path: str) -> list[Union[str, int]]:
-    """sweep.grid[0].count as ["sweep", "grid", 0, "count"]."""
+def steps(path: str) -> list[Union[str, int]]:  # of sweep.grid[0].count: ["sweep", "grid", 0, "count"]
     return [int(step[1:-1]) if step[0] == "[" else step for step in re.findall(r"\[\d+\]|[^.\[\]]+", path)]
 
 
 @functools.lru_cache(None)
-def known(path: str) -> None:
-    """PathError, which names the nearest, where the format has no such path."""
+def known(path: str, other: bool = False) -> None:
+    """PathError, which names the nearest, where the format has no such path and there are no `other` ones."""
     try:
-        call("describe", re.sub(r"(\[\d+\])+$", "", path))
+        other or call("describe", re.sub(r"(\[\d+\])+$", "", path))
     except OptionError as error:
         raise PathError(error.message, code=error.code) from None
 
@@ -197,8 +204,7 @@ def load(text: str) -> Any:
     return yaml.load(text, loader)
 
 
-def dump(tree: Any) -> str:
-    """A tree as YAML; without PyYAML as JSON, which is YAML, too."""
+def dump(tree: Any) -> str:  # YAML; without PyYAML JSON, which is YAML, too
     with contextlib.suppress(ImportError):
         import yaml  # pylint: disable=import-outside-toplevel
         return yaml.safe_dump(tree, sort_keys=False, allow_unicode=True, default_flow_style=None, width=110)
