@@ -74,6 +74,7 @@ static const char *kind_text(const struct scenario_field *field, char *buffer, s
         [FIELD_FACTORS] = {"list of mappings", ""},
         [FIELD_VARIED] = {"one of: ", "; or a list of these and of mappings"},
         [FIELD_ENDS] = {"number, or list of numbers", ""},
+        [FIELD_DATA] = {"list of numbers, or the name of a file", ""},
         [FIELD_PATH] = {"path", ""},
         [FIELD_VALUES] = {"list of numbers, words or lists of these", ""},
     };
@@ -342,6 +343,9 @@ static json_t *type_schema(const struct schema *schema, const struct scenario_fi
                          list_schema(json_pack("{s:[o,o]}", "anyOf", words_schema(field),
                                                map_schema(schema, "optimise.vary[]")),
                                      0));
+    case FIELD_DATA:
+        return json_pack("{s:[{s:s},o]}", "anyOf", "type", "string",
+                         list_schema(json_pack("{s:s}", "type", "number"), 0));
     case FIELD_ENDS:
         return ends_schema();
     case FIELD_PATHS: {

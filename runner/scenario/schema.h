@@ -28,6 +28,7 @@ enum field_type {
     FIELD_FACTORS, /* the same, of sweep.sample */
     FIELD_VARIED,  /* a word, or a list of words and mappings: of optimise */
     FIELD_ENDS,    /* a number, or a list of as many as there are paths */
+    FIELD_DATA,    /* a list of numbers, or the name of a file */
     FIELD_PATH,    /* path of a field that may be swept */
     FIELD_PATHS,
     FIELD_VALUES, /* what an axis lists */

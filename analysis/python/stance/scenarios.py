@@ -49,7 +49,7 @@ class Scenario:
             raise PathError(f"{path} is not in the scenario (stance describe {path} has its default)") from None
 
     def __setitem__(self, path: str, value: Any) -> None:
-        known(path, path.startswith("controller.") and "program" in self.text)  # a law in C has keys of its own
+        known(path, str(path).startswith("controller.") and "program" in self.text)  # a law in C has keys of its own
         others = {p: v for p, v in self._sets.items() if not (p + ".").replace("[", ".").startswith(path + ".")}
         value = json.loads(as_yaml(value))
         self._sets = {**others, path: value if self.file else placed(path, value)}
@@ -162,7 +162,7 @@ def placed(path: str, value: Any) -> Any:
     """A value where there is no file: those that a law in C is of are beside the caller."""
     if isinstance(value, dict):
         return {key: placed(f"{path}.{key}" if path else key, one) for key, one in value.items()}
-    return os.path.abspath(value) if path in ("controller.file", "controller.data") and isinstance(value, str) else value
+    return os.path.abspath(value) if path in ("controller.file", "controller.data") and str(value) == value else value
 
 
 def bar(done: int, total: int) -> None:
