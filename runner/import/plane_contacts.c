@@ -356,10 +356,20 @@ static void note_robot(struct plane_tree *t)
             spatial_note(t->model, "the robot's bodies do not touch each other here");
 }
 
-/* Does what the file has stand on something? What it does not say is level ground at height 0, for
- * what is not held by the world. */
+static bool any_touches(const struct plane_tree *t)
+{
+    for (int k = 0; k < t->links; k++)
+        if (t->link[k].touches)
+            return true;
+    return t->wishes->soles > 0;
+}
+
+/* Is there ground to touch? Where the file has none it is level, at its height 0, for what the
+ * world does not hold. */
 static bool has_ground(struct plane_tree *t)
 {
+    if (!any_touches(t))
+        return false;
     if (t->has_floor)
         return true;
     if (t->robot->map.free_root)
