@@ -329,8 +329,8 @@ static void take_drive(const mjModel *m, struct spatial_actuator *actuator, int 
     } else if (m->actuator_biastype[a] == mjBIAS_AFFINE && bias[0] == 0 && gain[0] > 0 &&
                (bias[1] == -gain[0] || (bias[1] == 0 && bias[2] == -gain[0]))) {
         actuator->drive = bias[1] == 0 ? SPATIAL_VELOCITY : SPATIAL_POSITION;
-        actuator->kp = -bias[1] * squared;
-        actuator->kd = -bias[2] * squared;
+        actuator->kp = 0 - bias[1] * squared;
+        actuator->kd = 0 - bias[2] * squared;
     }
 }
 

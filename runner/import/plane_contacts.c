@@ -364,19 +364,20 @@ static bool any_touches(const struct plane_tree *t)
     return t->wishes->soles > 0;
 }
 
-/* Is there ground to touch? Where the file has none it is level, at its height 0, for what the
- * world does not hold. */
+/* Is there ground to touch? Where the file has none it is level, at its height 0, for what falls.
+ */
 static bool has_ground(struct plane_tree *t)
 {
-    if (!any_touches(t))
+    const bool falls = t->robot->map.free_root && t->robot->gravity > 0;
+    if (!any_touches(t) || t->along_floor)
         return false;
     if (t->has_floor)
         return true;
-    if (t->robot->map.free_root)
+    if (falls)
         spatial_note(t->model, "the file has no floor: level ground at its height 0");
     else
         spatial_note(t->model, "the file has no floor: nothing touches the ground");
-    return t->robot->map.free_root;
+    return falls;
 }
 
 bool plane_contacts(struct plane_tree *t)
