@@ -14,6 +14,7 @@
 #include <libxml/parser.h>
 #include <math.h>
 #include <stdlib.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 /* The frame itself. */
@@ -46,8 +47,11 @@ static xmlDoc *parse(const char *path, stance_message *message)
     const int file = open(path, O_RDONLY | O_CLOEXEC);
     xmlParserCtxt *const context = file >= 0 ? xmlNewParserCtxt() : NULL;
     xmlDoc *document = NULL;
+    struct stat what;
     if (file < 0)
         complain(message, "%s: cannot be read: %s", path, strerror(errno));
+    else if (fstat(file, &what) == 0 && S_ISDIR(what.st_mode))
+        complain(message, "%s: cannot be read: %s", path, strerror(EISDIR));
     else if (!context)
         no_memory(message);
     else if (!(document = xmlCtxtReadFd(context, file, path, NULL, options)))
@@ -398,6 +402,16 @@ static bool limits_of(struct urdf *u, const struct urdf_joint *j, struct spatial
     return true;
 }
 
+/* URDF begins where all coordinates are 0, or at the stop that is nearest to that. */
+static void begin(struct urdf *u, struct spatial_joint *joint)
+{
+    if (joint->limited)
+        joint->start = fmin(fmax(0, joint->limits[0]), joint->limits[1]);
+    if (joint->start != 0)
+        spatial_note(u->model, "joint %s begins at its stop, %g: 0 is beyond it", joint->name,
+                     joint->start);
+}
+
 static bool one_way(struct urdf *u, struct urdf_joint *j, int body, spatial_joint_kind kind)
 {
     struct spatial_joint *const joint = add_joint(u, j, body, kind);
@@ -406,9 +420,12 @@ static bool one_way(struct urdf *u, struct urdf_joint *j, int body, spatial_join
         return false;
     j->joint = (int)(joint - u->model->joint);
     joint->continuous = strcmp(j->type, "continuous") == 0;
-    return axis_of(u, j, joint->axis) && limits_of(u, j, joint) &&
-           (!dynamics || (urdf_numbers(u, dynamics, "damping", 1, &joint->damping) &&
-                          urdf_numbers(u, dynamics, "friction", 1, &joint->friction)));
+    if (!axis_of(u, j, joint->axis) || !limits_of(u, j, joint) ||
+        (dynamics && (!urdf_numbers(u, dynamics, "damping", 1, &joint->damping) ||
+                      !urdf_numbers(u, dynamics, "friction", 1, &joint->friction))))
+        return false;
+    begin(u, joint);
+    return true;
 }
 
 /* Two slides at right angles to each other and to the normal, then the hinge about it. */

@@ -166,7 +166,8 @@ static void rotation_of(const double rpy[3], double r[3][3])
         {c[2] * c[1], c[2] * s[1] * s[0] - s[2] * c[0], c[2] * s[1] * c[0] + s[2] * s[0]},
         {s[2] * c[1], s[2] * s[1] * s[0] + c[2] * c[0], s[2] * s[1] * c[0] - c[2] * s[0]},
         {-s[1], c[1] * s[0], c[1] * c[0]}};
-    memcpy(r, of, sizeof of);
+    for (int i = 0; i < 9; i++)
+        r[i / 3][i % 3] = of[i / 3][i % 3] + 0.0; /* no -0 */
 }
 
 bool urdf_origin(struct urdf *u, const xmlNode *of, double at[3], double rotation[3][3])

@@ -1,0 +1,88 @@
+/* mujoco_library.c - libmujoco at run time. */
+#include "mujoco_library.h"
+
+#include "runner/base/command.h"
+#include "runner/base/message.h"
+
+#ifdef MUJOCO_HEADER
+
+#include <dlfcn.h>
+#include <unistd.h>
+
+#define TEXT_OF(value) #value
+#define DIGITS_OF(value) TEXT_OF(value)
+
+/* What it cannot go on from. */
+static void end_here(const char *text)
+{
+    fprintf(stderr, "stance import: libmujoco: %.200s\n", text);
+    fflush(stderr);
+    _exit(EXIT_USAGE);
+}
+
+static void pass_over(const char *text)
+{
+    (void)text;
+}
+
+/* A function or variable by its name. */
+static bool find(void *library, const char *name, void *pointer)
+{
+    void *const found = dlsym(library, name);
+    memcpy(pointer, &found, sizeof found);
+    return found != NULL;
+}
+
+static bool find_all(struct mujoco *m)
+{
+    void (**error)(const char *) = NULL, (**warning)(const char *) = NULL;
+    bool all = find(m->library, "mju_user_error", &error) &&
+               find(m->library, "mju_user_warning", &warning);
+#define MUJOCO_FIND(name) all = all && find(m->library, #name, &m->name);
+    MUJOCO_FUNCTIONS(MUJOCO_FIND)
+#undef MUJOCO_FIND
+    if (all) {
+        *error = end_here;
+        *warning = pass_over;
+    }
+    return all;
+}
+
+bool mujoco_open(struct mujoco *m, stance_message *message)
+{
+    /* Debian's; the name of those who build it themselves; the link of its -dev package. */
+    static const char *const names[] = {"libmujoco.so.2.2.2", "libmujoco.so." DIGITS_OF(mjVERSION_HEADER),
+                                        "libmujoco.so"};
+    *m = (struct mujoco){.library = NULL};
+    for (size_t i = 0; !m->library && i < sizeof names / sizeof *names; i++)
+        m->library = dlopen(names[i], RTLD_NOW | RTLD_LOCAL);
+    if (!m->library)
+        return complain(message, "MuJoCo's files are read by libmujoco, which is not installed "
+                                 "(Debian: apt install libmujoco-dev)");
+    if (!find_all(m) || m->mj_version() != mjVERSION_HEADER) {
+        mujoco_close(m);
+        return complain(message,
+                        "libmujoco is not of version %d, for which this program was built: "
+                        "build it again beside that library's header",
+                        mjVERSION_HEADER);
+    }
+    return true;
+}
+
+void mujoco_close(struct mujoco *m)
+{
+    if (m->library)
+        dlclose(m->library);
+    m->library = NULL;
+}
+
+#else
+
+bool mujoco_open(struct mujoco *m, stance_message *message)
+{
+    (void)m;
+    return complain(message, "MuJoCo's files are read by libmujoco, whose header was not there when "
+                             "this program was built (Debian: apt install libmujoco-dev, then make)");
+}
+
+#endif
