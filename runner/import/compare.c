@@ -181,20 +181,45 @@ static void write_model(struct writer *w)
     fputs("</actuator></mujoco>\n", w->out);
 }
 
-/* Principal moments and axes; scaled, as MuJoCo's turning ends when what is left is small. */
-static void put_inertia(const struct twin *t, const struct spatial_body *body, int at)
+/* Of a rotation, by its largest component. */
+static void quaternion(const double r[3][3], double *q)
 {
-    double most = 0, matrix[9], value[3], vector[9];
-    for (int i = 0; i < 9; i++)
-        most = fmax(most, fabs(body->inertia[i / 3][i % 3]));
-    const double scale = most > 0 ? 1e6 / most : 1;
-    for (int i = 0; i < 9; i++)
-        matrix[i] = scale * body->inertia[i / 3][i % 3];
-    t->mj->mju_eig3(value, vector, t->m->body_iquat + 4 * at, matrix);
+    const double trace = r[0][0] + r[1][1] + r[2][2];
+    int i = 0;
+    for (int k = 1; k < 3; k++)
+        i = r[k][k] > r[i][i] ? k : i;
+    if (trace > r[i][i]) {
+        const double s = 2 * sqrt(1 + trace);
+        q[0] = s / 4;
+        for (int k = 0; k < 3; k++)
+            q[1 + k] = (r[(k + 2) % 3][(k + 1) % 3] - r[(k + 1) % 3][(k + 2) % 3]) / s;
+    } else {
+        const int j = (i + 1) % 3, k = (i + 2) % 3;
+        const double s = 2 * sqrt(1 + r[i][i] - r[j][j] - r[k][k]);
+        q[0] = (r[k][j] - r[j][k]) / s;
+        q[1 + i] = s / 4;
+        q[1 + j] = (r[i][j] + r[j][i]) / s;
+        q[1 + k] = (r[i][k] + r[k][i]) / s;
+    }
+}
+
+/* Principal moments and axes, to all digits: MuJoCo's own turning ends at angles of 1e-6. */
+static bool put_inertia(const struct twin *t, const struct spatial_body *body, int at)
+{
+    double vector[9], turn[3][3], third[3];
+    memcpy(vector, body->inertia, sizeof vector);
+    if (LAPACKE_dsyev(LAPACK_ROW_MAJOR, 'V', 'U', 3, vector, 3, t->m->body_inertia + 3 * at) != 0)
+        return false;
+    memcpy(turn, vector, sizeof turn);
+    const double x[3] = {turn[0][0], turn[1][0], turn[2][0]};
+    const double y[3] = {turn[0][1], turn[1][1], turn[2][1]};
+    space_cross(x, y, third); /* right-handed */
     for (int i = 0; i < 3; i++)
-        t->m->body_inertia[3 * at + i] = value[i] / scale;
+        turn[i][2] = third[i];
+    quaternion(turn, t->m->body_iquat + 4 * at);
     t->m->body_mass[at] = body->mass;
     t->m->body_sameframe[at] = 0;
+    return true;
 }
 
 static bool load_model(struct comparison *o, stance_message *message)
@@ -213,8 +238,10 @@ static bool load_model(struct comparison *o, stance_message *message)
         return false;
     for (int b = 0; b < o->model->bodies; b++) {
         snprintf(name, sizeof name, "%d", b);
-        put_inertia(&o->file, &o->model->body[b],
-                    o->file.mj->mj_name2id(o->file.m, mjOBJ_BODY, name));
+        if (!put_inertia(&o->file, &o->model->body[b],
+                         o->file.mj->mj_name2id(o->file.m, mjOBJ_BODY, name)))
+            return complain(message, "not compared: no principal axes of %s",
+                            o->model->body[b].name);
     }
     snprintf(name, sizeof name, "%d", o->map->root_body);
     o->root = o->file.mj->mj_name2id(o->file.m, mjOBJ_BODY, name);
@@ -299,28 +326,6 @@ static void random_torques(struct comparison *o, double *torque)
         const bool limited = o->ours.m->actuator_ctrllimited[a];
         const double most = limited ? o->ours.m->actuator_ctrlrange[2 * a + 1] : 10;
         torque[a] = uniform(o, -most, most);
-    }
-}
-
-/* Of a rotation, by its largest component. */
-static void quaternion(const double r[3][3], double *q)
-{
-    const double trace = r[0][0] + r[1][1] + r[2][2];
-    int i = 0;
-    for (int k = 1; k < 3; k++)
-        i = r[k][k] > r[i][i] ? k : i;
-    if (trace > r[i][i]) {
-        const double s = 2 * sqrt(1 + trace);
-        q[0] = s / 4;
-        for (int k = 0; k < 3; k++)
-            q[1 + k] = (r[(k + 2) % 3][(k + 1) % 3] - r[(k + 1) % 3][(k + 2) % 3]) / s;
-    } else {
-        const int j = (i + 1) % 3, k = (i + 2) % 3;
-        const double s = 2 * sqrt(1 + r[i][i] - r[j][j] - r[k][k]);
-        q[0] = (r[k][j] - r[j][k]) / s;
-        q[1 + i] = s / 4;
-        q[1 + j] = (r[i][j] + r[j][i]) / s;
-        q[1 + k] = (r[i][k] + r[k][i]) / s;
     }
 }
 

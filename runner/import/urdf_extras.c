@@ -98,27 +98,42 @@ static bool transmission(struct urdf *u, const xmlNode *node)
     return add_motor(u, node, name && *name ? name : u->joint[joint].name, joint, reduction);
 }
 
-bool urdf_drives(struct urdf *u)
+static bool is_driven(const struct urdf *u, int joint)
 {
-    EACH_IN (child, u->root, "transmission")
-        if (!transmission(u, child))
-            return false;
-    if (urdf_child(u->root, "transmission", NULL))
-        return true;
+    for (int a = 0; a < u->model->actuators; a++)
+        if (u->model->actuator[a].joint == joint)
+            return true;
+    return false;
+}
+
+/* Joints that say how much can drive them and have nothing that does. */
+static bool drive_by_effort(struct urdf *u, bool transmissions)
+{
     int motors = 0;
     for (int i = 0; i < u->joints; i++) {
         const struct urdf_joint *const j = &u->joint[i];
         if (j->joint < 0 || u->model->joint[j->joint].effort <= 0)
             continue;
-        if (!add_motor(u, j->node, j->name, i, 1))
+        if (transmissions && !is_driven(u, j->joint))
+            spatial_note(u->model, "joint %s has an effort and no <transmission>: no motor",
+                         j->name);
+        else if (!transmissions && !add_motor(u, j->node, j->name, i, 1))
             return false;
         motors++;
     }
-    if (motors > 0)
+    if (motors > 0 && !transmissions)
         spatial_note(u->model,
                      "no <transmission>: each joint with an effort has a motor, %d of them",
                      motors);
     return true;
+}
+
+bool urdf_drives(struct urdf *u)
+{
+    EACH_IN (child, u->root, "transmission")
+        if (!transmission(u, child))
+            return false;
+    return drive_by_effort(u, urdf_child(u->root, "transmission", NULL) != NULL);
 }
 
 /* ---- Gazebo ---------------------------------------------------------------------------------- */
