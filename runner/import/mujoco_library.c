@@ -51,8 +51,8 @@ static bool find_all(struct mujoco *m)
 bool mujoco_open(struct mujoco *m, stance_message *message)
 {
     /* Debian's; the name of those who build it themselves; the link of its -dev package. */
-    static const char *const names[] = {"libmujoco.so.2.2.2", "libmujoco.so." DIGITS_OF(mjVERSION_HEADER),
-                                        "libmujoco.so"};
+    static const char *const names[] = {
+        "libmujoco.so.2.2.2", "libmujoco.so." DIGITS_OF(mjVERSION_HEADER), "libmujoco.so"};
     *m = (struct mujoco){.library = NULL};
     for (size_t i = 0; !m->library && i < sizeof names / sizeof *names; i++)
         m->library = dlopen(names[i], RTLD_NOW | RTLD_LOCAL);
@@ -81,8 +81,9 @@ void mujoco_close(struct mujoco *m)
 bool mujoco_open(struct mujoco *m, stance_message *message)
 {
     (void)m;
-    return complain(message, "MuJoCo's files are read by libmujoco, whose header was not there when "
-                             "this program was built (Debian: apt install libmujoco-dev, then make)");
+    return complain(message,
+                    "MuJoCo's files are read by libmujoco, whose header was not there when "
+                    "this program was built (Debian: apt install libmujoco-dev, then make)");
 }
 
 #endif

@@ -22,13 +22,13 @@ struct plane_map {
     } coordinate[STANCE_MAX_COORDINATES];
     bool free_root;
     int root_joints, root_joint[3]; /* a free one; or two slides and a hinge, in the file's order */
-    int root_body;       /* of the file: that carries the root's frame */
-    double root_at[3];   /* m, of that frame's origin, in that body's frame */
-    double root_angle;   /* the scene's angle where that body stands turned as in the file's posture
-                          * (all joints at `reference`, welded ones at `start`) */
+    int root_body;                  /* of the file: that carries the root's frame */
+    double root_at[3];              /* m, of that frame's origin, in that body's frame */
+    double root_angle; /* the scene's angle where that body stands turned as in the file's posture
+                        * (all joints at `reference`, welded ones at `start`) */
     double root_rotation[3][3]; /* of that body in the file's world, then */
-    bool *held;          /* [joints] moves no coordinate: welded, or on a link that was merged */
-    int actuators;       /* of the scene, in its order */
+    bool *held;    /* [joints] moves no coordinate: welded, or on a link that was merged */
+    int actuators; /* of the scene, in its order */
     struct {
         int actuator; /* index of the spatial model's */
         double sign;  /* the scene's torque = sign * the force of that joint in the file */

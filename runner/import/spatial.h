@@ -46,7 +46,7 @@ struct spatial_joint {
 struct spatial_body {
     char name[SPATIAL_NAME];
     int line;
-    int parent; /* -1: the world. Parents stand before their children */
+    int parent;                   /* -1: the world. Parents stand before their children */
     double at[3], rotation[3][3]; /* in the parent's frame, with all joints at `reference` */
     bool massless;                /* the file gives no mass (or 0) */
     double mass, centre[3];       /* kg; m, in the body's frame */
@@ -70,7 +70,7 @@ struct spatial_geom {
     spatial_shape shape;
     const char *of; /* the file's word for the shape; static */
     double at[3], rotation[3][3], size[3];
-    double friction; /* NAN: not given */
+    double friction;  /* NAN: not given */
     bool meets_floor; /* may touch the floor (contype, conaffinity); of the floor itself true */
     bool meets_robot; /* may touch another body of the robot: has no counterpart */
 };
@@ -90,8 +90,8 @@ struct spatial_actuator {
     spatial_drive drive;
     double gear; /* joint force per unit of the actuator's: of either sign */
     bool limited;
-    double least, most;  /* joint force N m, N, gear and all ranges included; else -+INFINITY */
-    double kp, kd;       /* of servos, N m/rad and N m s/rad of the joint, gear included */
+    double least, most; /* joint force N m, N, gear and all ranges included; else -+INFINITY */
+    double kp, kd;      /* of servos, N m/rad and N m s/rad of the joint, gear included */
 };
 
 /* What the file has and the plane cannot: each refused, or noted, by its name. */

@@ -1,0 +1,261 @@
+/* write.c - the scenario's text: comments, then keys in the order in which they are explained. */
+#include "write.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { WIDTH = 100, TEXT = 200 };
+
+/* ---- comments ----------------------------------------------------------------------------------
+ */
+
+/* Words filled into lines; all but the first begin with `next`. What would end a line is shown. */
+static void fill(FILE *out, const char *first, const char *next, const char *text)
+{
+    size_t column = strlen(first);
+    bool begun = false;
+    fputs(first, out);
+    while (*text) {
+        size_t length = strcspn(text, " ");
+        if (begun && column + 1 + length > WIDTH) {
+            fprintf(out, "\n%s", next);
+            column = strlen(next);
+        } else if (begun) {
+            fputc(' ', out);
+            column++;
+        }
+        for (size_t i = 0; i < length; i++)
+            fputc((unsigned char)text[i] < ' ' || text[i] == 0x7f ? '?' : text[i], out);
+        column += length;
+        begun = true;
+        text += length;
+        text += strspn(text, " ");
+    }
+    fputc('\n', out);
+}
+
+static void head(FILE *out, const struct spatial_model *model, const struct plane_robot *robot)
+{
+    char text[2 * SPATIAL_NAME + 80];
+    snprintf(text, sizeof text, "From %s (%s), by stance import.", model->file, model->format);
+    fill(out, "# ", "# ", text);
+    fputs("#\n# A body's frame begins at the joint to its parent; angles are counter-clockwise, x "
+          "forward, z up.\n",
+          out);
+    if (model->notes > 0)
+        fputs("# What is otherwise than in the file:\n", out);
+    for (int n = 0; n < model->notes; n++)
+        fill(out, "# - ", "#   ", model->note[n].text);
+    if (robot->mechanism.actuators > 0 && !robot->hold)
+        fputs("# No law drives the motors: `stance describe controller` lists them.\n", out);
+}
+
+/* ---- values ------------------------------------------------------------------------------------
+ */
+
+/* The shortest that reads back; one of 12 digits may be off by the rounding of a few sums. */
+static const char *number(char text[32], double value)
+{
+    if (isinf(value))
+        return strcpy(text, "none");
+    for (int digits = 1; digits <= 17; digits++) {
+        snprintf(text, 32, "%.*g", digits, value + 0.0);
+        const double off = fabs(strtod(text, NULL) - value);
+        if (strchr(text, 'e') && fabs(value) >= 1e-4 && fabs(value) < 1e9)
+            continue; /* 200, not 2e+02 */
+        if (off == 0 || (digits <= 12 && off <= 8 * DBL_EPSILON * fabs(value)))
+            break;
+    }
+    return text;
+}
+
+/* A mapping in braces, on several lines where it is long: what is begun with open ends with shut.
+ */
+struct braces {
+    FILE *out;
+    int indent, column;
+    bool any;
+};
+
+static struct braces open_braces(FILE *out, int indent, const char *key)
+{
+    const struct braces b = {.out = out,
+                             .indent = indent + (int)strlen(key) + 3,
+                             .column = indent + (int)strlen(key) + 3};
+    fprintf(out, "%*s%s: {", indent, "", key);
+    return b;
+}
+
+__attribute__((format(printf, 2, 3))) static void item(struct braces *b, const char *format, ...)
+{
+    char text[TEXT];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    const int length = (int)strlen(text);
+    if (b->any)
+        fputc(',', b->out);
+    if (b->any && b->column + length + 3 > WIDTH) {
+        fprintf(b->out, "\n%*s", b->indent, "");
+        b->column = b->indent;
+    } else if (b->any) {
+        fputc(' ', b->out);
+    }
+    fputs(text, b->out);
+    b->column += length + 2;
+    b->any = true;
+}
+
+static void shut(struct braces *b)
+{
+    fputs("}\n", b->out);
+}
+
+static void one(struct braces *b, const char *key, double value)
+{
+    char text[32];
+    item(b, "%s: %s", key, number(text, value));
+}
+
+/* What is the default is left out. */
+static void unless(struct braces *b, const char *key, double value, double fallback)
+{
+    if (value != fallback)
+        one(b, key, value);
+}
+
+static void two(struct braces *b, const char *key, const double value[2])
+{
+    char first[32], second[32];
+    item(b, "%s: [%s, %s]", key, number(first, value[0]), number(second, value[1]));
+}
+
+static void two_unless_zero(struct braces *b, const char *key, const double value[2])
+{
+    if (value[0] != 0 || value[1] != 0)
+        two(b, key, value);
+}
+
+/* ---- parts -------------------------------------------------------------------------------------
+ */
+
+static void body(FILE *out, const stance_mechanism *m, int k)
+{
+    static const char *const joints[] = {"free", "hinge", "slide", "fixed"};
+    const stance_body_numbers *const n = &m->value.body[k];
+    struct braces b = open_braces(out, 4, m->body[k].name);
+    item(&b, "joint: %s", joints[m->body[k].joint]);
+    if (m->body[k].parent >= 0)
+        item(&b, "parent: %s", m->body[m->body[k].parent].name);
+    two_unless_zero(&b, "at", n->at);
+    if (m->body[k].joint == STANCE_SLIDE)
+        two(&b, "axis", n->axis);
+    unless(&b, "angle", n->angle, 0);
+    unless(&b, "mass", n->mass, 0);
+    unless(&b, "inertia", n->inertia, 0);
+    two_unless_zero(&b, "centre", n->centre);
+    unless(&b, "stiffness", n->stiffness, 0);
+    unless(&b, "rest", n->rest, 0);
+    unless(&b, "damping", n->damping, 0);
+    unless(&b, "armature", n->armature, 0);
+    if (isfinite(n->limits[0]) || isfinite(n->limits[1]))
+        two(&b, "limits", n->limits);
+    shut(&b);
+}
+
+static void contact(FILE *out, const stance_mechanism *m, int e)
+{
+    const stance_element_numbers *const n = &m->value.element[e];
+    struct braces b = open_braces(out, 4, m->element[e].name);
+    item(&b, "body: %s", m->body[m->element[e].body].name);
+    two(&b, m->element[e].sole ? "from" : "at", n->at);
+    if (m->element[e].sole)
+        two(&b, "to", n->to);
+    unless(&b, "radius", n->radius, 0);
+    if (m->element[e].rough)
+        one(&b, "friction_factor", n->friction_factor);
+    shut(&b);
+}
+
+static void parts(FILE *out, const stance_mechanism *m)
+{
+    fputs("robot:\n  bodies:\n", out);
+    for (int k = 0; k < m->bodies; k++)
+        body(out, m, k);
+    if (m->elements > 0)
+        fputs("  contacts:\n", out);
+    for (int e = 0; e < m->elements; e++)
+        contact(out, m, e);
+    if (m->actuators > 0)
+        fputs("  actuators:\n", out);
+    for (int a = 0; a < m->actuators; a++) {
+        struct braces b = open_braces(out, 4, m->actuator[a].name);
+        item(&b, "body: %s", m->body[m->actuator[a].body].name);
+        unless(&b, "limit", m->value.limit[a], INFINITY);
+        shut(&b);
+    }
+}
+
+static void ground(FILE *out, const struct plane_robot *robot)
+{
+    struct braces b = open_braces(out, 0, "ground");
+    one(&b, "friction", robot->friction);
+    unless(&b, "slope", robot->slope, 0);
+    unless(&b, "gravity", robot->gravity, STANCE_GRAVITY);
+    shut(&b);
+}
+
+/* Coordinates that are not 0. */
+static void initial(FILE *out, const struct plane_robot *robot)
+{
+    static const char *const free_names[] = {"x", "z"};
+    const double *start = robot->start;
+    fputs("initial:\n", out);
+    struct braces b = open_braces(out, 2, "state");
+    for (int k = 0; k < robot->mechanism.bodies; k++) {
+        for (int i = 0; robot->mechanism.body[k].joint == STANCE_FREE && i < 2; i++)
+            unless(&b, free_names[i], *start++, 0);
+        unless(&b, robot->mechanism.body[k].name, *start++, 0);
+    }
+    shut(&b);
+}
+
+/* In double quotes. */
+static void title(FILE *out, const char *text)
+{
+    fputs("title: \"", out);
+    for (; *text; text++) {
+        if (*text == '"' || *text == '\\')
+            fputc('\\', out);
+        fputc((unsigned char)*text < ' ' || *text == 0x7f ? '?' : *text, out);
+    }
+    fputs("\"\n", out);
+}
+
+void import_write(FILE *out, const struct spatial_model *model, const struct plane_robot *robot)
+{
+    char text[32];
+    head(out, model, robot);
+    fputs("stance: 1\n", out);
+    title(out, model->title[0] ? model->title : model->file);
+    fputs("scene: mechanism\n\n", out);
+    parts(out, &robot->mechanism);
+    fputc('\n', out);
+    ground(out, robot);
+    fputc('\n', out);
+    initial(out, robot);
+    fputc('\n', out);
+    if (robot->hold) {
+        struct braces b = open_braces(out, 0, "controller");
+        item(&b, "kind: hold");
+        one(&b, "kp", robot->kp);
+        one(&b, "kd", robot->kd);
+        shut(&b);
+        fputc('\n', out);
+    }
+    fprintf(out, "method: {step: %s}\nstop: {time: 5}\n", number(text, robot->step));
+}
