@@ -407,7 +407,8 @@ static bool read_model(const struct reading *r)
     struct spatial_model *const model = r->model;
     const bool floor = has_floor(m);
     bool good = true;
-    snprintf(model->title, sizeof model->title, "%s", m->names);
+    if (strcmp(m->names, "MuJoCo Model") != 0) /* which has no name */
+        snprintf(model->title, sizeof model->title, "%s", m->names);
     if (!(m->opt.disableflags & mjDSBL_GRAVITY))
         memcpy(model->gravity, m->opt.gravity, sizeof model->gravity);
     model->step = m->opt.timestep;

@@ -160,7 +160,7 @@ static bool too_many(const struct plane_tree *t)
         if (k == 0 && t->link[k].kind != STANCE_HINGE)
             continue;
         add_text(list, sizeof list, "%s%.20s", moving++ ? ", " : "",
-                 t->model->joint[t->link[k].joint].name);
+                 plane_joint_name(t, t->link[k].joint));
     }
     return plane_refuse(t, 0, "%d joints move; at most 10 besides the root: --weld some of %s",
                         moving, list);

@@ -194,12 +194,11 @@ static bool add_sole(struct plane_tree *t, const char *text, struct candidates *
     return true;
 }
 
-static bool has_sole(const struct plane_tree *t, const struct candidates *c, int soles, int link)
+static bool has_sole(const struct candidates *c, int soles, int link)
 {
     for (int k = 0; k < soles; k++)
         if (c->list[k].link == link)
             return true;
-    (void)t;
     return false;
 }
 
@@ -211,17 +210,39 @@ static double friction_of(const struct plane_tree *t, const struct spatial_geom 
     return fmax(geom->friction, t->floor_friction); /* of a number and none the number */
 }
 
-/* A mesh at the end of a chain is a foot. */
+static bool is_simple(const struct spatial_geom *geom)
+{
+    return geom->meets_floor && geom->shape != SPATIAL_OTHER && geom->shape != SPATIAL_PLANE;
+}
+
+/* A mesh at the end of a chain is a foot, unless a simple shape is that. */
 static bool refuse_shape(struct plane_tree *t, const struct spatial_geom *geom)
 {
     const struct spatial_body *const body = &t->model->body[geom->body];
-    if (t->link[t->link_of[geom->body]].children == 0)
+    const int link = t->link_of[geom->body];
+    bool foot = t->link[link].children == 0;
+    for (int g = 0; g < t->model->geoms; g++) {
+        const struct spatial_geom *const other = &t->model->geom[g];
+        foot = foot && !(other->body >= 0 && t->link_of[other->body] == link && is_simple(other));
+    }
+    if (foot)
         return plane_refuse(t, geom->line,
                             "%s %.50s of %.50s may touch the ground: give it a sole, "
                             "--sole %.50s=X,Z,X,Z, or a simple shape",
                             geom->of, geom->name, body->name, body->name);
     spatial_note(t->model, "%s %.50s of %.50s touches nothing here", geom->of, geom->name,
                  body->name);
+    return true;
+}
+
+/* What moves along a rail cannot leave the ground. */
+static bool on_rail(struct plane_tree *t, const struct spatial_geom *geom)
+{
+    const int link = t->link_of[geom->body];
+    if (link != 0 || t->link[link].kind != STANCE_SLIDE)
+        return false;
+    spatial_note(t->model, "%.60s touches no ground: its rail holds it",
+                 t->model->body[geom->body].name);
     return true;
 }
 
@@ -234,14 +255,14 @@ static bool gather(struct plane_tree *t, struct candidates *c)
     for (int g = 0; g < t->model->geoms; g++) {
         const struct spatial_geom *const geom = &t->model->geom[g];
         if (geom->body < 0 || t->link_of[geom->body] < 0 || !geom->meets_floor ||
-            geom->shape == SPATIAL_PLANE)
+            geom->shape == SPATIAL_PLANE || on_rail(t, geom))
             continue;
         struct candidate *const next = &c->list[c->count];
         *next = (struct candidate){.link = t->link_of[geom->body],
                                    .line = geom->line,
                                    .name = geom->name,
                                    .friction = friction_of(t, geom)};
-        if (has_sole(t, c, soles, next->link))
+        if (has_sole(c, soles, next->link))
             spatial_note(t->model, "%s %.60s is left out: --sole stands for it", geom->of,
                          geom->name);
         else if (of_geom(t, geom, next))

@@ -92,7 +92,7 @@ static bool too_many(const struct plane_tree *t, const struct drive *drive, int 
     for (int k = 0; k < t->links; k++)
         if (drive[k].motor >= 0 || drive[k].servo >= 0 || drive[k].rate >= 0)
             add_text(list, sizeof list, "%s%.20s", n++ ? ", " : "",
-                     t->model->joint[t->link[k].joint].name);
+                     plane_joint_name(t, t->link[k].joint));
     return plane_refuse(t, 0, "%d joints are driven; at most %d: --weld some of %s", count,
                         STANCE_MAX_ACTUATORS, list);
 }

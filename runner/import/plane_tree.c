@@ -56,25 +56,33 @@ void plane_in_link(const struct plane_tree *t, int body, const double at[3], dou
 /* ---- welds -------------------------------------------------------------------------------------
  */
 
+const char *plane_joint_name(const struct plane_tree *t, int j)
+{
+    const struct spatial_joint *const joint = &t->model->joint[j];
+    return joint->name[0] ? joint->name : t->model->body[joint->body].name;
+}
+
 static bool weld(struct plane_tree *t, const char *name)
 {
-    const struct spatial_model *const model = t->model;
-    const char **const names = calloc((size_t)model->joints + 1, sizeof *names);
+    const int joints = t->model->joints;
+    const char **const names = calloc((size_t)joints + 1, sizeof *names);
     int found = -1;
     if (!names)
         return no_memory(t->message);
-    for (int j = 0; j < model->joints; j++) {
-        names[j] = model->joint[j].name;
+    for (int j = 0; j < joints; j++) {
+        names[j] = plane_joint_name(t, j);
         if (strcmp(names[j], name) == 0)
             found = j;
     }
-    const char *const near = nearest_word(name, names, (size_t)model->joints);
+    const char *const near = nearest_word(name, names, (size_t)joints);
     free(names);
     if (found < 0)
         return plane_refuse(t, 0, "--weld %.60s: there is no joint of this name%s%.60s%s", name,
                             near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
     t->welded[found] = true;
     t->robot->map.held[found] = true;
+    spatial_note(t->model, "joint %.60s is welded where it begins, at %.6g", name,
+                 t->model->joint[found].start + 0.0);
     return true;
 }
 
@@ -203,7 +211,7 @@ static void choose_normal(const struct plane_tree *t, double normal[3])
 static bool check_joint(const struct plane_tree *t, int j, const double normal[3])
 {
     const struct spatial_joint *const joint = &t->model->joint[j];
-    const char *const name = joint->name[0] ? joint->name : t->model->body[joint->body].name;
+    const char *const name = plane_joint_name(t, j);
     char axis[64], of[64];
     if (t->welded[j] || joint->kind == SPATIAL_FREE)
         return true;
@@ -211,7 +219,7 @@ static bool check_joint(const struct plane_tree *t, int j, const double normal[3
         return plane_refuse(t, joint->line,
                             "joint '%.50s' is a ball, which turns out of the plane: --weld %.50s "
                             "holds it",
-                            name, joint->name);
+                            name, name);
     const bool hinge = joint->kind == SPATIAL_HINGE,
                good = hinge ? parallel(t->line[j].axis, normal)
                             : fabs(space_dot(t->line[j].axis, normal)) < PARALLEL;
@@ -220,7 +228,7 @@ static bool check_joint(const struct plane_tree *t, int j, const double normal[3
                                 "--weld %.40s holds it, --plane chooses another plane",
                                 name, hinge ? "turns about" : "slides along",
                                 axis_text(t->line[j].axis, axis), hinge ? "along" : "across",
-                                axis_text(normal, of), joint->name);
+                                axis_text(normal, of), name);
 }
 
 /* Up is against gravity; without any, along the file's z, else its y. */
@@ -543,10 +551,13 @@ static void note_others(struct plane_tree *t, int floor)
 {
     for (int g = 0; g < t->model->geoms; g++) {
         const struct spatial_geom *const geom = &t->model->geom[g];
+        const char *const of =
+            geom->name[0] || geom->body < 0 ? geom->name : t->model->body[geom->body].name;
         if (g != floor && geom->meets_floor && is_fixed(t, geom->body))
             spatial_note(t->model,
-                         "%s %.60s of the world is left out: the ground is one half plane",
-                         geom->of ? geom->of : "shape", geom->name);
+                         "%s%s%.60s stands still and is left out: the ground is one half "
+                         "plane",
+                         geom->of, of[0] ? " " : "", of);
     }
 }
 

@@ -48,6 +48,9 @@ struct plane_tree {
 bool plane_refuse(const struct plane_tree *t, int line, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
+/* What a joint is called; without a name as its body is. */
+const char *plane_joint_name(const struct plane_tree *t, int j);
+
 /* Poses, the plane, links, the root, floor and gravity. */
 bool plane_tree_make(struct plane_tree *t);
 void plane_tree_free(struct plane_tree *t);

@@ -1,6 +1,8 @@
 /* write.c - the scenario's text: comments, then keys in the order in which they are explained. */
 #include "write.h"
 
+#include "runner/base/words.h"
+
 #include <float.h>
 #include <math.h>
 #include <stdarg.h>
@@ -12,7 +14,24 @@ enum { WIDTH = 100, TEXT = 200 };
 /* ---- comments ----------------------------------------------------------------------------------
  */
 
-/* Words filled into lines; all but the first begin with `next`. What would end a line is shown. */
+/* Text of `size` bytes; what would end a line, or is no text, is shown. */
+static void put_text(FILE *out, const char *text, size_t size)
+{
+    for (size_t i = 0; i < size;) {
+        uint32_t letter;
+        const size_t length = utf8_letter(text + i, size - i, &letter);
+        if (length == 0 || letter < ' ' || (letter >= 0x7f && letter < 0xa0)) {
+            fputc('?', out);
+            i += length ? length : 1;
+            continue;
+        }
+        if (fwrite(text + i, 1, length, out) != length)
+            return;
+        i += length;
+    }
+}
+
+/* Words filled into lines; all but the first begin with `next`. */
 static void fill(FILE *out, const char *first, const char *next, const char *text)
 {
     size_t column = strlen(first);
@@ -27,8 +46,7 @@ static void fill(FILE *out, const char *first, const char *next, const char *tex
             fputc(' ', out);
             column++;
         }
-        for (size_t i = 0; i < length; i++)
-            fputc((unsigned char)text[i] < ' ' || text[i] == 0x7f ? '?' : text[i], out);
+        put_text(out, text, length);
         column += length;
         begun = true;
         text += length;
@@ -251,16 +269,20 @@ static void initial(FILE *out, const struct plane_robot *robot)
     shut(&b);
 }
 
-/* In double quotes. */
+/* In single quotes, of which one is two. */
 static void title(FILE *out, const char *text)
 {
-    fputs("title: \"", out);
-    for (; *text; text++) {
-        if (*text == '"' || *text == '\\')
-            fputc('\\', out);
-        fputc((unsigned char)*text < ' ' || *text == 0x7f ? '?' : *text, out);
+    fputs("title: '", out);
+    while (*text) {
+        const size_t length = strcspn(text, "'");
+        put_text(out, text, length);
+        text += length;
+        if (*text) {
+            fputs("''", out);
+            text++;
+        }
     }
-    fputs("\"\n", out);
+    fputs("'\n", out);
 }
 
 void import_write(FILE *out, const struct spatial_model *model, const struct plane_robot *robot)
