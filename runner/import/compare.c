@@ -640,9 +640,9 @@ bool import_compare(const struct spatial_model *model, const char *path,
                     const struct plane_map *map, const stance_scene *scene, const stance_case *c,
                     struct compare_report *report, stance_message *message)
 {
-    struct mujoco *const none = NULL;
+    struct mujoco none;
     (void)model, (void)path, (void)map, (void)scene, (void)c, (void)report;
-    return mujoco_open(none, message);
+    return mujoco_open(&none, message);
 }
 
 #endif

@@ -15,6 +15,13 @@
 #include <errno.h>
 #include <stdlib.h>
 
+/* Why there is none. */
+static bool without_library(const char *file, const stance_message *why, stance_message *message)
+{
+    return complain(message, "%.60s: MJCF is read by MuJoCo's own library: %.130s", file,
+                    why->text);
+}
+
 #ifdef MUJOCO_HEADER
 
 struct reading {
@@ -472,7 +479,8 @@ bool mjcf_read(const char *path, struct spatial_model *model, stance_message *me
     r.text = text_of(path, message);
     if (!r.text)
         return false;
-    bool good = mujoco_open(&library, message);
+    stance_message why;
+    bool good = mujoco_open(&library, &why) || without_library(model->file, &why, message);
     if (good) {
         sandbox_limit(true);
         mjModel *const m = library.mj_loadXML(path, NULL, error, sizeof error);
@@ -492,9 +500,10 @@ bool mjcf_read(const char *path, struct spatial_model *model, stance_message *me
 
 bool mjcf_read(const char *path, struct spatial_model *model, stance_message *message)
 {
-    (void)path;
+    struct mujoco none;
+    stance_message why;
     model->format = "MJCF";
-    return mujoco_open(NULL, message);
+    return mujoco_open(&none, &why) || without_library(path, &why, message);
 }
 
 #endif

@@ -57,8 +57,7 @@ bool mujoco_open(struct mujoco *m, stance_message *message)
     for (size_t i = 0; !m->library && i < sizeof names / sizeof *names; i++)
         m->library = dlopen(names[i], RTLD_NOW | RTLD_LOCAL);
     if (!m->library)
-        return complain(message, "MuJoCo's files are read by libmujoco, which is not installed "
-                                 "(Debian: apt install libmujoco-dev)");
+        return complain(message, "libmujoco is not installed (Debian: apt install libmujoco-dev)");
     if (!find_all(m) || m->mj_version() != mjVERSION_HEADER) {
         mujoco_close(m);
         return complain(message,
@@ -81,9 +80,10 @@ void mujoco_close(struct mujoco *m)
 bool mujoco_open(struct mujoco *m, stance_message *message)
 {
     (void)m;
-    return complain(message,
-                    "MuJoCo's files are read by libmujoco, whose header was not there when "
-                    "this program was built (Debian: apt install libmujoco-dev, then make)");
+    return complain(
+        message,
+        "this program was built without libmujoco (Debian: apt install libmujoco-dev, then "
+        "make)");
 }
 
 #endif

@@ -31,7 +31,9 @@ struct mujoco {
 
 void mujoco_close(struct mujoco *m);
 #else
-struct mujoco;
+struct mujoco {
+    void *library;
+};
 #endif
 
 /* False: it is not there, or this program was built without its header; `message` says how to get

@@ -3,8 +3,6 @@
 #include "plane_tree.h"
 #include "space.h"
 
-#include "runner/base/message.h"
-
 #include <stdlib.h>
 
 #define PI 3.14159265358979323846

@@ -2,8 +2,6 @@
 #include "plane_tree.h"
 #include "space.h"
 
-#include "runner/base/message.h"
-
 #include <stdlib.h>
 
 enum { CORNERS = 8 };
@@ -173,7 +171,7 @@ static bool parse_sole(const struct plane_tree *t, const char *text, int *body, 
 
 static bool add_sole(struct plane_tree *t, const char *text, struct candidates *c)
 {
-    double given[4];
+    double given[4] = {0};
     int body;
     if (!parse_sole(t, text, &body, given))
         return false;

@@ -1,8 +1,6 @@
 /* plane_drives.c - motors and servos of the file as actuators. */
 #include "plane_tree.h"
 
-#include "runner/base/message.h"
-
 #include <math.h>
 
 /* What drives a link's joint. */
@@ -39,7 +37,7 @@ static int target(struct plane_tree *t, int a)
     else if (!t->welded[j] && link < 0)
         why = "drives a free joint, or one of a link without mass: take it out of the file";
     if (why) {
-        plane_refuse(t, actuator->line, "actuator '%.40s' %s", name, why);
+        plane_say(t, actuator->line, "actuator '%.40s' %s", name, why);
         return -2;
     }
     if (link < 0)

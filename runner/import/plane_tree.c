@@ -2,7 +2,6 @@
 #include "plane_tree.h"
 #include "space.h"
 
-#include "runner/base/message.h"
 #include "runner/base/words.h"
 
 #include <stdarg.h>
@@ -10,7 +9,7 @@
 
 #define PARALLEL 1e-6 /* sine of the angle by which directions may differ */
 
-bool plane_refuse(const struct plane_tree *t, int line, const char *format, ...)
+void plane_say(const struct plane_tree *t, int line, const char *format, ...)
 {
     char *const text = t->message->text;
     const size_t size = sizeof t->message->text;
@@ -20,7 +19,6 @@ bool plane_refuse(const struct plane_tree *t, int line, const char *format, ...)
     va_start(arguments, format);
     vsnprintf(text + length, size - length, format, arguments);
     va_end(arguments);
-    return false;
 }
 
 void plane_turn(double angle, const double v[2], double out[2])
@@ -220,6 +218,8 @@ static bool check_joint(const struct plane_tree *t, int j, const double normal[3
                             "joint '%.50s' is a ball, which turns out of the plane: --weld %.50s "
                             "holds it",
                             name, name);
+    if (!(fabs(space_length(t->line[j].axis) - 1) < PARALLEL))
+        return plane_refuse(t, joint->line, "joint '%.60s' has no axis", name);
     const bool hinge = joint->kind == SPATIAL_HINGE,
                good = hinge ? parallel(t->line[j].axis, normal)
                             : fabs(space_dot(t->line[j].axis, normal)) < PARALLEL;
@@ -276,7 +276,7 @@ static bool choose_axes(struct plane_tree *t, const double normal[3])
 
 static bool choose_plane(struct plane_tree *t)
 {
-    double normal[3];
+    double normal[3] = {0};
     choose_normal(t, normal);
     for (int j = 0; j < t->model->joints; j++)
         if (!check_joint(t, j, normal))

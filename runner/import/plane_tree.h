@@ -7,6 +7,8 @@
 
 #include "plane.h"
 
+#include "runner/base/message.h"
+
 /* A link: what one joint moves. All bodies that are fixed to each other are one. */
 struct plane_link {
     int parent; /* -1: the world */
@@ -44,9 +46,11 @@ struct plane_tree {
     double floor_friction;   /* NAN: not given */
 };
 
-/* Fills message with "FILE:LINE: ..."; line 0: not known. Returns false. */
-bool plane_refuse(const struct plane_tree *t, int line, const char *format, ...)
+/* Fills message with "FILE:LINE: ..."; line 0: not known. plane_refuse(t, line, format, ...) is
+ * false. */
+void plane_say(const struct plane_tree *t, int line, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
+#define plane_refuse(...) (plane_say(__VA_ARGS__), as_false())
 
 /* What a joint is called; without a name as its body is. */
 const char *plane_joint_name(const struct plane_tree *t, int j);

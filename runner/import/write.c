@@ -78,8 +78,9 @@ static void head(FILE *out, const struct spatial_model *model, const struct plan
  * 2e-06 for a word, 2.0e-06 for a number. */
 static const char *rounded(char text[32], double value, double rounding)
 {
+    snprintf(text, 32, "none");
     if (isinf(value))
-        return strcpy(text, "none");
+        return text;
     for (int digits = 1; digits <= 17; digits++) {
         snprintf(text, 32, "%.*g", digits, value + 0.0);
         const double off = fabs(strtod(text, NULL) - value);
@@ -91,7 +92,8 @@ static const char *rounded(char text[32], double value, double rounding)
     char *const power = strchr(text, 'e');
     if (power && !strchr(text, '.')) {
         memmove(power + 2, power, strlen(power) + 1);
-        memcpy(power, ".0", 2);
+        power[0] = '.';
+        power[1] = '0';
     }
     return text;
 }
