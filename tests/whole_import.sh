@@ -63,11 +63,49 @@ has servos "gravity at a slant" 'x is the file'"'"'s (0.8 0 0.6), z its (-0.6 0 
 imported swimmer --plane xy
 has swimmer "a plane that lies" 'gravity across the plane, 9.81 m/s^2, is left out' 'the floor is left out' 'gravity: 0}'
 imported sideways --weld roll --sole shoe.l=-0.1,-0.02,0.2,-0.02
-has sideways "a joint that is held, a sole" 'actuator side is left out: its joint is welded' \
+has sideways "a joint that is held, a sole" 'joint roll is welded where it begins, at -0.174533' 'actuator side is left out: its joint is welded' \
     'shoe_l_1: {body: shoe_l, from: [-0.1, -0.02], to: [0.2, -0.02]}' 'pelvis: 0.174532925199'
 imported heap
 has heap "more contacts than there is room for" '8 contacts more than there is room for are left out: c4, rib4,' \
     'rib8: {body: b8, at: [0.1, 0.05], radius: 0.02}'
+
+# Small ones, written here: NAME, then has.
+small() { # NAME OPTION... <file
+    local name=$1
+    shift
+    cat >"$name.xml"
+    "$stance" import "$name.xml" -o "$name.yaml" "$@" >log 2>&1 </dev/null &&
+        grep -qE 'random states: accelerations agree' log && "$stance" check "$name.yaml" >>log 2>&1
+    result $? "$name is imported, and moves as in MuJoCo"
+}
+floor='<geom name="floor" type="plane" size="1 1 1"/>'
+small rail <<END
+<mujoco><worldbody>$floor<body name="cart" pos="0 0 0.1"><joint name="rail" type="slide" axis="1 0 0"/><geom type="box" size="0.2 0.1 0.1"/>
+<body name="pole"><joint name="pin" axis="0 1 0" frictionloss="0.2"/><geom type="capsule" fromto="0 0 0 0 0 1" size="0.02"/></body></body>
+<geom type="box" size="0.1 0.1 0.1" pos="3 0 0.1"/></worldbody><actuator><motor joint="rail" gear="-3" ctrllimited="true" ctrlrange="0 2"/></actuator></mujoco>
+END
+has rail "what is on a rail touches nothing" 'cart touches no ground: its rail holds it' 'pole_1: {body: pole, from: [0, 0], to: [0, 1], radius: 0.02}' \
+    'box stands still and is left out' 'dry friction in joint pin, 0.2, is left out' 'gives -6 to 0 in the file, -6 to 6 here' "title: 'rail.xml'"
+small boom <<END
+<mujoco model="a boom's hopper"><worldbody>$floor<body name="hip" pos="0 0 1"><joint name="along" type="slide" axis="1 0 0" damping="2"/>
+<joint name="height" type="slide" axis="0 0 1"/><joint name="tilt" axis="0 1 0"/><geom size="0.1"/></body></worldbody></mujoco>
+END
+has boom "a root with dampers is slides and a hinge" 'along: {joint: slide,' 'damping: 2}' 'height: {joint: slide, parent: along' \
+    'hip: {joint: hinge, parent: height, mass: 4.18879' "title: 'a boom''s hopper'"
+small words <<END
+<mujoco>
+<worldbody>$floor<body name="on" pos="0 0 1"><freejoint/><geom size="0.1"/>
+<body name="vleg" pos="0 0 -0.2"><joint name="y" axis="0 1 0"/><geom size="0.05"/></body><body name="leg" pos="0 0 -0.2"><joint axis="0 1 0"/><geom size="0.05"/></body>
+<body name="h&#252;fte/1" pos="0 0 -0.2"><joint axis="0 1 0"/><geom size="0.05"/></body></body></worldbody>
+<actuator><motor name="pull" joint="y"/></actuator></mujoco>
+END
+has words "words of the format, rates, letters" 'body on is called on_' 'body leg is called leg_' 'body hüfte/1 is called h__fte_1' 'y_: {body: vleg}' \
+    'the motor of joint y is called y_'
+small wide <<END
+<mujoco model="wide"><worldbody><geom name="hill" type="box" size="5 1 0.1" pos="0 0 -0.1" euler="0 10 0"/>
+<body name="ball" pos="0 0 1"><freejoint/><geom name="skin" size="0.1"/></body></worldbody></mujoco>
+END
+has wide "a box that is as wide as ground" 'box hill is the ground, without ends' 'slope: 0.17453292' 'skin: {body: ball, at: [0, 0], radius: 0.1}'
 
 # ---- the command -------------------------------------------------------------------------------------------------
 expect "a file that is there is left alone" 2 "$stance" import "$robots/classes.xml" -o classes.yaml
