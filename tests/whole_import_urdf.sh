@@ -31,7 +31,7 @@ noted() { # name, pattern
     result $? "$1: $2"
 }
 
-for name in turned_leg hanging exported spring_hopper box_feet sideways; do
+for name in turned_leg hanging exported spring_hopper box_feet sideways post; do
     imports "$name"
 done
 noted turned_leg 'rpy such as 1.57 .*: 3'
@@ -145,8 +145,8 @@ refused() { # name, line, pattern, sed's command
     [ "$(wc -l <log)" = 1 ] && grep -qE "^stance import: bad\.urdf:$2: .*$3" log && ! [ -e bad.yaml ]
     result $? "... in line $2: $3"
 }
-refused "text for a number" 6 '<mass value="heavy">: is not a number' '6s/"1"/"heavy"/'
-refused "what is not finite" 7 '<inertia iyy="nan">: is not a number' '7s/iyy="1"/iyy="nan"/'
+refused "text for a number" 6 '<mass value="heavy">: is not one number' '6s/"1"/"heavy"/'
+refused "what is not finite" 7 '<inertia iyy="nan">: is not one number' '7s/iyy="1"/iyy="nan"/'
 refused "a property of xacro" 6 'expand the file' '6s/"1"/"${mass}"/'
 refused "commas between numbers" 5 'blanks, not commas' '5s/0 0 -0.1/0, 0, -0.1/'
 refused "two numbers of three" 5 'is not three numbers' '5s/0 0 -0.1/0 -0.1/'
