@@ -143,12 +143,13 @@ static int finish(const struct scenario *s, const stance_case *c, void *asked)
         compare_sentence(&compared, s->scene, sentence, sizeof sentence);
     else
         snprintf(sentence, sizeof sentence, "not compared with the file: %s", message.text);
-    if (known && !(compared.worst <= COMPARE_ADMITTED))
-        return fail(sentence);
     const int code = put(r);
     if (code == EXIT_DONE && r->output)
         report(r, sentence);
-    return code;
+    if (code != EXIT_DONE || !known || compared.worst <= COMPARE_ADMITTED)
+        return code;
+    fail(sentence);
+    return EXIT_CASES_FAILED;
 }
 
 static int import(void *asked)

@@ -123,7 +123,8 @@ static bool read_joint(const struct reading *r, int j)
     joint->kind = kinds[m->jnt_type[j]];
     memcpy(joint->axis, &m->jnt_axis[3 * j], sizeof joint->axis);
     memcpy(joint->at, &m->jnt_pos[3 * j], sizeof joint->at);
-    joint->limited = m->jnt_limited[j] && !(m->opt.disableflags & mjDSBL_LIMIT);
+    joint->limited =
+        m->jnt_limited[j] && !(m->opt.disableflags & (mjDSBL_LIMIT | mjDSBL_CONSTRAINT));
     memcpy(joint->limits, &m->jnt_range[2 * j], sizeof joint->limits);
     joint->soft = joint->limited;
     joint->damping = passive ? m->dof_damping[dof] : 0;
@@ -135,11 +136,6 @@ static bool read_joint(const struct reading *r, int j)
         return true;
     joint->reference = m->qpos0[q];
     joint->spring_reference = m->qpos_spring[q];
-    if (!m->jnt_limited[j] && (joint->limits[0] != 0 || joint->limits[1] != 0))
-        spatial_note(r->model,
-                     "joint %s has a range, but is not limited (MuJoCo %d takes it so; newer ones "
-                     "take a range for limits: limited=\"true\" says so to all)",
-                     joint->name, mjVERSION_HEADER);
     return true;
 }
 
@@ -170,13 +166,16 @@ static bool is_excluded(const mjModel *m, int a, int b)
     return false;
 }
 
+static bool no_contacts(const mjModel *m)
+{
+    return (m->opt.disableflags & (mjDSBL_CONTACT | mjDSBL_CONSTRAINT)) != 0;
+}
+
 /* Two geoms of bodies that are not one, nor parent and child (but for the world's children). */
 static bool may_touch(const mjModel *m, int g, int h)
 {
     const int a = m->geom_bodyid[g], b = m->geom_bodyid[h];
     const int weld_a = m->body_weldid[a], weld_b = m->body_weldid[b];
-    if (m->opt.disableflags & (mjDSBL_CONTACT | mjDSBL_CONSTRAINT))
-        return false;
     if (find_pair(m, g, h) >= 0)
         return true;
     if (m->opt.collision == mjCOL_PAIR || weld_a == weld_b || is_excluded(m, a, b))
@@ -330,8 +329,8 @@ static void take_drive(const mjModel *m, struct spatial_actuator *actuator, int 
     } else if (m->actuator_biastype[a] == mjBIAS_AFFINE && bias[0] == 0 && gain[0] > 0 &&
                (bias[1] == -gain[0] || (bias[1] == 0 && bias[2] == -gain[0]))) {
         actuator->drive = bias[1] == 0 ? SPATIAL_VELOCITY : SPATIAL_POSITION;
-        actuator->kp = -bias[1] * squared;
-        actuator->kd = -bias[2] * squared;
+        actuator->kp = 0 - bias[1] * squared;
+        actuator->kd = 0 - bias[2] * squared;
     }
 }
 
@@ -391,6 +390,8 @@ static bool read_aliens(const struct reading *r)
                              !m->tendon_limited[t] && m->tendon_frictionloss[t] == 0);
     for (int s = 0; good && s < m->nskin; s++)
         good = add_alien(r, "skin", mjOBJ_SKIN, s, true);
+    if (no_contacts(m))
+        spatial_note(r->model, "contacts are disabled in the file: nothing touches the ground");
     if (m->opt.density != 0 || m->opt.viscosity != 0)
         spatial_note(r->model,
                      "the medium (density, viscosity) is left out: it has no counterpart");
@@ -415,7 +416,7 @@ static bool read_model(const struct reading *r)
         good = read_body(r, b);
     for (int j = 0; good && j < m->njnt; j++)
         good = read_joint(r, j);
-    for (int g = 0; good && g < m->ngeom; g++)
+    for (int g = 0; good && g < m->ngeom && !no_contacts(m); g++)
         good = read_geom(r, g, floor);
     for (int a = 0; good && a < m->nu; a++)
         good = read_actuator(r, a);
@@ -441,19 +442,21 @@ static char *text_of(const char *path, stance_message *message)
 }
 
 /* MuJoCo's own, of several lines and with the line of the element where it knows one. */
-static bool refuse_as_mujoco(const char *path, char *error, stance_message *message)
+static bool refuse_as_mujoco(const char *file, const char *error, stance_message *message)
 {
-    const char *const line = strstr(error, "line ");
-    const int number = line ? atoi(line + strlen("line ")) : 0;
-    char place[24] = "";
-    for (char *s = error; *s; s++)
-        if (iscntrl((unsigned char)*s))
-            *s = ' ';
-    for (size_t length = strlen(error); length > 0 && error[length - 1] == ' ';)
-        error[--length] = 0;
-    if (number > 0)
-        snprintf(place, sizeof place, ":%d", number);
-    return complain(message, "%.80s%s: MuJoCo cannot read it: %.100s", path, place, error);
+    const char *const line = strstr(error, "line");
+    const int number = line ? atoi(line + strcspn(line, "0123456789")) : 0;
+    complain(message,
+             number > 0 ? "%.80s:%d: MuJoCo cannot read it: " : "%.80s: MuJoCo cannot read it: ",
+             file, number);
+    size_t n = strlen(message->text);
+    for (const char *s = error; *s && n + 1 < sizeof message->text; s++)
+        if (!isspace((unsigned char)*s) && !iscntrl((unsigned char)*s))
+            message->text[n++] = *s;
+        else if (s > error && s[1] && message->text[n - 1] != ' ')
+            message->text[n++] = ' ';
+    message->text[n] = 0;
+    return false;
 }
 
 bool mjcf_read(const char *path, struct spatial_model *model, stance_message *message)
@@ -473,7 +476,8 @@ bool mjcf_read(const char *path, struct spatial_model *model, stance_message *me
         mjModel *const m = library.mj_loadXML(path, NULL, error, sizeof error);
         sandbox_limit(false);
         r.m = m;
-        good = m ? read_model(&r) || no_memory(message) : refuse_as_mujoco(path, error, message);
+        good = m ? read_model(&r) || no_memory(message)
+                 : refuse_as_mujoco(model->file, error, message);
         if (m)
             library.mj_deleteModel(m);
         mujoco_close(&library);

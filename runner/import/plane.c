@@ -162,7 +162,7 @@ static bool too_many(const struct plane_tree *t)
         add_text(list, sizeof list, "%s%.20s", moving++ ? ", " : "",
                  t->model->joint[t->link[k].joint].name);
     }
-    return plane_refuse(t, 0, "%d joints move; at most 10 beside the root: --weld some of %s",
+    return plane_refuse(t, 0, "%d joints move; at most 10 besides the root: --weld some of %s",
                         moving, list);
 }
 
@@ -242,7 +242,7 @@ static double within(struct plane_tree *t, int k, double value)
     const double inside = fmin(fmax(value, limits[0]), limits[1]);
     if (fabs(inside - value) > 1e-12)
         spatial_note(t->model, "%.60s begins at its limit, %.6g, not at %.6g",
-                     t->model->body[t->link[k].body].name, inside, value);
+                     t->model->body[t->link[k].body].name, inside, value + 0.0);
     return inside;
 }
 

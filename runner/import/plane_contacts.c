@@ -356,17 +356,28 @@ static void note_robot(struct plane_tree *t)
             spatial_note(t->model, "the robot's bodies do not touch each other here");
 }
 
-/* Does what the file has stand on something? What it does not say is level ground at height 0, for
- * what is not held by the world. */
+static bool any_touches(const struct plane_tree *t)
+{
+    for (int k = 0; k < t->links; k++)
+        if (t->link[k].touches)
+            return true;
+    return t->wishes->soles > 0;
+}
+
+/* Is there ground to touch? Where the file has none it is level, at its height 0, for what falls.
+ */
 static bool has_ground(struct plane_tree *t)
 {
+    const bool falls = t->robot->map.free_root && t->robot->gravity > 0;
+    if (!any_touches(t) || t->along_floor)
+        return false;
     if (t->has_floor)
         return true;
-    if (t->robot->map.free_root)
+    if (falls)
         spatial_note(t->model, "the file has no floor: level ground at its height 0");
     else
         spatial_note(t->model, "the file has no floor: nothing touches the ground");
-    return t->robot->map.free_root;
+    return falls;
 }
 
 bool plane_contacts(struct plane_tree *t)

@@ -123,7 +123,7 @@ static void take_servos(struct plane_tree *t, const double (*gain)[2], int servo
         if (gain[a][0] != 0 || gain[a][1] != 0)
             spatial_note(t->model,
                          "servo %s, kp %.6g, kd %.6g, is a motor here: `hold` has one gain for all",
-                         robot->mechanism.actuator[a].name, gain[a][0], gain[a][1]);
+                         robot->mechanism.actuator[a].name, gain[a][0] + 0.0, gain[a][1] + 0.0);
 }
 
 /* An actuator of the scenario from those of one joint. */

@@ -73,6 +73,26 @@ static void tell(struct plane_tree *t, const char *what, const char *from, const
         spatial_note(t->model, "%s %.80s is called %s", what, from, to);
 }
 
+/* As it is, with _ behind, else numbered: the first that is free. */
+static void settle(const struct plane_tree *t, bool actuator, int before, const char *given,
+                   char to[STANCE_NAME])
+{
+    const stance_mechanism *const m = &t->robot->mechanism;
+    char name[STANCE_NAME];
+    clean(given, name);
+    snprintf(to, STANCE_NAME, "%s", name);
+    for (int i = 1; i < 1000; i++) {
+        if (actuator
+                ? !is_word(to) && !is_actuator(m, to, before)
+                : !is_taken(m, to, before < 0 ? m->bodies : before, before < 0 ? m->elements : 0))
+            return;
+        if (i == 1 && before >= 0)
+            snprintf(to, STANCE_NAME, "%.58s_", name);
+        else
+            snprintf(to, STANCE_NAME, "%.58s_%d", name, i);
+    }
+}
+
 void plane_name_bodies(struct plane_tree *t)
 {
     stance_mechanism *const m = &t->robot->mechanism;
@@ -82,14 +102,7 @@ void plane_name_bodies(struct plane_tree *t)
                                                                       t->model->joint[link->joint]
                                                                           .name;
         const char *const given = link->between ? joint : body[0] ? body : joint;
-        char name[STANCE_NAME], numbered[STANCE_NAME + 8];
-        clean(given[0] ? given : "link", name);
-        if (is_word(name))
-            memcpy(name + strlen(name), "_", 2);
-        snprintf(numbered, sizeof numbered, "%s", name);
-        for (int i = 2; is_taken(m, numbered, k, 0) && i < 1000; i++)
-            snprintf(numbered, sizeof numbered, "%.57s_%d", name, i);
-        snprintf(m->body[k].name, STANCE_NAME, "%.63s", numbered);
+        settle(t, false, k, given[0] ? given : "link", m->body[k].name);
         if (given[0])
             tell(t, link->between ? "joint" : "body", given, m->body[k].name);
     }
@@ -99,13 +112,9 @@ void plane_name_contact(struct plane_tree *t, int element, const char *geom)
 {
     stance_mechanism *const m = &t->robot->mechanism;
     const char *const body = m->body[m->element[element].body].name;
-    char name[STANCE_NAME], numbered[STANCE_NAME + 8];
-    clean(geom[0] ? geom : body, name);
-    snprintf(numbered, sizeof numbered, "%s", name);
-    for (int i = 1; is_taken(m, numbered, m->bodies, element) && i < 1000; i++)
-        snprintf(numbered, sizeof numbered, "%.57s_%d", name, i);
-    snprintf(m->element[element].name, STANCE_NAME, "%.63s", numbered);
-    if (geom[0])
+    settle(t, false, -1, geom[0] ? geom : body, m->element[element].name);
+    /* A number behind the name of a body, which comes first, tells itself. */
+    if (strncmp(geom, m->element[element].name, strlen(geom)) != 0)
         tell(t, "shape", geom, m->element[element].name);
 }
 
@@ -113,12 +122,10 @@ void plane_name_actuator(struct plane_tree *t, int actuator, const char *joint, 
 {
     stance_mechanism *const m = &t->robot->mechanism;
     const char *const given = joint[0] ? joint : own;
-    char name[STANCE_NAME], numbered[STANCE_NAME + 8];
-    clean(given[0] ? given : m->body[m->actuator[actuator].body].name, name);
-    snprintf(numbered, sizeof numbered, "%s", name);
-    for (int i = 2; (is_word(numbered) || is_actuator(m, numbered, actuator)) && i < 1000; i++)
-        snprintf(numbered, sizeof numbered, "%.57s_%d", name, i);
-    snprintf(m->actuator[actuator].name, STANCE_NAME, "%.63s", numbered);
-    if (own[0])
-        tell(t, "motor", own, m->actuator[actuator].name);
+    settle(t, true, actuator, given[0] ? given : m->body[m->actuator[actuator].body].name,
+           m->actuator[actuator].name);
+    if (own[0] && strcmp(own, m->actuator[actuator].name) != 0)
+        spatial_note(t->model, "motors are called as their joints are");
+    if (given != own && given[0])
+        tell(t, "the motor of joint", given, m->actuator[actuator].name);
 }

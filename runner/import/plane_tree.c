@@ -480,14 +480,32 @@ static bool is_fixed(const struct plane_tree *t, int body)
     return true;
 }
 
-/* A plane of the world, else a box. */
+/* Is a box as ground is: wider in the plane than it is high, and wider than a step? */
+static bool is_wide(const struct plane_tree *t, const struct spatial_geom *box)
+{
+    double rotation[3][3], extent[2] = {0};
+    memcpy(rotation, box->rotation, sizeof rotation);
+    if (box->body >= 0)
+        space_product(t->pose[box->body].rotation, box->rotation, rotation);
+    for (int k = 0; k < 3; k++) {
+        double axis[3], flat[2];
+        space_column(rotation, k, axis);
+        plane_direction(t, axis, flat);
+        extent[0] += 2 * box->size[k] * fabs(flat[0]);
+        extent[1] += 2 * box->size[k] * fabs(flat[1]);
+    }
+    return extent[0] >= 1 && extent[0] > extent[1];
+}
+
+/* A plane of the world, else a box that may be ground. */
 static int find_floor(const struct plane_tree *t)
 {
     static const spatial_shape shapes[] = {SPATIAL_PLANE, SPATIAL_BOX};
     for (int k = 0; k < 2; k++)
         for (int g = 0; g < t->model->geoms; g++) {
             const struct spatial_geom *const geom = &t->model->geom[g];
-            if (geom->meets_floor && geom->shape == shapes[k] && is_fixed(t, geom->body))
+            if (geom->meets_floor && geom->shape == shapes[k] && is_fixed(t, geom->body) &&
+                (k == 0 || is_wide(t, geom)))
                 return g;
         }
     return -1;
@@ -540,11 +558,19 @@ static bool take_floor(struct plane_tree *t)
     double at[3], normal[3];
     t->floor_friction = NAN;
     t->has_floor = floor >= 0;
+    note_others(t, floor);
     if (floor < 0)
         return true;
     const struct spatial_geom *const geom = &t->model->geom[floor];
     floor_face(t, geom, at, normal);
-    if (fabs(space_dot(normal, map->normal)) > PARALLEL)
+    const double across = fabs(space_dot(normal, map->normal));
+    if (across > 1 - PARALLEL) { /* as one who lies on it sees it */
+        spatial_note(t->model, "the floor is left out: the robot moves along it");
+        t->along_floor = true;
+        t->has_floor = false;
+        return true;
+    }
+    if (across > PARALLEL)
         return plane_refuse(t, geom->line, "floor '%.60s' is tilted across the plane", geom->name);
     if (space_dot(normal, map->up) < 0.02)
         return plane_refuse(t, geom->line,
@@ -564,7 +590,6 @@ static bool take_floor(struct plane_tree *t)
     t->floor_friction = geom->friction;
     if (geom->shape == SPATIAL_BOX)
         spatial_note(t->model, "box %.60s is the ground, without ends", geom->name);
-    note_others(t, floor);
     return true;
 }
 

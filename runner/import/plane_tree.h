@@ -40,7 +40,7 @@ struct plane_tree {
     int links;
     struct plane_link *link; /* [joints] parents first */
     bool has_floor;          /* the file has one */
-    bool touches;            /* the robot may touch it */
+    bool along_floor;        /* ... which the plane is parallel to */
     double floor_friction;   /* NAN: not given */
 };
 

@@ -56,8 +56,9 @@ static void head(FILE *out, const struct spatial_model *model, const struct plan
 /* ---- values ------------------------------------------------------------------------------------
  */
 
-/* The shortest that reads back; one of 12 digits may be off by the rounding of a few sums. */
-static const char *number(char text[32], double value)
+/* The shortest that reads back; one of 12 digits may be off by `rounding`. Readers of YAML 1.1 take
+ * 2e-06 for a word, 2.0e-06 for a number. */
+static const char *rounded(char text[32], double value, double rounding)
 {
     if (isinf(value))
         return strcpy(text, "none");
@@ -66,10 +67,27 @@ static const char *number(char text[32], double value)
         const double off = fabs(strtod(text, NULL) - value);
         if (strchr(text, 'e') && fabs(value) >= 1e-4 && fabs(value) < 1e9)
             continue; /* 200, not 2e+02 */
-        if (off == 0 || (digits <= 12 && off <= 8 * DBL_EPSILON * fabs(value)))
+        if (off == 0 || (digits <= 12 && off <= rounding))
             break;
     }
+    char *const power = strchr(text, 'e');
+    if (power && !strchr(text, '.')) {
+        memmove(power + 2, power, strlen(power) + 1);
+        memcpy(power, ".0", 2);
+    }
     return text;
+}
+
+/* Masses, stiffnesses: sums of a few. */
+static const char *number(char text[32], double value)
+{
+    return rounded(text, value, 8 * DBL_EPSILON * fabs(value));
+}
+
+/* m, rad: differences of places of some metres. */
+static const char *place(char text[32], double value)
+{
+    return rounded(text, value, 8 * DBL_EPSILON * fmax(1, fabs(value)));
 }
 
 /* A mapping in braces, on several lines where it is long: what is begun with open ends with shut.
@@ -121,6 +139,12 @@ static void one(struct braces *b, const char *key, double value)
     item(b, "%s: %s", key, number(text, value));
 }
 
+static void at(struct braces *b, const char *key, double value)
+{
+    char text[32];
+    item(b, "%s: %s", key, place(text, value));
+}
+
 /* What is the default is left out. */
 static void unless(struct braces *b, const char *key, double value, double fallback)
 {
@@ -131,7 +155,7 @@ static void unless(struct braces *b, const char *key, double value, double fallb
 static void two(struct braces *b, const char *key, const double value[2])
 {
     char first[32], second[32];
-    item(b, "%s: [%s, %s]", key, number(first, value[0]), number(second, value[1]));
+    item(b, "%s: [%s, %s]", key, place(first, value[0]), place(second, value[1]));
 }
 
 static void two_unless_zero(struct braces *b, const char *key, const double value[2])
@@ -154,9 +178,10 @@ static void body(FILE *out, const stance_mechanism *m, int k)
     two_unless_zero(&b, "at", n->at);
     if (m->body[k].joint == STANCE_SLIDE)
         two(&b, "axis", n->axis);
-    unless(&b, "angle", n->angle, 0);
+    if (n->angle != 0)
+        at(&b, "angle", n->angle);
     unless(&b, "mass", n->mass, 0);
-    unless(&b, "inertia", n->inertia, 0);
+    unless(&b, "inertia", n->inertia, n->mass > 0 ? -1 : 0); /* of a point mass, too */
     two_unless_zero(&b, "centre", n->centre);
     unless(&b, "stiffness", n->stiffness, 0);
     unless(&b, "rest", n->rest, 0);
@@ -204,7 +229,8 @@ static void ground(FILE *out, const struct plane_robot *robot)
 {
     struct braces b = open_braces(out, 0, "ground");
     one(&b, "friction", robot->friction);
-    unless(&b, "slope", robot->slope, 0);
+    if (robot->slope != 0)
+        at(&b, "slope", robot->slope);
     unless(&b, "gravity", robot->gravity, STANCE_GRAVITY);
     shut(&b);
 }
@@ -217,9 +243,10 @@ static void initial(FILE *out, const struct plane_robot *robot)
     fputs("initial:\n", out);
     struct braces b = open_braces(out, 2, "state");
     for (int k = 0; k < robot->mechanism.bodies; k++) {
-        for (int i = 0; robot->mechanism.body[k].joint == STANCE_FREE && i < 2; i++)
-            unless(&b, free_names[i], *start++, 0);
-        unless(&b, robot->mechanism.body[k].name, *start++, 0);
+        const bool free = robot->mechanism.body[k].joint == STANCE_FREE;
+        for (int i = free ? 0 : 2; i < 3; i++, start++)
+            if (*start != 0)
+                at(&b, i < 2 ? free_names[i] : robot->mechanism.body[k].name, *start);
     }
     shut(&b);
 }
