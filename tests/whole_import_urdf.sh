@@ -170,7 +170,8 @@ refused "two joints of one name" 17 'two joints called j, the other one at line 
 refused "a circle" 2 'every link is the child of a joint' '17i <joint name="k" type="fixed"><parent link="b"/><child link="a"/></joint>'
 refused "a circle beside the tree" 17 'link c hangs on itself, by joint k' '17i <link name="c"/><joint name="k" type="fixed"><parent link="c"/><child link="c"/></joint>'
 refused "a floating link in the tree" 11 'j is floating, but its parent a is not the world' '11s/revolute/floating/'
-refused "a joint that follows another one" 16 'mimic' '16s/^/<mimic joint="j"\/>/'
+refused "a joint that follows another one" 16 'mimic joint j .* or --weld it' '16s/^/<mimic joint="j"\/>/'
+expect "... unless it is held" 0 "$stance" import bad.urdf --weld j -o follower.yaml
 refused "a transmission of no joint" 17 'transmission of joint k, which the robot does not have' '17i <transmission><joint name="k"/></transmission>'
 refused "a transmission of two joints" 17 'of several joints' '17i <transmission><joint name="j"/><joint name="j"/></transmission>'
 refused "a gear of nothing" 17 'reduction of 0' '17i <transmission><joint name="j"/><mechanicalReduction>0</mechanicalReduction></transmission>'

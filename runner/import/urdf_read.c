@@ -481,7 +481,7 @@ static bool mimic(struct urdf *u, const struct urdf_joint *j)
     if (at && !alien)
         return no_memory(u->message);
     if (alien) {
-        alien->what = "mimic joint";
+        alien->what = SPATIAL_MIMIC;
         name_it(alien->name, j->name);
         alien->line = urdf_line(at);
     }
