@@ -444,8 +444,9 @@ static char *text_of(const char *path, stance_message *message)
 /* MuJoCo's own, of several lines and with the line of the element where it knows one. */
 static bool refuse_as_mujoco(const char *file, const char *error, stance_message *message)
 {
-    const char *const line = strstr(error, "line");
-    const int number = line ? atoi(line + strcspn(line, "0123456789")) : 0;
+    int number = 0;
+    for (const char *at = error; number == 0 && (at = strcasestr(at, "line")) != NULL; at++)
+        number = atoi(at + strcspn(at, "0123456789"));
     complain(message,
              number > 0 ? "%.80s:%d: MuJoCo cannot read it: " : "%.80s: MuJoCo cannot read it: ",
              file, number);

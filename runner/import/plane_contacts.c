@@ -286,7 +286,7 @@ static void choose(struct plane_tree *t, struct candidates *c)
                      dropped);
 }
 
-/* What most of them have; NAN: none has any. */
+/* What most of them have, of as many the first; NAN: none has any. */
 static double common_friction(const struct candidates *c)
 {
     double best = NAN;
@@ -295,7 +295,7 @@ static double common_friction(const struct candidates *c)
         int same = 0;
         for (int i = 0; i < c->count; i++)
             same += c->list[i].taken && c->list[i].friction == c->list[k].friction;
-        if (c->list[k].taken && (same > most || (same == most && c->list[k].friction > best))) {
+        if (c->list[k].taken && same > most) {
             most = same;
             best = c->list[k].friction;
         }
