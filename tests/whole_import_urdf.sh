@@ -31,7 +31,7 @@ noted() { # name, pattern
     result $? "$1: $2"
 }
 
-for name in turned_leg hanging exported spring_hopper box_feet sideways; do
+for name in turned_leg hanging exported spring_hopper box_feet sideways post; do
     imports "$name"
 done
 noted turned_leg 'rpy such as 1.57 .*: 3'
@@ -145,8 +145,8 @@ refused() { # name, line, pattern, sed's command
     [ "$(wc -l <log)" = 1 ] && grep -qE "^stance import: bad\.urdf:$2: .*$3" log && ! [ -e bad.yaml ]
     result $? "... in line $2: $3"
 }
-refused "text for a number" 6 '<mass value="heavy">: is not a number' '6s/"1"/"heavy"/'
-refused "what is not finite" 7 '<inertia iyy="nan">: is not a number' '7s/iyy="1"/iyy="nan"/'
+refused "text for a number" 6 '<mass value="heavy">: is not one number' '6s/"1"/"heavy"/'
+refused "what is not finite" 7 '<inertia iyy="nan">: is not one number' '7s/iyy="1"/iyy="nan"/'
 refused "a property of xacro" 6 'expand the file' '6s/"1"/"${mass}"/'
 refused "commas between numbers" 5 'blanks, not commas' '5s/0 0 -0.1/0, 0, -0.1/'
 refused "two numbers of three" 5 'is not three numbers' '5s/0 0 -0.1/0 -0.1/'
@@ -170,10 +170,13 @@ refused "two joints of one name" 17 'two joints called j, the other one at line 
 refused "a circle" 2 'every link is the child of a joint' '17i <joint name="k" type="fixed"><parent link="b"/><child link="a"/></joint>'
 refused "a circle beside the tree" 17 'link c hangs on itself, by joint k' '17i <link name="c"/><joint name="k" type="fixed"><parent link="c"/><child link="c"/></joint>'
 refused "a floating link in the tree" 11 'j is floating, but its parent a is not the world' '11s/revolute/floating/'
-refused "a joint that follows another one" 16 'mimic' '16s/^/<mimic joint="j"\/>/'
+refused "a joint that follows another one" 16 'mimic joint j .* or --weld it' '16s/^/<mimic joint="j"\/>/'
+expect "... unless it is held" 0 "$stance" import bad.urdf --weld j -o follower.yaml
 refused "a transmission of no joint" 17 'transmission of joint k, which the robot does not have' '17i <transmission><joint name="k"/></transmission>'
 refused "a transmission of two joints" 17 'of several joints' '17i <transmission><joint name="j"/><joint name="j"/></transmission>'
 refused "a gear of nothing" 17 'reduction of 0' '17i <transmission><joint name="j"/><mechanicalReduction>0</mechanicalReduction></transmission>'
+refused "a rotor of less than nothing" 17 'inertia of -4 at the joint' '17i <transmission><joint name="j"/><drake:gear_ratio value="2"/><drake:rotor_inertia value="-1"/></transmission>'
+refused "a damper that drives" 16 'damping or friction is less than nothing' '16i <dynamics damping="-1"/>'
 refused "xacro" 2 'expand the file first' '2i <xacro:property name="m" value="1"/>'
 refused "entities" '[0-9]+' 'DOCTYPE' '1i <!DOCTYPE robot [<!ENTITY m "1">]>'
 refused "what is not XML" 10 'not XML' '10s/link/lonk/'

@@ -660,7 +660,7 @@ const char *compare_sentence(const struct compare_report *report, const stance_s
         snprintf(
             text, size,
             "%d random states: accelerations DIFFER from the file's by up to %.2g (relative, at "
-            "state %d, coordinate %s): the scenario is not that robot",
+            "state %d, coordinate %s), more than rounding does unless masses differ by many orders",
             report->states, report->worst, report->state, name);
     return text;
 }

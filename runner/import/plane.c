@@ -331,15 +331,27 @@ static void take_map(struct plane_tree *t)
 /* ---- all of it ---------------------------------------------------------------------------------
  */
 
+/* A joint that follows another one is as good as any where it is held. */
+static bool is_held(const struct plane_tree *t, const struct spatial_alien *alien)
+{
+    for (size_t w = 0; w < t->wishes->welds; w++)
+        if (strcmp(alien->what, SPATIAL_MIMIC) == 0 && strcmp(alien->name, t->wishes->weld[w]) == 0)
+            return true;
+    return false;
+}
+
 static bool take_aliens(struct plane_tree *t)
 {
     for (int a = 0; a < t->model->aliens; a++) {
         const struct spatial_alien *const alien = &t->model->alien[a];
         const char *const of = alien->name[0] ? " " : "";
+        if (is_held(t, alien))
+            continue;
         if (!alien->harmless)
             return plane_refuse(t, alien->line,
-                                "%s%s%.60s has no counterpart here: take it out of the file",
-                                alien->what, of, alien->name);
+                                "%s%s%.60s has no counterpart here: take it out of the file%s",
+                                alien->what, of, alien->name,
+                                strcmp(alien->what, SPATIAL_MIMIC) == 0 ? ", or --weld it" : "");
         spatial_note(t->model, "%s%s%.60s is left out", alien->what, of, alien->name);
     }
     return true;

@@ -94,6 +94,9 @@ struct spatial_actuator {
     double kp, kd;      /* of servos, N m/rad and N m s/rad of the joint, gear included */
 };
 
+/* `what` of a joint that follows another one: it may be held. */
+#define SPATIAL_MIMIC "mimic joint"
+
 /* What the file has and the plane cannot: each refused, or noted, by its name. */
 struct spatial_alien {
     const char *what; /* "equality", "tendon", "plugin", "flexible body", "skin", ...; static */

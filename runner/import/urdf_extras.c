@@ -90,11 +90,12 @@ static bool transmission(struct urdf *u, const xmlNode *node)
     if (reduction == 0 || ratio == 0)
         return urdf_refuse(u, node, "the transmission of joint %.60s has a reduction of 0",
                            u->joint[joint].name);
-    if (isfinite(rotor) && rotor < 0)
-        return urdf_refuse(u, node, "the rotor of joint %.60s has less than no inertia",
-                           u->joint[joint].name);
-    if (isfinite(rotor) && u->joint[joint].joint >= 0)
-        u->model->joint[u->joint[joint].joint].armature += ratio * ratio * rotor;
+    const double armature = isfinite(rotor) ? ratio * ratio * rotor : 0;
+    if (armature < 0 || !isfinite(armature))
+        return urdf_refuse(u, node, "the rotor of joint %.60s has an inertia of %g at the joint",
+                           u->joint[joint].name, armature);
+    if (u->joint[joint].joint >= 0)
+        u->model->joint[u->joint[joint].joint].armature += armature;
     return add_motor(u, node, name && *name ? name : u->joint[joint].name, joint, reduction);
 }
 

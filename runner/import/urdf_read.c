@@ -424,6 +424,9 @@ static bool one_way(struct urdf *u, struct urdf_joint *j, int body, spatial_join
         (dynamics && (!urdf_numbers(u, dynamics, "damping", 1, &joint->damping) ||
                       !urdf_numbers(u, dynamics, "friction", 1, &joint->friction))))
         return false;
+    if (joint->damping < 0 || joint->friction < 0)
+        return urdf_refuse(u, dynamics, "joint %.60s: its damping or friction is less than nothing",
+                           j->name);
     begin(u, joint);
     return true;
 }
@@ -481,7 +484,7 @@ static bool mimic(struct urdf *u, const struct urdf_joint *j)
     if (at && !alien)
         return no_memory(u->message);
     if (alien) {
-        alien->what = "mimic joint";
+        alien->what = SPATIAL_MIMIC;
         name_it(alien->name, j->name);
         alien->line = urdf_line(at);
     }

@@ -69,12 +69,14 @@ static const char *past_blanks(const char *at)
 bool urdf_value(const xmlNode *node, char text[SPATIAL_NAME])
 {
     const char *from = urdf_text(node, "value");
+    const xmlNode *child = node->children;
+    while (child && child->type != XML_TEXT_NODE)
+        child = child->next;
     if (!from)
-        from =
-            node->children && node->children->content ? (const char *)node->children->content : "";
-    from = past_blanks(from);
-    snprintf(text, SPATIAL_NAME, "%s", from);
-    text[strcspn(text, " \t\r\n")] = '\0';
+        from = child ? (const char *)child->content : "";
+    snprintf(text, SPATIAL_NAME, "%s", past_blanks(from));
+    for (size_t end = strlen(text); end > 0 && strchr(" \t\r\n", text[end - 1]); end--)
+        text[end - 1] = '\0';
     return text[0] != '\0';
 }
 
@@ -101,7 +103,7 @@ static bool no_number(const struct urdf *u, const xmlNode *node, const char *key
     const char *const why =
         strstr(text, "${") || strstr(text, "$(") ? "is for xacro: expand the file with it first"
         : strchr(text, ',') ? "blanks, not commas, stand between numbers, and points in them"
-        : count == 1        ? "is not a number"
+        : count == 1        ? "is not one number"
                             : "is not three numbers";
     return urdf_refuse(u, node, "<%s %s=\"%s\">: %s", (const char *)node->name, key,
                        shown(buffer, text), why);
