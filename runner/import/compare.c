@@ -267,6 +267,23 @@ static void still(struct comparison *o)
     }
 }
 
+/* What scenarios leave out with a note: ranges of motors that are not the same both ways, dampers
+ * and rotors of a free joint. */
+static void leave_out(const struct comparison *o)
+{
+    mjModel *const m = o->file.m;
+    m->opt.disableflags |= mjDSBL_CLAMPCTRL;
+    for (int a = 0; a < m->nu; a++)
+        m->actuator_forcelimited[a] = 0;
+    for (int dof = 0; dof < m->nv; dof++) {
+        const int j = m->dof_jntid[dof];
+        if (m->jnt_type[j] != mjJNT_FREE)
+            continue;
+        m->dof_damping[dof] = m->dof_armature[dof] = 0;
+        m->jnt_stiffness[j] = 0;
+    }
+}
+
 /* The file itself, whose joints are the model's, one by one. */
 static bool load_file(struct comparison *o, const char *path, stance_message *message)
 {
@@ -276,8 +293,10 @@ static bool load_file(struct comparison *o, const char *path, stance_message *me
         o->joint[j] = j;
     o->root = o->map->root_body + 1;
     still(o);
-    return o->file.m->njnt == o->model->joints ||
-           complain(message, "not compared: %s has other joints than when it was read", path);
+    if (o->file.m->njnt != o->model->joints)
+        return complain(message, "not compared: %s has other joints than when it was read", path);
+    leave_out(o);
+    return true;
 }
 
 static bool load_ours(struct comparison *o, const stance_case *c, stance_message *message)

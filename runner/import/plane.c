@@ -375,6 +375,24 @@ static void take_links(struct plane_tree *t)
     }
 }
 
+/* A reader may take nan for a number. */
+static bool check_finite(const struct plane_tree *t)
+{
+    for (int k = 0; k < t->links; k++) {
+        const stance_body_numbers *const n = &t->robot->mechanism.value.body[k];
+        const struct spatial_body *const body = &t->model->body[t->link[k].body];
+        const double sum = n->mass + n->inertia + n->centre[0] + n->centre[1] + n->at[0] +
+                           n->at[1] + n->axis[0] + n->axis[1] + n->angle + n->stiffness +
+                           n->damping + n->rest + n->armature;
+        if (!isfinite(sum) || isnan(n->limits[0]) || isnan(n->limits[1]))
+            return plane_refuse(t, body->line,
+                                "body '%.60s', its joint or its shape has a number that is none "
+                                "(nan), or beyond all bounds",
+                                body->name);
+    }
+    return true;
+}
+
 bool plane_make(struct spatial_model *model, const struct plane_wishes *wishes,
                 struct plane_robot *robot, stance_message *message)
 {
@@ -386,7 +404,7 @@ bool plane_make(struct spatial_model *model, const struct plane_wishes *wishes,
         take_map(&t);
         plane_name_bodies(&t);
         take_start(&t);
-        good = plane_contacts(&t) && plane_drives(&t) && raise_start(&t);
+        good = check_finite(&t) && plane_contacts(&t) && plane_drives(&t) && raise_start(&t);
     }
     plane_tree_free(&t);
     return good;

@@ -79,7 +79,7 @@ static double limit_of(struct plane_tree *t, int a)
     const double limit = fmin(down, up) > 0 ? fmin(down, up) : fmax(fabs(down), fabs(up));
     if (fabs(down - up) > 1e-12 * (fabs(down) + fabs(up)) && isfinite(limit))
         spatial_note(t->model, "actuator %.60s gives %.6g to %.6g in the file, -%.6g to %.6g here",
-                     name_of(t, a), -down, up, limit, limit);
+                     name_of(t, a), 0 - down, up + 0.0, limit, limit);
     return limit;
 }
 
