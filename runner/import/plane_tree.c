@@ -206,29 +206,47 @@ static void choose_normal(const struct plane_tree *t, double normal[3])
             memcpy(normal, normals[k], sizeof normals[k]);
 }
 
-static bool check_joint(const struct plane_tree *t, int j, const double normal[3])
+static bool in_plane(const struct plane_tree *t, int j, const double normal[3])
+{
+    const spatial_joint_kind kind = t->model->joint[j].kind;
+    return t->welded[j] || kind == SPATIAL_FREE ||
+           (kind == SPATIAL_HINGE && parallel(t->line[j].axis, normal)) ||
+           (kind == SPATIAL_SLIDE && fabs(space_dot(t->line[j].axis, normal)) < PARALLEL);
+}
+
+/* The first joint that is not of the plane, and how many more are not: " (so with a, b)". */
+static bool refuse_joint(const struct plane_tree *t, int j, const double normal[3])
 {
     const struct spatial_joint *const joint = &t->model->joint[j];
     const char *const name = plane_joint_name(t, j);
-    char axis[64], of[64];
-    if (t->welded[j] || joint->kind == SPATIAL_FREE)
-        return true;
+    char axis[64], of[64], others[90] = "";
+    for (int k = j + 1; k < t->model->joints; k++)
+        if (!in_plane(t, k, normal))
+            add_text(others, sizeof others - 2, "%s%.20s", others[0] ? ", " : " (so with ",
+                     plane_joint_name(t, k));
+    if (others[0])
+        add_text(others, sizeof others, ")");
     if (joint->kind == SPATIAL_BALL)
         return plane_refuse(t, joint->line,
-                            "joint '%.50s' is a ball, which turns out of the plane: --weld %.50s "
-                            "holds it",
-                            name, name);
-    if (!(fabs(space_length(t->line[j].axis) - 1) < PARALLEL))
-        return plane_refuse(t, joint->line, "joint '%.60s' has no axis", name);
-    const bool hinge = joint->kind == SPATIAL_HINGE,
-               good = hinge ? parallel(t->line[j].axis, normal)
-                            : fabs(space_dot(t->line[j].axis, normal)) < PARALLEL;
-    return good || plane_refuse(t, joint->line,
-                                "joint '%.40s' %s %s, which is not %s the plane's normal %s: "
-                                "--weld %.40s holds it, --plane chooses another plane",
-                                name, hinge ? "turns about" : "slides along",
-                                axis_text(t->line[j].axis, axis), hinge ? "along" : "across",
-                                axis_text(normal, of), name);
+                            "joint '%.40s' is a ball, which turns out of the plane: --weld %.40s "
+                            "holds it%s",
+                            name, name, others);
+    const bool hinge = joint->kind == SPATIAL_HINGE;
+    return plane_refuse(t, joint->line,
+                        "joint '%.25s' %s %s, not %s the normal %s: --weld %.25s "
+                        "holds it%s, --plane chooses another plane",
+                        name, hinge ? "turns about" : "slides along",
+                        axis_text(t->line[j].axis, axis), hinge ? "along" : "across",
+                        axis_text(normal, of), name, others);
+}
+
+static bool check_joint(const struct plane_tree *t, int j, const double normal[3])
+{
+    const struct spatial_joint *const joint = &t->model->joint[j];
+    if (!t->welded[j] && (joint->kind == SPATIAL_HINGE || joint->kind == SPATIAL_SLIDE) &&
+        !(fabs(space_length(t->line[j].axis) - 1) < PARALLEL))
+        return plane_refuse(t, joint->line, "joint '%.60s' has no axis", plane_joint_name(t, j));
+    return in_plane(t, j, normal) || refuse_joint(t, j, normal);
 }
 
 /* Up is against gravity; without any, along the file's z, else its y. */
