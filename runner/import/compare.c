@@ -61,7 +61,7 @@ static void twin_free(struct twin *t)
 static bool twin_load(struct twin *t, const char *path, const char *of, stance_message *message)
 {
     char why[200] = "";
-    t->m = t->mj->mj_loadXML(path, NULL, why, sizeof why);
+    t->m = mujoco_load(t->mj, path, why, sizeof why);
     if (!t->m) {
         why[strcspn(why, "\n")] = '\0';
         return complain(message, "MuJoCo does not read %s: %.150s", of, why);

@@ -483,7 +483,7 @@ bool mjcf_read(const char *path, struct spatial_model *model, stance_message *me
     bool good = mujoco_open(&library, &why) || without_library(model->file, &why, message);
     if (good) {
         sandbox_limit(true);
-        mjModel *const m = library.mj_loadXML(path, NULL, error, sizeof error);
+        mjModel *const m = mujoco_load(&library, path, error, sizeof error);
         sandbox_limit(false);
         r.m = m;
         good = m ? read_model(&r) || no_memory(message)

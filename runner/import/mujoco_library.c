@@ -7,14 +7,41 @@
 #ifdef MUJOCO_HEADER
 
 #include <dlfcn.h>
+#include <fcntl.h>
 #include <unistd.h>
 
 #define TEXT_OF(value) #value
 #define DIGITS_OF(value) TEXT_OF(value)
 
+/* Where standard error goes, while it is hushed; -1: it is not. The library's errors know no
+ * context. */
+static int hushed = -1;
+
+static void hush(void)
+{
+    const int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);
+    fflush(stderr);
+    hushed = nowhere < 0 ? -1 : fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
+    if (hushed >= 0)
+        dup2(nowhere, STDERR_FILENO);
+    if (nowhere >= 0)
+        close(nowhere);
+}
+
+static void speak(void)
+{
+    fflush(stderr);
+    if (hushed < 0)
+        return;
+    dup2(hushed, STDERR_FILENO);
+    close(hushed);
+    hushed = -1;
+}
+
 /* What it cannot go on from. */
 static void end_here(const char *text)
 {
+    speak();
     fprintf(stderr, "stance import: libmujoco: %.200s\n", text);
     fflush(stderr);
     _exit(EXIT_USAGE);
@@ -66,6 +93,14 @@ bool mujoco_open(struct mujoco *m, stance_message *message)
                         mjVERSION_HEADER);
     }
     return true;
+}
+
+mjModel *mujoco_load(const struct mujoco *m, const char *path, char *error, int size)
+{
+    hush();
+    mjModel *const model = m->mj_loadXML(path, NULL, error, size);
+    speak();
+    return model;
 }
 
 void mujoco_close(struct mujoco *m)

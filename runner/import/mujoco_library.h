@@ -30,6 +30,10 @@ struct mujoco {
 };
 
 void mujoco_close(struct mujoco *m);
+
+/* A file's model, to be given to mj_deleteModel; NULL: `error` of `size` bytes says why, in lines.
+ * What the library's helpers print meanwhile (of meshes) goes nowhere. */
+mjModel *mujoco_load(const struct mujoco *m, const char *path, char *error, int size);
 #else
 struct mujoco {
     void *library;
