@@ -168,7 +168,7 @@ PAGE = $(wildcard $(WEB)/page.html)
 $(BUILD)/analysis/view/page_template.o: PROGRAM_CFLAGS += $(PAGE:%=-DSTANCE_PAGE='"%"' -DSTANCE_PAGE_ENGINES='$(foreach s,$(STRUCTURES) $(RUNTIME),ENGINE($(s)))')
 $(BUILD)/analysis/view/page_template.o: $(PAGE)
 # Files of other programs; libmujoco is loaded when it is asked for, by what its header says.
-$(BUILD)/runner/import/%.o: EXTRA = $(XML_CFLAGS)
+$(BUILD)/runner/import/%.o $(BUILD)/fuzz/runner/import/%.o: EXTRA = $(XML_CFLAGS)
 $(patsubst %.c,$(BUILD)/%.o,$(wildcard runner/import/*.c)): $(BUILD)/simulators
 # What the build was is recorded in one object, made anew when the revision changes.
 $(BUILD)/runner/store/build_info.o: EXTRA = $(BUILD_INFO)

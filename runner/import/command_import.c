@@ -6,6 +6,7 @@
 #include "runner/base/message.h"
 #include "runner/base/sandbox.h"
 #include "runner/plan/asked.h"
+#include "runner/plan/instruction_set.h"
 
 #include <errno.h>
 #include <stdlib.h>
@@ -199,6 +200,8 @@ static int run(int argc, char **argv)
         fprintf(stderr, "stance import: %s: %s\n", request.file, strerror(errno));
         return EXIT_IO;
     }
+    if (!instruction_set_usable(command_import.name)) /* for the first case */
+        return EXIT_USAGE;
     return sandbox(work, &request, request.file);
 }
 

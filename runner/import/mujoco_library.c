@@ -10,9 +10,6 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-#define TEXT_OF(value) #value
-#define DIGITS_OF(value) TEXT_OF(value)
-
 /* Where standard error goes, while it is hushed; -1: it is not. The library's errors know no
  * context. */
 static int hushed = -1;
@@ -77,12 +74,12 @@ static bool find_all(struct mujoco *m)
 
 bool mujoco_open(struct mujoco *m, stance_message *message)
 {
-    /* Debian's; the name of those who build it themselves; the link of its -dev package. */
-    static const char *const names[] = {
-        "libmujoco.so.2.2.2", "libmujoco.so." DIGITS_OF(mjVERSION_HEADER), "libmujoco.so"};
-    *m = (struct mujoco){.library = NULL};
-    for (size_t i = 0; !m->library && i < sizeof names / sizeof *names; i++)
-        m->library = dlopen(names[i], RTLD_NOW | RTLD_LOCAL);
+    char exact[32];
+    snprintf(exact, sizeof exact, "libmujoco.so.%d.%d.%d", mjVERSION_HEADER / 100,
+             mjVERSION_HEADER / 10 % 10, mjVERSION_HEADER % 10);
+    *m = (struct mujoco){.library = dlopen(exact, RTLD_NOW | RTLD_LOCAL)};
+    if (!m->library)
+        m->library = dlopen("libmujoco.so", RTLD_NOW | RTLD_LOCAL);
     if (!m->library)
         return complain(message, "libmujoco is not installed (Debian: apt install libmujoco-dev)");
     if (!find_all(m) || m->mj_version() != mjVERSION_HEADER) {
@@ -115,10 +112,8 @@ void mujoco_close(struct mujoco *m)
 bool mujoco_open(struct mujoco *m, stance_message *message)
 {
     (void)m;
-    return complain(
-        message,
-        "this program was built without libmujoco (Debian: apt install libmujoco-dev, then "
-        "make)");
+    return complain(message, "this program was built without libmujoco 2.2 (Debian: apt install "
+                             "libmujoco-dev, then make)");
 }
 
 #endif

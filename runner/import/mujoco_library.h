@@ -11,8 +11,13 @@
 #include "engine/stance.h"
 
 #if __has_include(<mujoco/mujoco.h>)
-#define MUJOCO_HEADER
 #include <mujoco/mujoco.h>
+#if mjVERSION_HEADER >= 220 && mjVERSION_HEADER < 230 /* later ones have other members */
+#define MUJOCO_HEADER
+#endif
+#endif
+
+#ifdef MUJOCO_HEADER
 
 /* clang-format off */
 #define MUJOCO_FUNCTIONS(X) \
