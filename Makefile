@@ -321,6 +321,7 @@ web: packages packages-web
 $(BUILD)/tests/test_export: LIBS += $(MUJOCO)
 $(BUILD)/tests/test_export: EXTRA = $(MUJOCO:%=-DSTANCE_MUJOCO)
 $(BUILD)/tests/test_export: $(BUILD)/simulators
+$(BUILD)/tests/test_import.o: $(BUILD)/simulators
 $(BUILD)/simulators: FORCE
 	@mkdir -p $(@D); echo '$(MUJOCO)' | cmp -s - $@ || echo '$(MUJOCO)' > $@
 

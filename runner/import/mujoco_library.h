@@ -24,7 +24,7 @@
     X(mj_version) X(mj_loadXML) X(mj_deleteModel) X(mj_makeData) X(mj_deleteData) X(mj_resetData) \
     X(mj_name2id) X(mj_id2name) X(mj_kinematics) X(mj_comPos) X(mj_crb) X(mj_fullM) X(mj_comVel) X(mj_passive) \
     X(mj_rne) X(mj_transmission) X(mj_fwdActuation) X(mj_rnePostConstraint) X(mj_objectVelocity) \
-    X(mj_objectAcceleration) X(mju_eig3) X(mj_forward)
+    X(mj_objectAcceleration) X(mj_forward)
 /* clang-format on */
 
 struct mujoco {
