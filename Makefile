@@ -18,7 +18,7 @@ STRICT   = -std=c17 -D_GNU_SOURCE -ffp-contract=off -fno-tree-slp-vectorize -fno
 # ---- libraries: found with pkg-config and mpicc; MPI=0 builds for one rank with serial HDF5 ------
 PKG_CONFIG ?= pkg-config
 PACKAGES_RUN  = libopenmpi-dev openmpi-bin libhdf5-openmpi-dev libyaml-dev liblapacke-dev \
-                libslicot-dev libsundials-dev libgsl-dev librandom123-dev libjansson-dev libssl-dev zlib1g-dev \
+                libslicot-dev libsundials-dev libgsl-dev librandom123-dev libjansson-dev libssl-dev zlib1g-dev libxml2-dev \
                 gnuplot-nox fonts-dejavu-core
 PACKAGES_TEST = libcmocka-dev python3-yaml python3-jsonschema man-db python3-h5py python3-xarray python3-netcdf4 python3-scipy netcdf-bin \
                 poppler-utils
@@ -41,9 +41,11 @@ HDF5_PACKAGE = hdf5-serial
 endif
 LIBRARY_CFLAGS := $(shell $(PKG_CONFIG) --cflags $(HDF5_PACKAGE) yaml-0.1 jansson lapacke gsl zlib 2>/dev/null)
 LIBRARIES      := $(shell $(PKG_CONFIG) --libs $(HDF5_PACKAGE) yaml-0.1 jansson lapacke gsl zlib 2>/dev/null)
+XML_CFLAGS     := $(shell $(PKG_CONFIG) --cflags libxml-2.0 2>/dev/null)
+XML_LIBS       := $(or $(shell $(PKG_CONFIG) --libs libxml-2.0 2>/dev/null),-lxml2)
 PROGRAM_CFLAGS  = $(MPI_CFLAGS) $(LIBRARY_CFLAGS)
 LIBS            = $(LIBRARIES) -lhdf5_hl $(MPI_LIBS) -lslicot -llapack -lblas \
-                  -lsundials_arkode -lsundials_nvecserial -lcrypto -lm
+                  -lsundials_arkode -lsundials_nvecserial -lcrypto $(XML_LIBS) -lm
 
 # `make V=1` shows whole commands.
 ifneq ($(V),1)
@@ -165,6 +167,9 @@ $(foreach b,$(BUILD) $(BUILD)/fuzz,$(eval $(scripts:%.gp=$(b)/%.o): $(b)/%.o: %.
 PAGE = $(wildcard $(WEB)/page.html)
 $(BUILD)/analysis/view/page_template.o: PROGRAM_CFLAGS += $(PAGE:%=-DSTANCE_PAGE='"%"' -DSTANCE_PAGE_ENGINES='$(foreach s,$(STRUCTURES) $(RUNTIME),ENGINE($(s)))')
 $(BUILD)/analysis/view/page_template.o: $(PAGE)
+# Files of other programs; libmujoco is loaded when it is asked for, by what its header says.
+$(BUILD)/runner/import/%.o $(BUILD)/fuzz/runner/import/%.o: EXTRA = $(XML_CFLAGS)
+$(patsubst %.c,$(BUILD)/%.o,$(wildcard runner/import/*.c)): $(BUILD)/simulators
 # What the build was is recorded in one object, made anew when the revision changes.
 $(BUILD)/runner/store/build_info.o: EXTRA = $(BUILD_INFO)
 $(BUILD)/runner/store/build_info.o: $(BUILD)/revision
@@ -316,6 +321,7 @@ web: packages packages-web
 $(BUILD)/tests/test_export: LIBS += $(MUJOCO)
 $(BUILD)/tests/test_export: EXTRA = $(MUJOCO:%=-DSTANCE_MUJOCO)
 $(BUILD)/tests/test_export: $(BUILD)/simulators
+$(BUILD)/tests/test_import.o: $(BUILD)/simulators
 $(BUILD)/simulators: FORCE
 	@mkdir -p $(@D); echo '$(MUJOCO)' | cmp -s - $@ || echo '$(MUJOCO)' > $@
 

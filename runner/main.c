@@ -16,13 +16,14 @@ extern const struct command command_check, command_design, command_build, comman
     command_export, command_status, command_summary, command_plot, command_compare,
     command_describe, command_bench, command_basin, command_merge, command_table,
     command_sensitivity, command_replay, command_ranges, command_optimise, command_view,
-    command_gait;
+    command_gait, command_import;
 
 static const struct command *const commands[] = {
     &command_check,    &command_ranges, &command_design,   &command_build,  &command_run,
     &command_optimise, &command_status, &command_summary,  &command_plot,   &command_replay,
     &command_gait,     &command_view,   &command_compare,  &command_basin,  &command_sensitivity,
-    &command_merge,    &command_table,  &command_describe, &command_export, &command_bench,
+    &command_merge,    &command_table,  &command_describe, &command_export, &command_import,
+    &command_bench,
 };
 enum { COMMANDS = sizeof commands / sizeof commands[0] };
 

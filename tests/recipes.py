@@ -15,7 +15,8 @@ INSTALL = TOP / "runner/install"
 SPACK = {"libopenmpi-dev": "openmpi", "libhdf5-openmpi-dev": "hdf5", "libyaml-dev": "libyaml",
          "liblapacke-dev": "netlib-lapack", "libslicot-dev": "slicot", "libsundials-dev": "sundials",
          "libgsl-dev": "gsl", "librandom123-dev": "random123", "libjansson-dev": "jansson",
-         "libssl-dev": "openssl", "zlib1g-dev": "zlib-api", "gnuplot-nox": "gnuplot"}
+         "libssl-dev": "openssl", "zlib1g-dev": "zlib-api", "libxml2-dev": "libxml2",
+         "gnuplot-nox": "gnuplot"}
 WITH_OTHERS = {"openmpi-bin", "fonts-dejavu-core"}  # Spack has them in others, or leaves them to the system
 
 

@@ -3,7 +3,7 @@
 # use, and from the top, by "room/file.h". Prints every include that does not; exit code 1 if there is one.
 # With rooms as arguments: prints these, what they may use, and so on.
 cd "$(dirname "$0")/.." || exit 1
-runner='engine engine/control runner/base runner/ranks runner/objects runner/scenario runner/plan runner/store runner/run runner/optimise'
+runner='engine engine/control runner/base runner/ranks runner/objects runner/scenario runner/plan runner/store runner/run runner/optimise runner/import'
 numbers="engine $runner analysis/statistics analysis/table"
 rooms="engine:
 engine/core/lanes: engine
@@ -24,6 +24,7 @@ runner/plan: engine engine/control runner/base runner/ranks runner/objects runne
 runner/store: engine runner/base runner/ranks runner/scenario runner/plan
 runner/run: engine runner/base runner/ranks runner/scenario runner/plan runner/store
 runner/optimise: engine engine/control runner/base runner/ranks runner/objects runner/scenario runner/plan runner/store runner/run
+runner/import: engine runner/base runner/ranks runner/objects runner/scenario runner/plan
 analysis/statistics: $runner
 analysis/table: $runner analysis/statistics
 analysis/draw: $numbers

@@ -125,7 +125,7 @@ int sandbox(int (*work)(void *context), void *context, const char *files)
     for (int k = 0; child > 0 && WIFSIGNALED(status) && k < CRASHES; k++)
         crashed = crashed || crashes[k] == WTERMSIG(status);
     if (crashed)
-        fprintf(stderr, "%s: damaged: the HDF5 library cannot cope with it\n", files);
+        fprintf(stderr, "%s: damaged: the library that reads it cannot cope with it\n", files);
     else if (messages)
         pass_on(messages);
     if (messages)

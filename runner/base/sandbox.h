@@ -1,7 +1,8 @@
 /* sandbox.h - runs the reading of files that may be damaged where it can do no harm.
  *
  * HDF5 1.10 reports most damage, but some damaged headers and string heaps make it run past its
- * own buffers or in circles. A user's command is to end with a message even then. */
+ * own buffers or in circles; libmujoco ends the process. A user's command is to end with a message
+ * even then. */
 #ifndef STANCE_BASE_SANDBOX_H
 #define STANCE_BASE_SANDBOX_H
 

@@ -29,6 +29,7 @@ class Stance(MakefilePackage):
     depends_on("jansson")
     depends_on("openssl")
     depends_on("zlib-api")
+    depends_on("libxml2")
     depends_on("gnuplot", type="run")
 
     @property

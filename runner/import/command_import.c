@@ -1,0 +1,236 @@
+/* command_import.c - `stance import`: a robot from another program's file. */
+#include "compare.h"
+#include "plane.h"
+#include "write.h"
+
+#include "runner/base/message.h"
+#include "runner/base/sandbox.h"
+#include "runner/plan/asked.h"
+#include "runner/plan/instruction_set.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+extern const struct command command_import; /* below */
+
+struct request {
+    const char *file, *output;
+    unsigned plane; /* PLANES: not given */
+    struct option_texts weld, sole;
+    bool force;
+    /* On the way. */
+    struct spatial_model model;
+    struct plane_robot robot;
+    char *text;
+    size_t size;
+};
+
+enum { PLANES = 3 };
+
+static const char *plane_word(size_t k)
+{
+    static const char *const planes[PLANES + 1] = {"xz", "yz", "xy"};
+    return planes[k];
+}
+
+static int fail(const char *text)
+{
+    fprintf(stderr, "stance import: %s\n", text);
+    return EXIT_USAGE;
+}
+
+/* ---- reading -----------------------------------------------------------------------------------
+ */
+
+/* The first element of a file, as far as its beginning tells: what kind of file it is. */
+static bool first_element(const char *path, char name[16], stance_message *message)
+{
+    char begin[65536];
+    FILE *const in = fopen(path, "rb");
+    if (!in)
+        return complain(message, "%.150s: %s", path, strerror(errno));
+    const size_t size = fread(begin, 1, sizeof begin - 1, in);
+    const bool good = !ferror(in);
+    fclose(in);
+    begin[size] = 0;
+    name[0] = 0;
+    if (!good)
+        return complain(message, "%.150s: it cannot be read", path);
+    for (const char *s = begin; (s = strchr(s, '<')) != NULL;) {
+        const bool comment = strncmp(s, "<!--", 4) == 0;
+        if (!comment && s[1] != '?' && s[1] != '!') {
+            snprintf(name, 16, "%.*s", (int)strcspn(s + 1, " \t\r\n/>"), s + 1);
+            return true;
+        }
+        s = strstr(s + 1, comment ? "-->" : ">");
+        if (!s)
+            break;
+    }
+    return true;
+}
+
+static bool read_file(struct request *r, stance_message *message)
+{
+    char name[16];
+    if (!first_element(r->file, name, message))
+        return false;
+    if (strcmp(name, "mujoco") == 0 || strcmp(name, "mujocoinclude") == 0)
+        return mjcf_read(r->file, &r->model, message);
+    if (strcmp(name, "robot") == 0)
+        return urdf_read(r->file, &r->model, message);
+    if (strcmp(name, "sdf") == 0)
+        return complain(message, "%.120s: SDF files are not read: export it as URDF or MJCF",
+                        r->file);
+    return complain(message, "%.120s: it is neither MJCF (<mujoco>) nor URDF (<robot>)", r->file);
+}
+
+/* ---- writing -----------------------------------------------------------------------------------
+ */
+
+static bool write_text(struct request *r)
+{
+    FILE *const out = open_memstream(&r->text, &r->size);
+    if (!out)
+        return false;
+    import_write(out, &r->model, &r->robot);
+    return fclose(out) == 0;
+}
+
+/* At once, or not at all. */
+static int put(const struct request *r)
+{
+    char part[1200];
+    if (!r->output)
+        return fwrite(r->text, 1, r->size, stdout) == r->size ? EXIT_DONE : EXIT_IO;
+    snprintf(part, sizeof part, "%.1100s.part", r->output);
+    FILE *const out = fopen(part, "w");
+    bool good = out && fwrite(r->text, 1, r->size, out) == r->size;
+    good = out && fclose(out) == 0 && good && rename(part, r->output) == 0;
+    if (good)
+        return EXIT_DONE;
+    fprintf(stderr, "stance import: cannot write %s: %s\n", r->output, strerror(errno));
+    if (out)
+        unlink(part);
+    return EXIT_IO;
+}
+
+/* ---- what is said ------------------------------------------------------------------------------
+ */
+
+static void report(const struct request *r, const char *agreement)
+{
+    const stance_mechanism *const m = &r->robot.mechanism;
+    const int root = r->robot.map.free_root;
+    printf("%s: %d bod%s in the plane%s, %d joint%s, %d contact%s, %d actuator%s\n", r->output,
+           m->bodies, m->bodies == 1 ? "y" : "ies", root ? ", free" : "", m->bodies - root,
+           m->bodies - root == 1 ? "" : "s", m->elements, m->elements == 1 ? "" : "s", m->actuators,
+           m->actuators == 1 ? "" : "s");
+    for (int n = 0; n < r->model.notes; n++)
+        printf("  - %s\n", r->model.note[n].text);
+    printf("%s\n", agreement);
+}
+
+/* With the scenario as a reader has it: does it move as the file's robot? */
+static int finish(const struct scenario *s, const stance_case *c, void *asked)
+{
+    struct request *const r = asked;
+    struct compare_report compared;
+    stance_message message;
+    char sentence[400];
+    const bool known =
+        import_compare(&r->model, r->file, &r->robot.map, s->scene, c, &compared, &message);
+    if (known)
+        compare_sentence(&compared, s->scene, sentence, sizeof sentence);
+    else
+        snprintf(sentence, sizeof sentence, "not compared with the file: %s", message.text);
+    const int code = put(r);
+    if (code == EXIT_DONE && r->output)
+        report(r, sentence);
+    if (code != EXIT_DONE || !known || compared.worst <= COMPARE_ADMITTED)
+        return code;
+    fail(sentence);
+    return EXIT_CASES_FAILED;
+}
+
+static int import(void *asked)
+{
+    struct request *const r = asked;
+    const struct plane_wishes wishes = {.plane = plane_word(r->plane),
+                                        .weld = r->weld.text,
+                                        .welds = r->weld.count,
+                                        .sole = r->sole.text,
+                                        .soles = r->sole.count};
+    stance_message message;
+    if (!read_file(r, &message) || !plane_make(&r->model, &wishes, &r->robot, &message))
+        return fail(message.text);
+    if (!write_text(r))
+        return fail(strerror(ENOMEM));
+    /* What is written is what a reader takes: an error is said with the line of the result. */
+    struct scenario *const s =
+        scenario_new(r->output ? r->output : "scenario", r->text, NULL, 0, stderr);
+    const int code = s ? asked_first(&command_import, s, finish, r) : EXIT_USAGE;
+    scenario_drop(s);
+    return code;
+}
+
+static int work(void *asked)
+{
+    struct request *const r = asked;
+    const int code = import(r);
+    spatial_free(&r->model);
+    plane_free(&r->robot);
+    free(r->text);
+    return code;
+}
+
+static int run(int argc, char **argv)
+{
+    struct request request = {.plane = PLANES};
+    const int code = command_begin(&command_import, argc, argv, &request);
+    if (code != COMMAND_GOES_ON)
+        return code;
+    if (request.output && strcmp(request.output, "-") == 0)
+        request.output = NULL;
+    if (request.output && !request.force && access(request.output, F_OK) == 0) {
+        fprintf(stderr, "stance import: %s exists; --force replaces it\n", request.output);
+        return EXIT_USAGE;
+    }
+    if (access(request.file, R_OK) != 0) {
+        fprintf(stderr, "stance import: %s: %s\n", request.file, strerror(errno));
+        return EXIT_IO;
+    }
+    if (!instruction_set_usable(command_import.name)) /* for the first case */
+        return EXIT_USAGE;
+    return sandbox(work, &request, request.file);
+}
+
+#define TO(member) OPTION_TO(struct request, member)
+static const struct option options[] = {
+    {"FILE", TO(file), .low = 1, .text = "a robot: MJCF (MuJoCo), which libmujoco reads, or URDF"},
+    {"-o", "FILE", TO(output), .text = "the scenario; without it, or with -, standard output"},
+    {"--plane", .word = plane_word, TO(plane),
+     .text =
+         "axes of the file in which the robot moves; unasked the plane across its hinges, which "
+         "gravity must be in"},
+    {"--weld", "JOINT", TO(weld), .text = "hold a joint where it begins; may be repeated"},
+    {"--sole", "LINK=X,Z,X,Z", TO(sole),
+     .text = "a flat sole between two places of a link's frame, m, instead of its shapes; may be "
+             "repeated"},
+    {"--force", TO(force), .text = "replace FILE of -o"},
+    {0},
+};
+
+const struct command command_import = {
+    "import",
+    "makes a scenario of a robot in another program's format",
+    run,
+    options,
+    "Writes a scenario of a planar robot: bodies, joints with springs, dampers, armature and "
+    "limits, "
+    "contacts, motors, the ground, the initial state (of MJCF the first keyframe). Comments at its "
+    "head say what is otherwise than in the file, and why. What has no counterpart is refused by "
+    "its "
+    "name. Where libmujoco is installed accelerations in random states are compared with the "
+    "file's.\n",
+    NULL};
