@@ -31,7 +31,17 @@ const wire = (set) => set.replace(/=(.*)$/, (_, value) => `=s${bytes(value).leng
 // The engine with the file's scenario open, and values changed.
 function start(page, sets) {
   const nothing = new Proxy({}, { get: () => () => 0 });
-  const e = new WebAssembly.Instance(page.module, { wasi_snapshot_preview1: nothing }).exports;
+  // A law of the user's own is a module beside it, called with copies of its numbers.
+  const law = page.head.blocks.law && new WebAssembly.Instance(new WebAssembly.Module(page.block('law')), { wasi_snapshot_preview1: nothing }).exports;
+  const call = (at, count) => {
+    const theirs = new Float64Array(e.memory.buffer, at, count);
+    const own = new Float64Array(law.memory.buffer, law.room(), count);
+    own.set(theirs);
+    law.call();
+    theirs.set(own);
+    return 1;
+  };
+  const e = new WebAssembly.Instance(page.module, { wasi_snapshot_preview1: nothing, page: { law: call } }).exports;
   const text = (p) => {
     const bytes = new Uint8Array(e.memory.buffer);
     return new TextDecoder().decode(bytes.subarray(p, bytes.indexOf(0, p)));
@@ -48,6 +58,8 @@ function start(page, sets) {
   };
   const { head, block } = page;
   e._initialize();
+  if (law) law._initialize?.();
+  if (law) e.file_law(law.memory_size());
   need(e.file_open(put(bytes(head.wire + '\0')), head.single ? head.index : -1));
   head.axes.forEach((_, a) => {
     const values = block(`axis-${a}`);

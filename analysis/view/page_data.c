@@ -5,6 +5,7 @@
 #include "analysis/statistics/statistics.h"
 #include "analysis/table/table.h"
 #include "runner/base/message.h"
+#include "runner/objects/program.h"
 #include "runner/plan/plan.h"
 #include "runner/store/build_info.h"
 #include "runner/store/results.h"
@@ -139,6 +140,27 @@ static bool put_stored(struct page *p)
     return true;
 }
 
+/* A law of the user's own, for the page; false: there is no clang that compiles it, which is said,
+ * and the page shows what the file holds. */
+static bool put_law(struct page *p)
+{
+    const struct law_file *const law = &p->scenario.law;
+    const struct program_text text = {law->name, law->source, law->data, law->data_count, 1};
+    struct image image;
+    stance_message why;
+    if (!law->source)
+        return true;
+    if (!program_for_page(&text, p->scenario.scene, &image, &why)) {
+        fprintf(stderr,
+                "stance view: the page shows what is in the file and simulates nothing: %s\n",
+                why.text);
+        return false;
+    }
+    const bool good = put_block(p, "law", "u8", image.bytes, 1, image.size);
+    image_free(&image);
+    return good;
+}
+
 /* Nothing of this where the scenario cannot be read: then the page shows what the file holds. */
 static bool put_engine(struct page *p)
 {
@@ -152,7 +174,7 @@ static bool put_engine(struct page *p)
     const stance_scene *const scene = p->scenario.scene;
     size_t size;
     const stance_kernel *const kernel = stance_kernel_find(scene, stance_methods()[0], NULL);
-    const uint8_t *const engine = page_engine(kernel->structure, &size);
+    const uint8_t *const engine = put_law(p) ? page_engine(kernel->structure, &size) : NULL;
     if (engine)
         page_base64(p->more, "engine", engine, size);
     table_put(p->head, "engine", as_truth(engine != NULL));

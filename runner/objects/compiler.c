@@ -174,7 +174,7 @@ static bool make_absolute(struct compiler *compiler)
 }
 
 /* Is there a compiler of this name? */
-static bool try_compiler(struct compiler *compiler, const char *name)
+bool compiler_named(struct compiler *compiler, const char *name)
 {
     static char version[] = "--version", machine[] = "-dumpmachine";
     char said[2 * OUTPUT], hash[CHECKSUM_SHA256_TEXT];
@@ -200,10 +200,10 @@ bool compiler_find(struct compiler *compiler, stance_message *why)
     static const char *const names[] = {"cc", "gcc", "clang"};
     const char *const chosen = getenv("CC");
     if (chosen && chosen[0])
-        return try_compiler(compiler, chosen) ||
+        return compiler_named(compiler, chosen) ||
                complain(why, "the compiler CC='%.60s' does not run", chosen);
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++)
-        if (try_compiler(compiler, names[i]))
+        if (compiler_named(compiler, names[i]))
             return true;
     return complain(why, "there is no compiler here (CC, cc, gcc, clang)");
 }
@@ -250,7 +250,8 @@ static struct running begin(const struct compiler *compiler, int directory,
 {
     char flags[FLAGS_SIZE], method[80], object[80], *argument[ARGUMENTS];
     static char to[] = "-o";
-    snprintf(flags, sizeof flags, "%s %s", compiler_flags(c->isa), c->flags ? c->flags : "");
+    const char *const own = compiler_flags(c->isa);
+    snprintf(flags, sizeof flags, "%s %s", own ? own : "", c->flags ? c->flags : "");
     snprintf(method, sizeof method, "engine/methods/%s.c", c->method);
     object_name(c, object);
     memcpy(argument, compiler->word, compiler->words * sizeof *argument);

@@ -24,6 +24,8 @@ struct compiler {
 
 /* false: none runs; `why` says what was tried. */
 bool compiler_find(struct compiler *compiler, stance_message *why);
+/* The one of this name. */
+bool compiler_named(struct compiler *compiler, const char *name);
 
 /* The flags that an instruction set is compiled with, separated by blanks; NULL: there is none of
  * this name. And the name of each instruction set of this build, NULL past the last. */
@@ -35,9 +37,10 @@ const char *compiler_isa(size_t index);
 enum { COMPILER_SOURCES = 2 };
 struct compilation {
     const char *method, *isa;
-    const char *source[COMPILER_SOURCES], *flags; /* NULL: a kernel's */
-    struct image image;                           /* none: it failed ... */
-    stance_message message;                       /* ... and why */
+    const char *source[COMPILER_SOURCES],
+        *flags;             /* NULL: a kernel's; of an isa that there is not alone */
+    struct image image;     /* none: it failed ... */
+    stance_message message; /* ... and why */
 };
 
 /* The header of tables that kernels are compiled with, see objects.h. */

@@ -264,12 +264,13 @@ static bool name_it(const char *source, const char *names, const struct compiler
 }
 
 static bool compile(const struct program_text *text, const char *source, const char *names,
-                    const struct compiler *compiler, struct image *image, stance_message *message)
+                    const struct compiler *compiler, const char *isa, const char *flags,
+                    struct image *image, stance_message *message)
 {
     const struct compiler_file files[] = {{"names.h", names}, {"law.c", source}};
     struct compilation law = {.method = text->file,
-                              .isa = law_isa(),
-                              .flags = law_flags(compiler),
+                              .isa = isa,
+                              .flags = flags,
                               .source = {"law.c", LAW_DIRECTORY "/law_math.c"}};
     struct watch watch = {.doing = "compiling a law", .progress = progress_begin(true)};
     watch_begin(&watch);
@@ -279,6 +280,25 @@ static bool compile(const struct program_text *text, const char *source, const c
     if (!image->bytes)
         *message = law.message;
     return image->bytes != NULL;
+}
+
+bool program_for_page(const struct program_text *text, const stance_scene *scene,
+                      struct image *image, stance_message *message)
+{
+    static const char flags[] =
+        "--target=wasm32-wasi -O2 -std=c17 -ffp-contract=off -fno-math-errno -w -I. "
+        "-DSTANCE_LANES=2 "
+        "-msimd128 -mexec-model=reactor -Wl,--strip-all,--gc-sections -lm " LAW_FLAGS_CLANG;
+    struct compiler clang;
+    char *const source = source_text(text), *const names = names_text(text, scene);
+    *image = (struct image){NULL, 0};
+    bool good = (source && names) || no_memory(message);
+    good = good && (compiler_named(&clang, "clang") ||
+                    complain(message, "clang, which compiles laws for pages, does not run here"));
+    good = good && compile(text, source, names, &clang, "WebAssembly", flags, image, message);
+    free(source);
+    free(names);
+    return good;
 }
 
 /* ---- what is in it --------------------------------------------------------------------------- */
@@ -386,7 +406,8 @@ static bool found(const struct program_text *text, const char *source, const cha
         return false;
     bool good = cache_find(&cache, name, false, image);
     if (!good) {
-        good = compile(text, source, names, &compiler, image, message) &&
+        good = compile(text, source, names, &compiler, law_isa(), law_flags(&compiler), image,
+                       message) &&
                look_into(image, text->file, message) &&
                (image_seal(image, &label) || no_memory(message));
         if (good)

@@ -10,6 +10,8 @@
 #ifndef STANCE_OBJECTS_PROGRAM_H
 #define STANCE_OBJECTS_PROGRAM_H
 
+#include "image.h"
+
 #include "engine/stance.h"
 
 #include "runner/base/checksum.h"
@@ -30,6 +32,10 @@ void program_hash(const char *source, char hash[CHECKSUM_SHA256_TEXT]);
  * with file and line where the compiler does. */
 stance_program *program_load(const struct program_text *text, const stance_scene *scene,
                              size_t numbers, stance_message *message);
+/* The same as a module of WebAssembly, for a page, by clang whatever CC is; `image` is to be freed.
+ * It is not called here, so it need not be trusted. */
+bool program_for_page(const struct program_text *text, const stance_scene *scene,
+                      struct image *image, stance_message *message);
 /* Takes NULL, too. No case runs by it any more. */
 void program_free(stance_program *program);
 

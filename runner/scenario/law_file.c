@@ -5,66 +5,20 @@
 #include "tree_nodes.h"
 
 #include <ctype.h>
-#include <errno.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
 enum {
     MOST_BYTES = 1 << 18, /* of a source */
     MOST_DATA = 1 << 14,  /* numbers */
     MOST_DATA_BYTES = 1 << 19,
     MOST_ROWS = STANCE_PROGRAM_NUMBERS,
-    PATH = 1300,
 };
 static const char word[] = "program"; /* what asks for a law's file */
 
-/* ---- files ----------------------------------------------------------------------------------- */
-
-/* Beside the scenario, unless it is absolute. */
-static void beside(const struct reader *r, const char *name, char path[PATH])
-{
-    const char *const slash = strrchr(r->s->file, '/');
-    const int directory = name[0] == '/' || !slash ? 0 : (int)(slash - r->s->file) + 1;
-    snprintf(path, PATH, "%.*s%s", directory, r->s->file, name);
-}
-
-/* A whole text; NULL: a problem of the key at `mark`. Of the tree's memory. */
-static const char *whole(struct reader *r, const char *key, const struct tree_node *node,
-                         size_t most)
-{
-    char path[PATH];
-    struct stat status;
-    beside(r, node->text, path);
-    char *const text = tree_allocate(&r->tree, most + 2);
-    FILE *const in = text ? fopen(path, "rb") : NULL;
-    const char *wrong = NULL;
-    size_t length = 0;
-    if (!text)
-        wrong = "out of memory";
-    else if (!in || fstat(fileno(in), &status) != 0)
-        wrong = strerror(errno);
-    else if (!S_ISREG(status.st_mode))
-        wrong = "is no regular file";
-    else if ((length = fread(text, 1, most + 1, in)) > most)
-        wrong = "is larger than may be (256 KiB of source, 512 KiB of numbers)";
-    else if (ferror(in))
-        wrong = strerror(errno);
-    if (in)
-        fclose(in);
-    if (wrong) {
-        problem_add(&r->problems, node->mark, "%s: %.200s: %s", key, path, wrong);
-        return NULL;
-    }
-    struct problems ignored = {0};
-    if (memchr(text, '\0', length) || !tree_check_text(text, length, &ignored)) {
-        problem_add(&r->problems, node->mark, "%s: %.200s: is no text in UTF-8", key, path);
-        return NULL;
-    }
-    return text;
-}
+/* ---- numbers of a file ----------------------------------------------------------------------- */
 
 /* Appends a scalar to a mapping or a list. */
 static bool put(struct reader *r, struct tree_node *parent, const char *key, const char *text,
@@ -84,7 +38,7 @@ static bool put(struct reader *r, struct tree_node *parent, const char *key, con
  */
 static void read_numbers(struct reader *r, struct tree_node *node)
 {
-    const char *const text = whole(r, "controller.data", node, MOST_DATA_BYTES);
+    const char *const text = reader_file(r, "controller.data", node, MOST_DATA_BYTES);
     const struct tree_node named = *node;
     int line = 1;
     if (!text)
@@ -348,7 +302,7 @@ void law_file_read(struct reader *r)
         return;
     snprintf(law->name, sizeof law->name, "%s", file ? file->text : "controller.source");
     const struct mark mark = file ? file->mark : own->mark;
-    const char *const text = own ? own->text : whole(r, "controller.file", file, MOST_BYTES);
+    const char *const text = own ? own->text : reader_file(r, "controller.file", file, MOST_BYTES);
     if (!text || (!own && !put(r, map, "source", text, true, mark)))
         return;
     if (data && data->kind == TREE_SCALAR)

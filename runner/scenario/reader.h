@@ -91,6 +91,11 @@ bool reader_described(const struct reader *r, const char *path);
 /* scenario_file.c: the whole file as a string, to be freed by the caller; NULL: a problem. */
 char *scenario_text(const char *file, struct problems *problems, size_t *length);
 
+/* A whole text file of `most` bytes at most that the value of a key names, beside the scenario
+ * unless it is absolute; of the tree's memory; NULL: a problem. */
+const char *reader_file(struct reader *r, const char *key, const struct tree_node *node,
+                        size_t most);
+
 /* scenario_check.c: what the keys mean for each other; completes the base values. */
 void scenario_cross_check(struct reader *r);
 

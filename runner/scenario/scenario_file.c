@@ -1,5 +1,6 @@
 /* scenario_file.c - the text of a scenario file. */
 #include "reader.h"
+#include "tree_nodes.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -11,7 +12,7 @@
 #include <sys/vfs.h>
 #include <unistd.h>
 
-enum { PATH_SIZE = 160 };
+enum { PATH_SIZE = 160, FILE_PATH = 1300 };
 
 /* Whether reading would wait for a writer who may never come. A pipe without a name, such as the
  * shell's <(command), has one from the start. */
@@ -85,5 +86,50 @@ char *scenario_text(const char *file, struct problems *problems, size_t *length)
     }
     if (in)
         fclose(in);
+    return text;
+}
+
+/* ---- what a scenario names ---------------------------------------------------------------------
+ */
+
+/* Beside the scenario, unless it is absolute. */
+static void beside(const struct reader *r, const char *name, char path[FILE_PATH])
+{
+    const char *const slash = strrchr(r->s->file, '/');
+    const int directory = name[0] == '/' || !slash ? 0 : (int)(slash - r->s->file) + 1;
+    snprintf(path, FILE_PATH, "%.*s%s", directory, r->s->file, name);
+}
+
+const char *reader_file(struct reader *r, const char *key, const struct tree_node *node,
+                        size_t most)
+{
+    char path[FILE_PATH];
+    struct stat status;
+    beside(r, node->text, path);
+    char *const text = tree_allocate(&r->tree, most + 2);
+    FILE *const in = text ? open_file(path) : NULL;
+    const char *wrong = NULL;
+    size_t length = 0;
+    if (!text)
+        wrong = "out of memory";
+    else if (!in || fstat(fileno(in), &status) != 0)
+        wrong = strerror(errno);
+    else if (!S_ISREG(status.st_mode))
+        wrong = "is no regular file";
+    else if ((length = fread(text, 1, most + 1, in)) > most)
+        wrong = "is larger than may be (256 KiB of source, 512 KiB of numbers)";
+    else if (ferror(in))
+        wrong = strerror(errno);
+    if (in)
+        fclose(in);
+    if (wrong) {
+        problem_add(&r->problems, node->mark, "%s: %.200s: %s", key, path, wrong);
+        return NULL;
+    }
+    struct problems ignored = {0};
+    if (memchr(text, '\0', length) || !tree_check_text(text, length, &ignored)) {
+        problem_add(&r->problems, node->mark, "%s: %.200s: is no text in UTF-8", key, path);
+        return NULL;
+    }
     return text;
 }

@@ -77,6 +77,7 @@ export class Pool {
       designs: data.has('designs') ? { count: head.designs.count, numbers: await doubles('designs'), status: (await data.block('design-status')) as Uint8Array } : null,
       stored: head.stored,
       number: head.number,
+      law: data.has('law') ? ((await data.block('law')) as Uint8Array) : null,
     };
     const module = await WebAssembly.compile(bytes);
     const source = URL.createObjectURL(new Blob([WORKER], { type: 'text/javascript' }));

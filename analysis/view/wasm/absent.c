@@ -94,6 +94,14 @@ char *scenario_text(const char *file, struct problems *problems, size_t *length)
     return NULL;
 }
 
+const char *reader_file(struct reader *r, const char *key, const struct tree_node *node,
+                        size_t most)
+{
+    (void)key, (void)most;
+    problem_add(&r->problems, node->mark, "a page reads no files");
+    return NULL;
+}
+
 /* Plans may have cases of any method: page_case complains of those that cannot be simulated. */
 const stance_kernel *instruction_set_kernel(const stance_scene *scene, const stance_method *method)
 {

@@ -167,7 +167,7 @@ int view_open(const char *sets)
         set[count++] = text;
     }
     page.changed = count > 0;
-    if (!read_scenario(&page.view, page.wire, set, count))
+    if (!read_scenario(&page.view, page.wire, set, count) || !page_take_law(&page.view))
         return 0;
     for (int a = 0; !page.resweeps && a < page.view.axes; a++)
         if (page.file.axis[a].value && page.file.axis[a].count == page.view.axis[a].count &&
@@ -175,7 +175,8 @@ int view_open(const char *sets)
             return 0;
     return open_plan(&page.view_plan, &page.view, page.file_plan.single && !page.resweeps,
                      page.file_plan.single_case) &&
-           schema_build(&page.schema, page.view.scene) && (page_design(0) || !page.message.text[0]);
+           schema_build(&page.schema, page.view.scene, &page.view.law) &&
+           (page_design(0) || !page.message.text[0]);
 }
 
 double view_cases(void)

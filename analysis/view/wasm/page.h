@@ -31,6 +31,9 @@ extern struct page page;
 bool page_design(size_t d);
 void page_designs_forget(void); /* what is remembered of the file's */
 
+/* page_law.c: a law of the user's own, ready to be called; false: the page has none of it. */
+bool page_take_law(struct scenario *s);
+
 /* The case in a row of the view. False: it does not exist; or (page.message) cannot be had here. */
 bool page_case(double index, stance_case *out, const stance_kernel **kernel);
 /* Its result where it does not exist. */

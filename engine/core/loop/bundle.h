@@ -94,7 +94,7 @@ struct bundle {
     struct advance advance;
     struct actuators actuators;
     lanes pending[STANCE_MAX_DELAY][ACTUATORS]; /* commands under way, the next one first */
-    uintptr_t program[LANES];                   /* what a case's program keeps */
+    uint64_t program[LANES];                    /* addresses of what cases' programs keep */
 };
 
 /* Is there any case of a kind that is counted? A hint, as mask_any. */

@@ -104,7 +104,7 @@ COLD void bundle_finish(struct bundle *b, int lane, stance_status status, stance
         r->velocity[i] = record_plain(r->velocity[i]);
     }
     if (c->program)
-        c->program->end(c->program, (double *)b->program[lane]);
+        c->program->end(c->program, (double *)(uintptr_t)b->program[lane]);
     b->which[lane] = NULL;
     b->live &= LANES_NOT(mask_of_lane(lane));
     b->filled--;

@@ -114,7 +114,7 @@ COLD mask bundle_program(struct bundle *b, mask due, const lanes *s, const lanes
                     mask_less_equal(lanes_abs(b->now.approach[c]), lanes_of(SAMPLE_REST));
     for (int lane = 0; lane < LANES; lane++) {
         const stance_case *const c = b->which[lane];
-        double *const sample = (double *)b->program[lane];
+        double *const sample = (double *)(uintptr_t)b->program[lane];
         const double *command = NULL;
         if (!c || !c->program || !mask_get(due & LANES_NOT(is.near), lane))
             continue;

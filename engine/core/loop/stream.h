@@ -382,7 +382,7 @@ static bool bundle_stream(const stance_feed *feed)
         for (int lane = 0; lane < LANES; lane++) /* given up: told to leave */
             if (all[k].which[lane] && all[k].which[lane]->program)
                 all[k].which[lane]->program->end(all[k].which[lane]->program,
-                                                 (double *)all[k].program[lane]);
+                                                 (double *)(uintptr_t)all[k].program[lane]);
     }
     return done;
 }

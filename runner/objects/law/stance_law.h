@@ -23,8 +23,8 @@
  *
  * Names are those of the scenario, with _ for what C does not allow, and _ behind C's own words;
  * all[] has the same numbers in the order of the scenario, in which the last POSTURES coordinates
- * are what moves the robot in itself: all but the place of a free root. Angles rad, places m, torques N m,
- * forces of what slides N.
+ * are what moves the robot in itself: all but the place of a free root. Angles rad, places m,
+ * torques N m, forces of what slides N.
  *
  * sin, cos, exp, tanh, sqrt, fabs, fma, fmin, fmax, floor and copysign compute the same bits on
  * every machine, and there are no others.
@@ -129,6 +129,35 @@ static inline double law_fmax(double a, double b)
 {
     return a > b || b != b ? a : b;
 }
+
+#ifdef __wasm__ /* in a page: numbers are copied to and from one room (page_law.c) */
+enum {
+    LAW_SAMPLE = sizeof(struct sample) / sizeof(double),
+    LAW_PARAMETERS = sizeof(struct parameters) / sizeof(double),
+    LAW_MEMORY = sizeof(struct memory) / sizeof(double)
+};
+static struct {
+    double number[LAW_SAMPLE + LAW_PARAMETERS + LAW_MEMORY + ACTUATORS];
+} law_copy;
+__attribute__((export_name("room"))) double *law_room(void);
+double *law_room(void)
+{
+    return law_copy.number;
+}
+__attribute__((export_name("memory_size"))) int law_memory_size(void);
+int law_memory_size(void)
+{
+    return LAW_MEMORY;
+}
+__attribute__((export_name("call"))) void law_call(void);
+void law_call(void)
+{
+    double *const at = law_copy.number;
+    law((const struct sample *)at, (const struct parameters *)(at + LAW_SAMPLE),
+        (struct memory *)(at + LAW_SAMPLE + LAW_PARAMETERS),
+        (struct torques *)(at + LAW_SAMPLE + LAW_PARAMETERS + LAW_MEMORY));
+}
+#endif
 
 /* What the program looks for. */
 struct law_object {

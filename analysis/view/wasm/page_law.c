@@ -1,0 +1,84 @@
+/* page_law.c - a law of the user's own in a page: a module of its own beside the engine's, which
+ * the page calls (law.ts) with copies of what it is told and of its memory. */
+#include "page.h"
+
+#include "runner/base/message.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Calls the law: `at` begins with what it is told, then parameters, memory, torques; so many
+ * numbers of each. 0: it trapped. */
+__attribute__((import_module("page"), import_name("law"))) int page_law(double *at, int numbers);
+
+EXPORTED(file_law) void file_law(int memory);
+
+static struct {
+    stance_program base;
+    int memory; /* numbers that it keeps */
+} law;
+
+static int told(const stance_case *c)
+{
+    return STANCE_SAMPLE_HEAD + 3 * c->scene->coordinates + c->scene->contacts +
+           c->scene->actuators;
+}
+
+static int numbers(void)
+{
+    return (int)page.view.law.numbers;
+}
+
+static double *begin(const stance_program *program, const stance_case *c)
+{
+    const int n = c->scene->coordinates, actuators = c->scene->actuators;
+    double *const sample =
+        calloc((size_t)(told(c) + numbers() + law.memory + actuators), sizeof *sample);
+    double *const rest = sample ? sample + told(c) - actuators : NULL, *const target = rest - n;
+    (void)program;
+    if (!sample)
+        return NULL;
+    for (int i = 0; i < n; i++)
+        target[i] = NAN;
+    for (int k = 0; k < c->scene->postures && c->has_target; k++)
+        target[c->scene->posture[k]] = c->near.target[k];
+    for (int i = 0; i < actuators; i++)
+        rest[i] = c->has_target ? c->near.feedforward[i] : NAN;
+    memcpy(sample + told(c), c->parameter, (size_t)numbers() * sizeof *sample);
+    return sample;
+}
+
+static const double *act(const stance_program *program, const stance_case *c, double *sample)
+{
+    const int before = told(c) + numbers() + law.memory, actuators = c->scene->actuators;
+    double *const out = sample + before, sum = 0;
+    (void)program;
+    memset(out, 0, (size_t)actuators * sizeof *out);
+    if (!page_law(sample, before + actuators))
+        return NULL;
+    for (int i = 0; i < actuators; i++)
+        sum += out[i] - out[i];
+    return sum == 0 ? out : NULL;
+}
+
+static void end(const stance_program *program, double *sample)
+{
+    (void)program;
+    free(sample);
+}
+
+void file_law(int memory)
+{
+    law.base = (stance_program){memory > 0, begin, act, end};
+    law.memory = memory;
+}
+
+bool page_take_law(struct scenario *s)
+{
+    if (!s->law.source)
+        return true;
+    s->base.program = &law.base;
+    return law.base.begin ||
+           complain(&page.message, "this page was made without the law of controller.file");
+}
