@@ -144,6 +144,18 @@ $head
         out->all[i] = -is->stiffness * (now->q.all[3 + i] - now->target.all[3 + i]) - 20 * now->v.all[3 + i] + now->rest.all[i];
 }"
 
+expect "design asks the law by differences" 0 "$stance" design equal/biped-law.yaml
+grep -q '^  closed loop  *-4.6, -4.2, -3.9, -3.6, -3.3, -3$' log && grep -q 'spectral radius  *0.99685[0-9]*: stable' log
+result $? "... and finds the poles that were placed"
+expect "... not one that remembers" 0 "$stance" design stays.yaml
+grep -q 'cannot know: it remembers' log
+result $? "... which is said"
+expect "which runs to the end" 0 "$stance" run --trust stays.yaml -o stays.h5 --set stop.time=2
+"$python" -c '
+import h5py
+f = h5py.File("stays.h5"); assert (f["end_time"][...][f["outcome"][...] == 1] == 2).all(), f["end_time"][...]' >log 2>&1
+result $? "... where it is stabilised"
+
 # ---- what is wrong --------------------------------------------------------------------------------
 # One line each, with the place where there is one; a crash is the law's, with the case.
 wrong() { # NAME, CODE, PATTERN; the law from the standard input

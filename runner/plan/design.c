@@ -8,6 +8,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 static bool refuse(stance_message *message, const char *what, stance_error error)
@@ -93,6 +94,52 @@ static void find_allowed(struct design_report *r)
 
 /* ---- the loop -------------------------------------------------------------------------------- */
 
+/* A law of the user's own is asked by central differences about the equilibrium, standing there. */
+static bool program_gains(struct design_report *r, stance_message *message)
+{
+    static const double width = 1e-5; /* rad, m, rad/s, m/s */
+    const stance_scene *const scene = r->scenario->scene;
+    const struct scenario_values *const values = &r->scenario->base;
+    const stance_program *const program = values->program;
+    const int n = scene->coordinates;
+    stance_case *const c = calloc(1, sizeof *c);
+    bool good = c || complain(message, "not enough memory");
+    if (c) {
+        *c = (stance_case){.scene = scene, .has_target = true, .program = program};
+        memcpy(c->parameter, values->parameter, sizeof c->parameter);
+        memcpy(c->near.feedforward, r->equilibrium.torque, sizeof c->near.feedforward);
+        for (int k = 0; k < scene->postures; k++)
+            c->near.target[k] = r->equilibrium.position[scene->posture[k]];
+    }
+    for (int j = 0; good && j < r->states; j++) {
+        const int k = resolve_state(scene, &r->equilibrium, j), rate = k >= scene->postures;
+        const int place = scene->posture[k % scene->postures];
+        double torque[2][STANCE_MAX_ACTUATORS];
+        for (int side = 0; good && side < 2; side++) {
+            double *const sample = program->begin(program, c);
+            double *const q = sample ? sample + STANCE_SAMPLE_HEAD : NULL;
+            if (sample) {
+                memset(sample, 0, STANCE_SAMPLE_HEAD * sizeof *sample);
+                sample[STANCE_SAMPLE_PERIOD] = values->sample_time;
+                memcpy(q, r->equilibrium.position, (size_t)n * sizeof *q);
+                memset(q + n, 0, (size_t)n * sizeof *q);
+                for (int g = 0; g < scene->contacts; g++)
+                    q[2 * n + g] = r->equilibrium.supports >> g & 1;
+                q[place + (rate ? n : 0)] += side ? width : -width;
+            }
+            const double *const got = sample ? program->act(program, c, sample) : NULL;
+            good = got || complain(message, "the law of controller.file has no torques there");
+            if (got)
+                memcpy(torque[side], got, (size_t)r->inputs * sizeof *got);
+            program->end(program, sample);
+        }
+        for (int i = 0; good && i < r->inputs; i++)
+            r->K[i * r->states + j] = (torque[0][i] - torque[1][i]) / (2 * width);
+    }
+    free(c);
+    return good;
+}
+
 /* K, of a law that is not designed too: what it is as a gain matrix; and where it bends. known: the
  * design, NULL: it is made. */
 static bool gains(struct design_report *r, const struct resolved_design *known,
@@ -111,6 +158,8 @@ static bool gains(struct design_report *r, const struct resolved_design *known,
     if (!law->designed && r->states < 2 * scene->postures)
         return complain(message, "a law that is not designed acts on what the contacts hold, too: "
                                  "it has no gains here");
+    if (law->program)
+        return program_gains(r, message);
     if (!resolve_law(scene, values, law, begin, &c.near, &c, message))
         return false;
     r->bends = c.bends;
@@ -351,7 +400,10 @@ static bool loop(struct design_report *r, const struct resolved_design *known,
     const int n = r->states, m = r->inputs;
     double matrix[DESIGN_STATES * DESIGN_STATES];
 
-    r->closed = r->scenario->base.law != 0;
+    const stance_program *const program = r->scenario->base.program;
+    const bool known_law =
+        !scenario_law(&r->scenario->base)->program || (program && !program->remembers);
+    r->closed = r->scenario->base.law != 0 && known_law;
     r->delay = r->scenario->base.delay;
     r->lag = r->scenario->base.lag;
     if (!r->closed)

@@ -292,7 +292,7 @@ static json_t *controller_facts(const struct design_report *r)
     const stance_law *const law = scenario_law(&r->scenario->base);
     char late[64];
     if (!r->closed)
-        return json_pack("{s:s}", "kind", stance_laws()[0]->name);
+        return json_pack("{s:s, s:b}", "kind", law->name, ".own", law->program);
     json_t *const facts = json_pack("{s:s}", "kind", law->name);
     put_matrix(r, facts, ".gain", (struct sides){true, false}, r->K);
     put_complex(facts, ".closed_loop_eigenvalues", r->states, r->closed_re, r->closed_im);
@@ -392,11 +392,13 @@ const char design_text[] =
     "|  everything: no mode is unstable\n]"
     "|  not known: {.absent}\n]"
     "\nController: [controller:"
-    "[!gain:none\n|"
+    "[!gain:[.own:a law in C that linear theory cannot know: it remembers, or is not trusted "
+    "yet|none]\n|"
     "[design:[beyond:bimodal|state] feedback, {.design}[design_time=sampled: for the sampled "
     "model];"
     "\ntorques = those of the equilibrium - K X\n"
-    "|{kind}, as a gain matrix: torques = -K X, X counted from the held angles\n]"
+    "|{kind}, as a gain matrix: torques = -K X, X counted from the [kind=program:target, by "
+    "differences|held angles]\n]"
     "  K       {.gain}\n\n"
     "[.all_poles:  wanted poles    {.poles}\n]"
     "[weights:  weights          [states*, :{value%.6g}]; torques [torques*, :{value%.6g}]\n]"
