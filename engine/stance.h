@@ -256,8 +256,7 @@ typedef enum stance_evidence {
     X(WORK, work,                                                                                  \
       "it takes more work than is allowed: too stiff, or events without end; try a shorter step, " \
       "or method midpoint")                                                                        \
-    X(PROGRAM, program,                                                                            \
-      "the law of controller.file gave torques that are not finite")
+    X(PROGRAM, program, "the law of controller.file gave torques that are not finite")
 
 typedef enum stance_failure {
 #define STANCE_FAILURE_ENUM(NAME, name, text) STANCE_FAILURE_##NAME,
@@ -346,10 +345,9 @@ typedef struct stance_parameter {
     const char *fallback_text, *all, *more; /* of NAN; of the numbers together; may be NULL */
 } stance_parameter;
 
-/* A law of the user's own, compiled from C (runner/objects/program.h): what kernels call at each
- * sample of a case. sample[] is what is measured and known then: STANCE_SAMPLE_HEAD numbers, the
- * scene's coordinates, their rates, and for each contact 1 where it stands on the ground, else 0.
- */
+/* A law of the user's own, compiled from C: what kernels call at each sample of a case. sample[] is
+ * what is known then: STANCE_SAMPLE_HEAD numbers, the scene's coordinates, their rates, and for
+ * each contact 1 where it stands on the ground, else 0. */
 enum { STANCE_PROGRAM_NUMBERS = 64 }; /* of its parameters, at most */
 enum {
     STANCE_SAMPLE_TIME,   /* s */

@@ -19,6 +19,7 @@ engine/control: engine
 runner/base: engine
 runner/ranks: engine runner/base
 runner/objects: engine runner/base runner/ranks
+runner/objects/law: engine/core/lanes
 runner/scenario: engine runner/base
 runner/plan: engine engine/control runner/base runner/ranks runner/objects runner/scenario
 runner/store: engine runner/base runner/ranks runner/scenario runner/plan

@@ -596,8 +596,8 @@ static void test_sandbox(void **state)
         text[pread(file, text, sizeof text - 1, 0)] = '\0';
         close(file);
         assert_int_equal(code, k ? EXIT_IO : EXIT_CASES_FAILED);
-        assert_string_equal(text,
-                            k ? "FILE: damaged: the library that reads it cannot cope with it\n" : "said\n");
+        assert_string_equal(
+            text, k ? "FILE: damaged: the library that reads it cannot cope with it\n" : "said\n");
     }
     unlink(path);
 }

@@ -176,7 +176,8 @@ bool summary_fields(const struct summary *summary)
     size_t size;
     struct schema *own = NULL;
     struct paragraphs p = {.fixed = json_object(), .text = open_memstream(&text, &size)};
-    const struct schema *const schema = summary->s ? schema_of(summary->s->scene, &summary->s->law, &own) : NULL;
+    const struct schema *const schema =
+        summary->s ? schema_of(summary->s->scene, &summary->s->law, &own) : NULL;
     if (schema && p.text)
         add_fields(summary, schema, &p);
     free(own);

@@ -22,8 +22,8 @@ int asked_work(const struct asked *asked, int (*work)(const struct scenario *s, 
 /* The same from the command line on, of a request that begins with what is asked. */
 int asked_run(const struct command *command, int argc, char **argv,
               int (*work)(const struct scenario *s, void *request), void *request);
-/* A changed text of a scenario that has been asked for, with its law ready where that one's is; NULL:
- * it has been said why. */
+/* A changed text of a scenario that has been asked for, with its law ready where that one's is;
+ * NULL: it has been said why. */
 struct scenario *asked_again(const char *file, const char *text, const char *const *sets,
                              size_t count);
 /* false: cases of the scenario cannot be simulated, as its law is not trusted: it has been said. */

@@ -34,8 +34,8 @@
 
 #include <math.h>
 
-#if __has_include("names.h")
-#include "names.h" /* LAW_COORDINATES(X) and so on, data[DATA]: made of the scenario */
+#if __has_include(<names.h>)
+#include <names.h> /* LAW_COORDINATES(X) and so on, data[DATA]: made of the scenario */
 #else              /* for an editor */
 #define LAW_COORDINATES(X) X(x)
 #define LAW_CONTACTS(X) X(foot)
