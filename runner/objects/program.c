@@ -64,7 +64,8 @@ static double *begin(const stance_program *program, const stance_case *c)
 {
     const struct program *const p = (const struct program *)program;
     double *const all =
-        calloc((size_t)(p->sample + p->memory + p->torques + 4 * GUARD), sizeof *all);
+        calloc((size_t)p->sample + (size_t)p->memory + (size_t)p->torques + 4 * (size_t)GUARD,
+               sizeof *all);
     if (!all)
         return NULL;
     double *const sample = all + GUARD, *const out = torque_of(p, sample);
@@ -128,7 +129,7 @@ static void name_in_c(const char *name, char text[STANCE_NAME + 8])
         "union unsigned void volatile while all asm typeof ";
     char search[STANCE_NAME + 2];
     size_t n = 0;
-    for (; name[n] && n < STANCE_NAME; n++) {
+    for (; n < STANCE_NAME && name[n]; n++) {
         const char c = name[n];
         const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_' ||
                            (c >= '0' && c <= '9' && n > 0);

@@ -112,14 +112,14 @@ const char *reader_file(struct reader *r, const char *key, const struct tree_nod
     size_t length = 0;
     if (!text)
         wrong = "out of memory";
-    else if (!in || fstat(fileno(in), &status) != 0)
-        wrong = strerror(errno);
-    else if (!S_ISREG(status.st_mode))
+    else if (in && fstat(fileno(in), &status) == 0 && !S_ISREG(status.st_mode))
         wrong = "is no regular file";
-    else if ((length = fread(text, 1, most + 1, in)) > most)
-        wrong = "is larger than may be (256 KiB of source, 512 KiB of numbers)";
-    else if (ferror(in))
+    else if (in)
+        length = fread(text, 1, most + 1, in);
+    if (!wrong && (!in || ferror(in)))
         wrong = strerror(errno);
+    if (length > most)
+        wrong = "is larger than may be (256 KiB of source, 512 KiB of numbers)";
     if (in)
         fclose(in);
     if (wrong) {

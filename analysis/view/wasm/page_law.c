@@ -16,48 +16,44 @@ EXPORTED(file_law) void file_law(int memory);
 
 static struct {
     stance_program base;
-    int memory; /* numbers that it keeps */
+    size_t memory; /* numbers that it keeps */
 } law;
 
-static int told(const stance_case *c)
+static size_t told(const stance_case *c)
 {
-    return STANCE_SAMPLE_HEAD + 3 * c->scene->coordinates + c->scene->contacts +
-           c->scene->actuators;
-}
-
-static int numbers(void)
-{
-    return (int)page.view.law.numbers;
+    return STANCE_SAMPLE_HEAD + 3 * (size_t)c->scene->coordinates + (size_t)c->scene->contacts +
+           (size_t)c->scene->actuators;
 }
 
 static double *begin(const stance_program *program, const stance_case *c)
 {
-    const int n = c->scene->coordinates, actuators = c->scene->actuators;
-    double *const sample =
-        calloc((size_t)(told(c) + numbers() + law.memory + actuators), sizeof *sample);
-    double *const rest = sample ? sample + told(c) - actuators : NULL, *const target = rest - n;
+    const size_t n = (size_t)c->scene->coordinates, actuators = (size_t)c->scene->actuators;
+    const size_t numbers = page.view.law.numbers;
+    double *const sample = calloc(told(c) + numbers + law.memory + actuators, sizeof *sample);
     (void)program;
     if (!sample)
         return NULL;
-    for (int i = 0; i < n; i++)
+    double *const rest = sample + told(c) - actuators, *const target = rest - n;
+    for (size_t i = 0; i < n; i++)
         target[i] = NAN;
     for (int k = 0; k < c->scene->postures && c->has_target; k++)
         target[c->scene->posture[k]] = c->near.target[k];
-    for (int i = 0; i < actuators; i++)
+    for (size_t i = 0; i < actuators; i++)
         rest[i] = c->has_target ? c->near.feedforward[i] : NAN;
-    memcpy(sample + told(c), c->parameter, (size_t)numbers() * sizeof *sample);
+    memcpy(sample + told(c), c->parameter, numbers * sizeof *sample);
     return sample;
 }
 
 static const double *act(const stance_program *program, const stance_case *c, double *sample)
 {
-    const int before = told(c) + numbers() + law.memory, actuators = c->scene->actuators;
+    const size_t before = told(c) + page.view.law.numbers + law.memory,
+                 actuators = (size_t)c->scene->actuators;
     double *const out = sample + before, sum = 0;
     (void)program;
-    memset(out, 0, (size_t)actuators * sizeof *out);
-    if (!page_law(sample, before + actuators))
+    memset(out, 0, actuators * sizeof *out);
+    if (!page_law(sample, (int)(before + actuators)))
         return NULL;
-    for (int i = 0; i < actuators; i++)
+    for (size_t i = 0; i < actuators; i++)
         sum += out[i] - out[i];
     return sum == 0 ? out : NULL;
 }
@@ -71,7 +67,7 @@ static void end(const stance_program *program, double *sample)
 void file_law(int memory)
 {
     law.base = (stance_program){memory > 0, begin, act, end};
-    law.memory = memory;
+    law.memory = (size_t)memory;
 }
 
 bool page_take_law(struct scenario *s)
