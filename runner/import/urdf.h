@@ -14,9 +14,11 @@
 struct urdf_link {
     const xmlNode *node;
     const char *name;
+    double mass;
     int above; /* the joint whose child it is, -1: none */
     int body;  /* of the model; -1: the world's, or not taken up yet */
     bool taken;
+    const xmlNode *weightless; /* what turns its gravity off */
 };
 
 /* A <joint>. */
@@ -38,7 +40,7 @@ struct urdf {
     int turned; /* angles taken as right angles */
 };
 
-/* ---- urdf_xml.c ------------------------------------------------------------------------------ */
+/* ---- urdf_xml.c; a node may be NULL, which has nothing --------------------------------------- */
 
 /* "FILE:LINE: ..."; returns false. */
 #define urdf_refuse(...) (urdf_complain(__VA_ARGS__), false)
@@ -48,6 +50,7 @@ void urdf_complain(const struct urdf *u, const xmlNode *at, const char *format, 
 int urdf_line(const xmlNode *node);
 /* An element's name without a prefix: gazebo's, drake's. */
 const char *urdf_name(const xmlNode *node);
+bool urdf_is(const xmlNode *node, const char *name);
 /* The first child element of a name, or with NULL of any, that comes after `after` (NULL: the
  * first); NULL: there is none. */
 const xmlNode *urdf_child(const xmlNode *node, const char *name, const xmlNode *after);
@@ -58,13 +61,15 @@ const xmlNode *urdf_child(const xmlNode *node, const char *name, const xmlNode *
 const char *urdf_text(const xmlNode *node, const char *key);
 /* The text of an attribute that must be there, and say something. False: refused. */
 bool urdf_need(const struct urdf *u, const xmlNode *node, const char *key, const char **text);
-/* What an element says as `value="..."` or between its tags, cut; false: nothing. */
-bool urdf_value(const xmlNode *node, char text[SPATIAL_NAME]);
+/* What an element says as an attribute, or between its tags, cut; false: nothing. */
+bool urdf_value(const xmlNode *node, const char *key, char text[SPATIAL_NAME]);
 
-/* Numbers of an attribute that may be missing, when value[count] stays as it is. False: refused. */
-bool urdf_numbers(struct urdf *u, const xmlNode *node, const char *key, int count, double *value);
-/* A number as of urdf_value; false: refused, as when there is none. */
-bool urdf_number(struct urdf *u, const xmlNode *node, double *value);
+/* Numbers of an attribute; value[count] stays as it is where it is missing. False: refused. */
+enum { URDF_NEEDED = 1, URDF_POSITIVE = 2 };
+bool urdf_numbers(const struct urdf *u, const xmlNode *node, const char *key, int count,
+                  double *value, int must);
+/* The number that an element says as `value="..."` or between its tags; stays without a node. */
+bool urdf_number(const struct urdf *u, const xmlNode *node, double *value);
 /* <origin> of an element: none is no offset. */
 bool urdf_origin(struct urdf *u, const xmlNode *of, double at[3], double rotation[3][3]);
 
