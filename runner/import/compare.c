@@ -74,20 +74,12 @@ static bool twin_read(const struct comparison *o, struct twin *t, FILE *out, con
                       stance_message *message)
 {
     char path[64];
+    if (!out || fflush(out) != 0 || ferror(out))
+        return complain(message, "not compared: %s", strerror(errno));
     snprintf(path, sizeof path, "/proc/self/fd/%d", fileno(out));
-    const bool good = fflush(out) == 0 && !ferror(out)
-                          ? twin_load(o, t, path, of, message)
-                          : complain(message, "not compared: %s", strerror(errno));
+    const bool good = twin_load(o, t, path, of, message);
     fclose(out);
     return good;
-}
-
-static FILE *nameless(stance_message *message)
-{
-    FILE *const out = tmpfile();
-    if (!out)
-        complain(message, "not compared: %s", strerror(errno));
-    return out;
 }
 
 /* Bodies and joints in the model's order, with moments that any body may have. */
@@ -134,10 +126,9 @@ static bool put_inertia(const struct comparison *o, const struct spatial_body *b
 
 static bool load_model(struct comparison *o, stance_message *message)
 {
-    FILE *const out = nameless(message);
-    if (!out)
-        return false;
-    write_tree(out, o->model);
+    FILE *const out = tmpfile();
+    if (out)
+        write_tree(out, o->model);
     if (!twin_read(o, &o->file, out, "what was read of the file", message))
         return false;
     memcpy(o->file.m->opt.gravity, o->model->gravity, sizeof o->model->gravity);
@@ -176,10 +167,9 @@ static bool load_file(struct comparison *o, const char *path, stance_message *me
 
 static bool load_ours(struct comparison *o, const stance_case *c, stance_message *message)
 {
-    FILE *const out = nameless(message);
-    if (!out)
-        return false;
-    mjcf_write(out, o->scene, c, "robot");
+    FILE *const out = tmpfile();
+    if (out)
+        mjcf_write(out, o->scene, c, "robot");
     if (!twin_read(o, &o->ours, out, "the scenario's robot", message))
         return false;
     for (int i = 0; i < o->scene->coordinates; i++)

@@ -105,8 +105,7 @@ static void read_joint(const struct reading *r, int j)
     }
 }
 
-/* ---- what may touch ----------------------------------------------------------------------------
- */
+/* ---- what may touch ------------------------------------------------------------------------- */
 
 static bool is_static(const mjModel *m, int g)
 {
@@ -123,15 +122,6 @@ static int find_pair(const mjModel *m, int g, int h)
     return -1;
 }
 
-static bool is_excluded(const mjModel *m, int a, int b)
-{
-    const int low = a < b ? a : b, high = a < b ? b : a;
-    for (int e = 0; e < m->nexclude; e++)
-        if (m->exclude_signature[e] == ((low + 1) << 16) + high + 1)
-            return true;
-    return false;
-}
-
 /* Two geoms of bodies that are not one, nor parent and child (but for the world's children). */
 static bool may_touch(const mjModel *m, int g, int h)
 {
@@ -139,8 +129,11 @@ static bool may_touch(const mjModel *m, int g, int h)
     const int weld_a = m->body_weldid[a], weld_b = m->body_weldid[b];
     if (find_pair(m, g, h) >= 0)
         return true;
-    if (m->opt.collision == mjCOL_PAIR || weld_a == weld_b || is_excluded(m, a, b))
+    if (m->opt.collision == mjCOL_PAIR || weld_a == weld_b)
         return false;
+    for (int e = 0; e < m->nexclude; e++)
+        if (m->exclude_signature[e] == (((a < b ? a : b) + 1) << 16) + (a < b ? b : a) + 1)
+            return false;
     if (weld_a != 0 && weld_b != 0 && !(m->opt.disableflags & mjDSBL_FILTERPARENT) &&
         (m->body_weldid[m->body_parentid[weld_a]] == weld_b ||
          m->body_weldid[m->body_parentid[weld_b]] == weld_a))
@@ -164,15 +157,11 @@ static double friction_against(const mjModel *m, int g, int h)
     const int pair = h < 0 ? -1 : find_pair(m, g, h);
     if (pair >= 0)
         return m->pair_dim[pair] > 1 ? m->pair_friction[5 * pair] : 0;
-    const int first = h < 0 || m->geom_priority[g] >= m->geom_priority[h] ? g : h;
-    const bool both = h >= 0 && m->geom_priority[g] == m->geom_priority[h];
-    double friction = m->geom_friction[3 * first];
-    int dimensions = m->geom_condim[first];
-    if (both) {
-        friction = fmax(friction, m->geom_friction[3 * h]);
-        dimensions = dimensions > m->geom_condim[h] ? dimensions : m->geom_condim[h];
-    }
-    return dimensions > 1 ? friction : 0;
+    const int priority = h < 0 ? 1 : m->geom_priority[g] - m->geom_priority[h];
+    const bool ours = priority >= 0, theirs = priority <= 0;
+    const double friction =
+        fmax(ours ? m->geom_friction[3 * g] : 0, theirs ? m->geom_friction[3 * h] : 0);
+    return (ours && m->geom_condim[g] > 1) || (theirs && m->geom_condim[h] > 1) ? friction : 0;
 }
 
 static void take_shape(const mjModel *m, struct spatial_geom *geom, int g)

@@ -4,22 +4,9 @@
 
 #include "runner/base/words.h"
 
-#include <stdarg.h>
 #include <stdlib.h>
 
 #define PARALLEL 1e-6 /* sine of the angle by which directions may differ */
-
-void plane_say(const struct plane_tree *t, int line, const char *format, ...)
-{
-    char *const text = t->message->text;
-    va_list arguments;
-    snprintf(text, sizeof t->message->text, line > 0 ? "%.100s:%d: " : "%.100s: ", t->model->file,
-             line);
-    const size_t length = strlen(text);
-    va_start(arguments, format);
-    vsnprintf(text + length, sizeof t->message->text - length, format, arguments);
-    va_end(arguments);
-}
 
 double complex plane_place(const struct plane_tree *t, const struct plane_pose *pose, int body,
                            const double at[3])
@@ -304,6 +291,33 @@ static void add_link(struct plane_tree *t, int j, bool last)
     t->link_of[body] = t->links++;
 }
 
+/* What has no mass at the end of a chain moves nothing: it stays at its reference. */
+static void hold_massless_ends(struct plane_tree *t)
+{
+    struct spatial_model *const model = t->model;
+    bool *const heavy =
+        spatial_room((size_t)model->bodies, sizeof *heavy); /* all that hangs on it */
+    int moving = 0;
+    for (int b = model->bodies - 1; b >= 0; b--) {
+        heavy[b] = heavy[b] || model->body[b].mass > 0;
+        if (heavy[b] && model->body[b].parent >= 0)
+            heavy[model->body[b].parent] = true;
+    }
+    for (int j = 0; j < model->joints; j++) {
+        struct spatial_joint *const joint = &model->joint[j];
+        if (t->held[j] || heavy[joint->body] || moving == 0) {
+            moving += !t->held[j];
+            continue;
+        }
+        spatial_note(model,
+                     "link %.50s has no mass, and nothing hangs on it: its joint is left out",
+                     model->body[joint->body].name);
+        t->held[j] = true;
+        joint->start = joint->reference;
+    }
+    free(heavy);
+}
+
 static void add_links(struct plane_tree *t)
 {
     const struct spatial_model *const model = t->model;
@@ -323,42 +337,6 @@ static void add_links(struct plane_tree *t)
             t->link[t->link_of[model->geom[g].body]].touches |= model->geom[g].meets_floor;
 }
 
-/* Links `from` and after it move up to `to`; those in between are no more. */
-static void drop_links(struct plane_tree *t, int to, int from, int instead)
-{
-    const int by = from - to;
-    for (int b = 0; b < t->model->bodies; b++)
-        if (t->link_of[b] >= to)
-            t->link_of[b] = t->link_of[b] < from ? instead : t->link_of[b] - by;
-    for (int k = from; k < t->links; k++) {
-        t->link[k - by] = t->link[k];
-        if (t->link[k - by].parent >= to)
-            t->link[k - by].parent -= by;
-    }
-    t->links -= by;
-}
-
-/* A link without mass at the end of a chain moves nothing: it stays at its reference. */
-static void drop_massless_ends(struct plane_tree *t)
-{
-    for (int k = t->links - 1; k > 0; k--) {
-        const struct plane_link link = t->link[k];
-        struct spatial_joint *const joint = &t->model->joint[link.joint];
-        if (link.children > 0 || link.mass > 0)
-            continue;
-        spatial_note(t->model,
-                     "link %.50s has no mass, and nothing hangs on it: its joint is left out",
-                     t->model->body[link.body].name);
-        t->held[link.joint] = true;
-        joint->start = joint->reference;
-        if (link.parent >= 0) {
-            t->link[link.parent].children--;
-            t->link[link.parent].touches |= link.touches;
-        }
-        drop_links(t, k, k + 1, link.parent);
-    }
-}
-
 /* ---- the root ------------------------------------------------------------------------------- */
 
 /* Does a joint nothing but lead? */
@@ -375,7 +353,8 @@ static bool is_bare(const struct spatial_model *model, int j)
 /* Two slides and a hinge of links without mass but for the last: they are one, and free. */
 static void merge_root(struct plane_tree *t)
 {
-    struct plane_link *const link = t->link, root = t->link[2];
+    struct plane_link *const link = t->link;
+    struct plane_link root = link[2];
     struct plane_map *const map = &t->robot->map;
     int slides = 0, hinge = 0, way[3] = {0};
     bool bare = true;
@@ -397,16 +376,20 @@ static void merge_root(struct plane_tree *t)
                                "motors: they stay joints of their own");
         return;
     }
-    const struct plane_link turning = link[hinge];
+    root.kind = STANCE_FREE;
+    root.parent = -1;
+    root.joint = link[hinge].joint;
+    root.sign = link[hinge].sign;
+    root.at = link[hinge].at;
     for (int k = 0; k < 3; k++)
         map->root_joint[map->root_joints++] = link[k].joint;
-    drop_links(t, 0, 2, 0);
+    for (int b = 0; b < t->model->bodies; b++)
+        t->link_of[b] = t->link_of[b] < 0 ? -1 : t->link_of[b] < 2 ? 0 : t->link_of[b] - 2;
+    t->links -= 2;
+    memmove(link, link + 2, (size_t)t->links * sizeof *link);
     link[0] = root;
-    link[0].kind = STANCE_FREE;
-    link[0].parent = -1;
-    link[0].joint = turning.joint;
-    link[0].sign = turning.sign;
-    link[0].at = turning.at;
+    for (int k = 1; k < t->links; k++)
+        link[k].parent -= 2;
 }
 
 static bool check_roots(const struct plane_tree *t)
@@ -427,20 +410,6 @@ static bool check_roots(const struct plane_tree *t)
         first = link->parent < 0 ? k : first;
     }
     return first >= 0 || plane_refuse(t, 0, "nothing moves: all bodies are fixed to the world");
-}
-
-static bool find_root(struct plane_tree *t)
-{
-    struct plane_map *const map = &t->robot->map;
-    if (!check_roots(t))
-        return false;
-    drop_massless_ends(t);
-    if (t->link[0].kind == STANCE_FREE)
-        map->root_joint[map->root_joints++] = t->link[0].joint;
-    else
-        merge_root(t);
-    map->free_root = t->link[0].kind == STANCE_FREE;
-    return true;
 }
 
 /* ---- the floor ------------------------------------------------------------------------------ */
@@ -577,8 +546,16 @@ bool plane_tree_make(struct plane_tree *t)
     plane_pose_all(t, t->pose);
     if (!choose_plane(t) || !take_floor(t))
         return false;
+    hold_massless_ends(t);
     add_links(t);
-    return find_root(t);
+    if (!check_roots(t))
+        return false;
+    if (t->link[0].kind == STANCE_FREE)
+        t->robot->map.root_joint[t->robot->map.root_joints++] = t->link[0].joint;
+    else
+        merge_root(t);
+    t->robot->map.free_root = t->link[0].kind == STANCE_FREE;
+    return true;
 }
 
 void plane_tree_free(struct plane_tree *t)

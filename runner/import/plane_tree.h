@@ -8,8 +8,6 @@
 
 #include "plane.h"
 
-#include "runner/base/message.h"
-
 #include <complex.h>
 #include <math.h>
 
@@ -49,11 +47,7 @@ struct plane_tree {
     double floor_friction;   /* NAN: not given */
 };
 
-/* Fills message with "FILE:LINE: ..."; line 0: not known. plane_refuse(t, line, format, ...) is
- * false. */
-void plane_say(const struct plane_tree *t, int line, const char *format, ...)
-    __attribute__((format(printf, 3, 4)));
-#define plane_refuse(...) (plane_say(__VA_ARGS__), as_false())
+#define plane_refuse(t, ...) spatial_refuse((t)->model, (t)->message, __VA_ARGS__)
 
 /* What a joint is called; without a name as its body is. */
 const char *plane_joint_name(const struct plane_tree *t, int j);

@@ -4,9 +4,7 @@
 #include "runner/base/command.h"
 
 #include <stdarg.h>
-#include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 static void *or_end(void *room)
 {
@@ -35,6 +33,18 @@ void *spatial_more(void *list, int *count, size_t size)
 void spatial_name(char name[SPATIAL_NAME], const char *text)
 {
     snprintf(name, SPATIAL_NAME, "%s", text ? text : "");
+}
+
+void spatial_say(const struct spatial_model *model, stance_message *message, int line,
+                 const char *format, ...)
+{
+    char *const text = message->text;
+    va_list arguments;
+    snprintf(text, sizeof message->text, line > 0 ? "%.100s:%d: " : "%.100s: ", model->file, line);
+    const size_t length = strlen(text);
+    va_start(arguments, format);
+    vsnprintf(text + length, sizeof message->text - length, format, arguments);
+    va_end(arguments);
 }
 
 void spatial_begin(struct spatial_model *model, const char *path, const char *format)

@@ -8,7 +8,7 @@
 #ifndef RUNNER_IMPORT_SPATIAL_H
 #define RUNNER_IMPORT_SPATIAL_H
 
-#include "engine/stance.h"
+#include "runner/base/message.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -132,6 +132,11 @@ void spatial_add_alien(struct spatial_model *model, const char *what, const char
                        bool harmless);
 /* Cleared room; to be freed. Without memory as above. */
 void *spatial_room(size_t count, size_t size);
+/* spatial_refuse(model, message, line, format, ...): "FILE:LINE: ...", line 0: not known. Is false.
+ */
+#define spatial_refuse(...) (spatial_say(__VA_ARGS__), as_false())
+void spatial_say(const struct spatial_model *model, stance_message *message, int line,
+                 const char *format, ...) __attribute__((format(printf, 4, 5)));
 /* NULL: "". */
 void spatial_name(char name[SPATIAL_NAME], const char *text);
 /* An empty model of a file. */

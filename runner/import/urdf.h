@@ -6,8 +6,6 @@
 
 #include "spatial.h"
 
-#include "runner/base/message.h"
-
 #include <libxml/tree.h>
 
 /* A <link>; `node` NULL: the world that joints name and no link does. */
@@ -32,7 +30,6 @@ struct urdf_joint {
 struct urdf {
     struct spatial_model *model;
     stance_message *message;
-    const char *path;
     const xmlNode *root;
     struct urdf_link *link;
     struct urdf_joint *joint;
@@ -42,11 +39,7 @@ struct urdf {
 
 /* ---- urdf_xml.c; a node may be NULL, which has nothing --------------------------------------- */
 
-/* "FILE:LINE: ..."; returns false. */
-#define urdf_refuse(...) (urdf_complain(__VA_ARGS__), false)
-void urdf_complain(const struct urdf *u, const xmlNode *at, const char *format, ...)
-    __attribute__((format(printf, 3, 4)));
-
+#define urdf_refuse(u, at, ...) spatial_refuse((u)->model, (u)->message, urdf_line(at), __VA_ARGS__)
 int urdf_line(const xmlNode *node);
 /* An element's name without a prefix: gazebo's, drake's. */
 const char *urdf_name(const xmlNode *node);

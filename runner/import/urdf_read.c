@@ -283,15 +283,13 @@ static bool limits_of(struct urdf *u, const struct urdf_joint *j, struct spatial
         joint->start = fmin(fmax(0, limits[0]), limits[1]);
     if (continuous && joint->limited)
         spatial_note(u->model, "joint %s is continuous, and its limits are kept", j->name);
-    else if (!continuous && !joint->limited && given)
-        spatial_note(
-            u->model,
-            "joint %s: lower = upper = 0 is what exporters write without limits: it has no "
-            "stops here (if it is not to move: --weld %s)",
-            j->name, j->name);
-    else if (!continuous && !joint->limited)
-        spatial_note(u->model, "joint %s has no %s: it has no stops here", j->name,
-                     at ? "lower and upper limits" : "<limit>");
+    if (!continuous && !joint->limited)
+        spatial_note(u->model,
+                     "joint %s: %s: it has no stops here (if it is not to move: --weld %s)",
+                     j->name,
+                     given ? "lower = upper = 0 is what exporters write without limits"
+                           : "no limits are given",
+                     j->name);
     if (joint->start != 0)
         spatial_note(u->model, "joint %s begins at its stop, %g: 0 is beyond it", joint->name,
                      joint->start);
@@ -314,7 +312,7 @@ static bool one_way(struct urdf *u, struct urdf_joint *j, int body, spatial_join
 }
 
 /* Two slides at right angles to each other and to the normal, then the hinge about it. */
-static bool planar(struct urdf *u, struct urdf_joint *j, int body)
+static bool planar(struct urdf *u, struct urdf_joint *j, int body, spatial_joint_kind kind)
 {
     static const char *const suffix[] = {"_a", "_b", ""};
     double axis[3][3] = {{0}}, *const a = axis[0], *const n = axis[2];
@@ -329,7 +327,7 @@ static bool planar(struct urdf *u, struct urdf_joint *j, int body)
     space_cross(n, a, axis[1]);
     for (int i = 0; i < 3; i++) {
         struct spatial_joint *const joint =
-            add_joint(u, j->name, j->node, body, i < 2 ? SPATIAL_SLIDE : SPATIAL_HINGE);
+            add_joint(u, j->name, j->node, body, i < 2 ? SPATIAL_SLIDE : kind);
         add_text(joint->name, sizeof joint->name, "%s", suffix[i]);
         memcpy(joint->axis, axis[i], sizeof joint->axis);
     }
@@ -357,12 +355,11 @@ static bool joint_of(struct urdf *u, struct urdf_joint *j, int body)
     } types[] = {{"revolute", SPATIAL_HINGE, one_way},
                  {"continuous", SPATIAL_HINGE, one_way},
                  {"prismatic", SPATIAL_SLIDE, one_way},
-                 {"floating", SPATIAL_FREE, floating}};
+                 {"floating", SPATIAL_FREE, floating},
+                 {"planar", SPATIAL_HINGE, planar}};
     for (size_t i = 0; i < sizeof types / sizeof *types; i++)
         if (strcmp(j->type, types[i].type) == 0)
             return types[i].read(u, j, body, types[i].kind);
-    if (strcmp(j->type, "planar") == 0)
-        return planar(u, j, body);
     return strcmp(j->type, "fixed") == 0 ||
            urdf_refuse(u, j->node,
                        "joint %.60s: type \"%.30s\" is none of fixed, revolute, continuous, "
@@ -454,7 +451,7 @@ static bool read_robot(struct urdf *u, const xmlDoc *document)
 
 bool urdf_read(const char *path, struct spatial_model *model, stance_message *message)
 {
-    struct urdf u = {.model = model, .message = message, .path = path};
+    struct urdf u = {.model = model, .message = message};
     xmlDoc *const document = parse(path, message);
     spatial_begin(model, path, "URDF");
     if (!document)

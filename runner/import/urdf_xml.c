@@ -9,20 +9,9 @@
 #include "runner/base/problem.h"
 
 #include <math.h>
-#include <stdarg.h>
 #include <stdlib.h>
 
 #define BLANKS " \t\r\n"
-
-void urdf_complain(const struct urdf *u, const xmlNode *at, const char *format, ...)
-{
-    char *const text = u->message->text;
-    va_list arguments;
-    complain(u->message, "%s:%d: ", u->path, urdf_line(at));
-    va_start(arguments, format);
-    vsnprintf(text + strlen(text), sizeof u->message->text - strlen(text), format, arguments);
-    va_end(arguments);
-}
 
 int urdf_line(const xmlNode *node)
 {
