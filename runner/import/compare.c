@@ -64,8 +64,8 @@ static bool twin_load(const struct comparison *o, struct twin *t, const char *pa
     t->m->opt.density = t->m->opt.viscosity = 0;
     t->m->opt.disableflags |= mjDSBL_CONSTRAINT;
     t->d = o->mj.mj_makeData(t->m);
-    t->mass = spatial_room((size_t)(t->m->nv * t->m->nv), sizeof *t->mass);
-    t->ways = spatial_room((size_t)(N * t->m->nv), sizeof *t->ways);
+    t->mass = spatial_room((size_t)t->m->nv, (size_t)t->m->nv * sizeof *t->mass);
+    t->ways = spatial_room((size_t)t->m->nv, N * sizeof *t->ways);
     return t->d || no_memory(message);
 }
 
@@ -212,22 +212,13 @@ static double uniform(struct comparison *o, double low, double high)
     return low + (high - low) * ((double)((z ^ z >> 31) >> 11) * 0x1p-53);
 }
 
-/* Within the joint's stops; those of one side have the other end of their range where no coordinate
- * comes. */
+/* Within the joint's stops, or within 1 of where there are none. */
 static double position(struct comparison *o, int coordinate)
 {
-    const mjModel *const m = o->ours.m;
-    const double *const way = o->ours.ways + coordinate * m->nv;
-    int joint = 0;
-    while (way[joint] == 0)
-        joint++;
-    const double *const range = m->jnt_range + 2 * joint;
-    double low = -1, high = 1;
-    if (m->jnt_limited[joint]) {
-        low = range[0] < -4 ? fmin(-1, range[1] - 1) : range[0];
-        high = range[1] > 4 ? fmax(1, low + 1) : range[1];
-    }
-    return uniform(o, low, high);
+    const int body = coordinate - (o->map->free_root ? 2 : 0);
+    const double *const limits = o->scene->mechanism->value.body[body].limits;
+    const double low = isfinite(limits[0]) ? limits[0] : fmin(-1, limits[1] - 1);
+    return uniform(o, low, isfinite(limits[1]) ? limits[1] : fmax(1, low + 1));
 }
 
 static void put_free(const struct comparison *o, const struct spatial_joint *joint, double *qpos,
@@ -279,9 +270,9 @@ static void put_torques(struct comparison *o)
     for (int a = 0; a < o->map->actuators; a++) {
         const int of = o->map->actuator[a].actuator;
         const struct spatial_actuator *const actuator = &o->model->actuator[of];
-        const bool limited = o->ours.m->actuator_ctrllimited[a];
-        const double most = limited ? o->ours.m->actuator_ctrlrange[2 * a + 1] : 10,
-                     torque = uniform(o, -most, most), force = o->map->actuator[a].sign * torque;
+        const double limit = o->scene->mechanism->value.limit[a],
+                     most = isfinite(limit) ? limit : 10, torque = uniform(o, -most, most),
+                     force = o->map->actuator[a].sign * torque;
         o->ours.d->ctrl[a] = torque;
         if (o->itself && actuator->drive == SPATIAL_MOTOR)
             o->file.d->ctrl[of] = force / actuator->gear;

@@ -164,7 +164,8 @@ static double friction_against(const mjModel *m, int g, int h)
     return (ours && m->geom_condim[g] > 1) || (theirs && m->geom_condim[h] > 1) ? friction : 0;
 }
 
-static void take_shape(const mjModel *m, struct spatial_geom *geom, int g)
+/* Those that touch nothing are only drawn. Without a floor those that would touch one do. */
+static void read_geom(const struct reading *r, int g, bool floor)
 {
     static const struct {
         spatial_shape shape;
@@ -179,16 +180,6 @@ static void take_shape(const mjModel *m, struct spatial_geom *geom, int g)
         [mjGEOM_BOX] = {SPATIAL_BOX, "box"},
         [mjGEOM_MESH] = {SPATIAL_OTHER, "mesh"},
     };
-    geom->shape = shapes[m->geom_type[g]].shape;
-    geom->of = shapes[m->geom_type[g]].of;
-    memcpy(geom->at, &m->geom_pos[3 * g], sizeof geom->at);
-    space_of_quaternion(&m->geom_quat[4 * g], geom->rotation);
-    memcpy(geom->size, &m->geom_size[3 * g], sizeof geom->size);
-}
-
-/* Those that touch nothing are only drawn. Without a floor those that would touch one do. */
-static void read_geom(const struct reading *r, int g, bool floor)
-{
     const mjModel *const m = r->m;
     const bool world = is_static(m, g), solid = m->geom_contype[g] || m->geom_conaffinity[g];
     const int under = world || !floor ? -1 : floor_of(m, g);
@@ -201,7 +192,11 @@ static void read_geom(const struct reading *r, int g, bool floor)
     struct spatial_geom *const geom = spatial_add(r->model, geom, geoms);
     take_name(r, mjOBJ_GEOM, g, "geom", geom->name, &geom->line);
     geom->body = m->geom_bodyid[g] - 1;
-    take_shape(m, geom, g);
+    geom->shape = shapes[m->geom_type[g]].shape;
+    geom->of = shapes[m->geom_type[g]].of;
+    memcpy(geom->at, &m->geom_pos[3 * g], sizeof geom->at);
+    memcpy(geom->size, &m->geom_size[3 * g], sizeof geom->size);
+    space_of_quaternion(&m->geom_quat[4 * g], geom->rotation);
     geom->meets_floor = meets;
     geom->meets_robot = other;
     geom->friction = world && floor ? NAN : friction_against(m, g, under);

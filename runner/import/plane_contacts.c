@@ -287,7 +287,7 @@ static void raise_start(struct plane_tree *t, const struct candidates *c)
 {
     double lowest = 0;
     for (int k = 0; k < c->count; k++)
-        for (int end = 0; c->list[k].taken && end <= c->list[k].sole; end++) {
+        for (int end = 0; c->list[k].taken && end < (c->list[k].sole ? 2 : 1); end++) {
             const double complex at =
                 as_it_begins(t, c->list[k].link, end ? c->list[k].to : c->list[k].at);
             lowest = fmin(lowest, cimag(cexp(I * t->robot->slope) * at) - c->list[k].radius);

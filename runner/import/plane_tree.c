@@ -113,61 +113,53 @@ static bool is_moving(const struct plane_tree *t, int j, spatial_joint_kind kind
     return t->model->joint[j].kind == kind && !t->held[j];
 }
 
-/* The direction that most hinges have; of as many that which is across gravity, the first. */
-static bool common_axis(const struct plane_tree *t, double normal[3])
+/* How good a normal is: for hinges along it, else gravity across it, else slides. */
+static double votes(const struct plane_tree *t, const double axis[3])
 {
-    const double *const gravity = t->model->gravity, bound = PARALLEL * (1 + space_length(gravity));
-    double best = 0;
+    const double *const gravity = t->model->gravity;
+    const bool falls = fabs(space_dot(axis, gravity)) < PARALLEL * (1 + space_length(gravity));
+    bool slides = true;
+    double hinges = 0;
     for (int j = 0; j < t->model->joints; j++) {
-        double votes = fabs(space_dot(t->axis[j], gravity)) < bound ? 0.5 : 0;
-        for (int k = 0; k < t->model->joints; k++)
-            votes += is_moving(t, k, SPATIAL_HINGE) && parallel(t->axis[j], t->axis[k]);
-        if (is_moving(t, j, SPATIAL_HINGE) && votes > best) {
-            best = votes;
-            memcpy(normal, t->axis[j], sizeof t->axis[j]);
-        }
+        hinges += is_moving(t, j, SPATIAL_HINGE) && parallel(axis, t->axis[j]);
+        slides = slides &&
+                 (!is_moving(t, j, SPATIAL_SLIDE) || fabs(space_dot(t->axis[j], axis)) < PARALLEL);
     }
-    return best > 0;
+    return hinges + (falls ? 0.5 : 0) + (slides ? 0.25 : 0);
 }
 
-/* Without hinges: y, unless a slide or gravity goes along it; then x, then z. */
-static void free_axis(const struct plane_tree *t, double normal[3])
-{
-    static const int order[3] = {1, 0, 2};
-    for (int k = 0; k < 3; k++) {
-        const int axis = order[k];
-        bool across = fabs(t->model->gravity[axis]) <= PARALLEL * space_length(t->model->gravity);
-        for (int i = 0; i < 3; i++)
-            normal[i] = i == axis;
-        for (int j = 0; j < t->model->joints; j++)
-            across =
-                across && (!is_moving(t, j, SPATIAL_SLIDE) || fabs(t->axis[j][axis]) < PARALLEL);
-        if (across)
-            return;
-    }
-}
-
+/* The first of the best directions: that of a hinge, or without any y, x, z. */
 static void choose_normal(const struct plane_tree *t, double normal[3])
 {
     static const struct {
         const char *name;
         double normal[3];
     } planes[] = {{"xz", {0, 1, 0}}, {"yz", {1, 0, 0}}, {"xy", {0, 0, 1}}};
-    if (!t->wishes->plane && !common_axis(t, normal))
-        free_axis(t, normal);
-    /* Exactly an axis of the file's, where it is one but for rounding. */
-    for (int k = 0; k < 3; k++)
-        if (t->wishes->plane ? strcmp(t->wishes->plane, planes[k].name) == 0
-                             : parallel(normal, planes[k].normal))
+    const int joints = t->model->joints;
+    const char *const wish = t->wishes->plane;
+    double best = -1;
+    for (int j = 0; j < joints + 3; j++) {
+        const double *const axis = j < joints ? t->axis[j] : planes[j - joints].normal;
+        const bool may = j < joints ? !wish && is_moving(t, j, SPATIAL_HINGE)
+                                    : !wish || strcmp(wish, planes[j - joints].name) == 0;
+        if (may && votes(t, axis) > best) {
+            best = votes(t, axis);
+            memcpy(normal, axis, 3 * sizeof *axis);
+        }
+    }
+    for (int k = 0; k < 3;
+         k++) /* exactly an axis of the file's, where it is one but for rounding */
+        if (parallel(normal, planes[k].normal))
             memcpy(normal, planes[k].normal, sizeof planes[k].normal);
 }
 
 static bool in_plane(const struct plane_tree *t, int j, const double normal[3])
 {
     const spatial_joint_kind kind = t->model->joint[j].kind;
+    const bool has_axis = space_length(t->axis[j]) > 0.5;
     return t->held[j] || kind == SPATIAL_FREE ||
-           (kind == SPATIAL_HINGE && parallel(t->axis[j], normal)) ||
-           (kind == SPATIAL_SLIDE && fabs(space_dot(t->axis[j], normal)) < PARALLEL);
+           (has_axis && kind == SPATIAL_HINGE && parallel(t->axis[j], normal)) ||
+           (has_axis && kind == SPATIAL_SLIDE && fabs(space_dot(t->axis[j], normal)) < PARALLEL);
 }
 
 /* The first joint that is not of the plane, and how many more are not: " (so with a, b)". */
@@ -193,15 +185,6 @@ static bool refuse_joint(const struct plane_tree *t, int j, const double normal[
                         "holds it%s, --plane chooses another plane",
                         name, hinge ? "turns about" : "slides along", axis_text(t->axis[j], axis),
                         hinge ? "along" : "across", axis_text(normal, of), name, others);
-}
-
-static bool check_joint(const struct plane_tree *t, int j, const double normal[3])
-{
-    const struct spatial_joint *const joint = &t->model->joint[j];
-    if ((is_moving(t, j, SPATIAL_HINGE) || is_moving(t, j, SPATIAL_SLIDE)) &&
-        !(fabs(space_length(t->axis[j]) - 1) < PARALLEL))
-        return plane_refuse(t, joint->line, "joint '%.60s' has no axis", plane_joint_name(t, j));
-    return in_plane(t, j, normal) || refuse_joint(t, j, normal);
 }
 
 /* Up is against gravity; without any, along the file's z, else its y. */
@@ -251,8 +234,8 @@ static bool choose_plane(struct plane_tree *t)
     double normal[3] = {0};
     choose_normal(t, normal);
     for (int j = 0; j < t->model->joints; j++)
-        if (!check_joint(t, j, normal))
-            return false;
+        if (!in_plane(t, j, normal))
+            return refuse_joint(t, j, normal);
     if (!choose_axes(t, normal))
         return false;
     for (int i = 0; i < 3; i++) {
