@@ -77,8 +77,6 @@ static inline void plane_put(double complex place, double out[2])
 /* plane_contacts.c: what may touch, into the mechanism, with ground.friction; what begins inside
  * the ground is raised. */
 bool plane_contacts(struct plane_tree *t);
-/* plane_drives.c: motors and servos. */
-bool plane_drives(struct plane_tree *t);
 /* plane_names.c: of links; of contacts and motors by what they are called in the file. */
 void plane_name_bodies(struct plane_tree *t);
 void plane_name_contact(struct plane_tree *t, int element, const char *geom);

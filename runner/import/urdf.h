@@ -1,5 +1,5 @@
-/* urdf.h - what the parts of the URDF reader share: the document, its links and joints, attributes
- * and numbers with their places.
+/* urdf.h - elements of a URDF, their attributes and numbers with their places. A node may be NULL,
+ * which has nothing.
  */
 #ifndef RUNNER_IMPORT_URDF_H
 #define RUNNER_IMPORT_URDF_H
@@ -8,25 +8,7 @@
 
 #include <libxml/tree.h>
 
-/* A <link>; `node` NULL: the world that joints name and no link does. */
-struct urdf_link {
-    const xmlNode *node;
-    const char *name;
-    double mass;
-    int above; /* the joint whose child it is, -1: none */
-    int body;  /* of the model; -1: the world's, or not taken up yet */
-    bool taken;
-    const xmlNode *weightless; /* what turns its gravity off */
-};
-
-/* A <joint>. */
-struct urdf_joint {
-    const xmlNode *node;
-    const char *name, *type;
-    int parent, child; /* links */
-    int joint;         /* of the model, the hinge of a planar one; -1: it is fixed */
-};
-
+/* A file while it is read. */
 struct urdf {
     struct spatial_model *model;
     stance_message *message;
@@ -37,8 +19,7 @@ struct urdf {
     int turned; /* angles taken as right angles */
 };
 
-/* ---- urdf_xml.c; a node may be NULL, which has nothing --------------------------------------- */
-
+/* ... by the place of `at`. Is false. */
 #define urdf_refuse(u, at, ...) spatial_refuse((u)->model, (u)->message, urdf_line(at), __VA_ARGS__)
 int urdf_line(const xmlNode *node);
 /* An element's name without a prefix: gazebo's, drake's. */
@@ -65,13 +46,5 @@ bool urdf_numbers(const struct urdf *u, const xmlNode *node, const char *key, in
 bool urdf_number(const struct urdf *u, const xmlNode *node, double *value);
 /* <origin> of an element: none is no offset. */
 bool urdf_origin(struct urdf *u, const xmlNode *of, double at[3], double rotation[3][3]);
-
-/* ---- urdf_extras.c --------------------------------------------------------------------------- */
-
-/* Transmissions, and what drives joints without them; what Gazebo, Drake and others add. */
-bool urdf_drives(struct urdf *u);
-bool urdf_extras(struct urdf *u);
-int urdf_find_joint(const struct urdf *u, const char *name); /* -1: there is none */
-int urdf_find_link(const struct urdf *u, const char *name);
 
 #endif
