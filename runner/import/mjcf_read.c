@@ -15,13 +15,6 @@
 #include <libxml/parser.h>
 #include <stdlib.h>
 
-/* Why there is none. */
-static bool without_library(const char *file, const stance_message *why, stance_message *message)
-{
-    return complain(message, "%.60s: MJCF is read by MuJoCo's own library: %.130s", file,
-                    why->text);
-}
-
 #ifdef MUJOCO_HEADER
 
 struct reading {
@@ -335,14 +328,13 @@ static void read_model(const struct reading *r)
 }
 
 /* MuJoCo's own, of several lines and with the line of the element where it knows one. */
-static bool refuse_as_mujoco(const char *file, const char *error, stance_message *message)
+static bool refuse_as_mujoco(const struct spatial_model *model, const char *error,
+                             stance_message *message)
 {
     int number = 0;
     for (const char *at = error; number == 0 && (at = strcasestr(at, "line")) != NULL; at++)
         number = atoi(at + strcspn(at, "0123456789"));
-    complain(message,
-             number > 0 ? "%.80s:%d: MuJoCo cannot read it: " : "%.80s: MuJoCo cannot read it: ",
-             file, number);
+    spatial_say(model, message, number, "MuJoCo cannot read it: ");
     size_t n = strlen(message->text);
     for (const char *s = error; *s && n + 1 < sizeof message->text; s++)
         if (!isspace((unsigned char)*s) && !iscntrl((unsigned char)*s))
@@ -353,37 +345,38 @@ static bool refuse_as_mujoco(const char *file, const char *error, stance_message
     return false;
 }
 
+static bool load(const struct mujoco *library, const char *path, struct spatial_model *model,
+                 stance_message *message)
+{
+    char error[1000] = "no memory";
+    sandbox_limit(true);
+    mjModel *const m = mujoco_load(library, path, error, sizeof error);
+    sandbox_limit(false);
+    if (!m)
+        return refuse_as_mujoco(model, error, message);
+    xmlDoc *const text = xmlReadFile(path, NULL,
+                                     XML_PARSE_NONET | XML_PARSE_NOERROR | XML_PARSE_NOWARNING |
+                                         XML_PARSE_RECOVER | XML_PARSE_BIG_LINES);
+    read_model(&(struct reading){.text = text, .library = library, .m = m, .model = model});
+    xmlFreeDoc(text);
+    library->mj_deleteModel(m);
+    return true;
+}
+
+#endif
+
 bool mjcf_read(const char *path, struct spatial_model *model, stance_message *message)
 {
     struct mujoco library;
     stance_message why;
-    char error[1000] = "no memory";
+    bool good = false;
     spatial_begin(model, path, "MJCF");
     if (!mujoco_open(&library, &why))
-        return without_library(model->file, &why, message);
-    sandbox_limit(true);
-    mjModel *const m = mujoco_load(&library, path, error, sizeof error);
-    sandbox_limit(false);
-    if (m) {
-        const int options = XML_PARSE_NONET | XML_PARSE_NOERROR | XML_PARSE_NOWARNING |
-                            XML_PARSE_RECOVER | XML_PARSE_BIG_LINES;
-        xmlDoc *const text = xmlReadFile(path, NULL, options);
-        read_model(&(struct reading){.text = text, .library = &library, .m = m, .model = model});
-        xmlFreeDoc(text);
-        library.mj_deleteModel(m);
-    }
+        return spatial_refuse(model, message, 0, "MJCF is read by MuJoCo's own library: %.130s",
+                              why.text);
+#ifdef MUJOCO_HEADER
+    good = load(&library, path, model, message);
     mujoco_close(&library);
-    return m || refuse_as_mujoco(model->file, error, message);
-}
-
-#else
-
-bool mjcf_read(const char *path, struct spatial_model *model, stance_message *message)
-{
-    struct mujoco none;
-    stance_message why;
-    spatial_begin(model, path, "MJCF");
-    return mujoco_open(&none, &why) || without_library(path, &why, message);
-}
-
 #endif
+    return good;
+}
