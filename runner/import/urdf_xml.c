@@ -4,11 +4,11 @@
  * is out of the plane by what was cut. An angle that is a multiple of pi/2 as far as its digits
  * tell, of which two at least stand behind the point, is taken as that.
  */
+#include "space.h"
 #include "urdf.h"
 
 #include "runner/base/problem.h"
 
-#include <math.h>
 #include <stdlib.h>
 
 #define BLANKS " \t\r\n"
@@ -136,27 +136,20 @@ bool urdf_origin(struct urdf *u, const xmlNode *of, double at[3], double rotatio
 {
     const xmlNode *const origin = urdf_child(of, "origin", NULL);
     const char *const turned = urdf_text(origin, "rpy");
-    double rpy[3] = {0}, s[3], c[3];
+    static const double axes[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    double rpy[3] = {0}, turn[3][3];
     int digits[3] = {0};
     at[0] = at[1] = at[2] = 0;
+    memcpy(rotation, axes, sizeof axes);
     if (!urdf_numbers(u, origin, "xyz", 3, at, 0) ||
         (turned && !read_numbers(u, origin, "rpy", turned, 3, rpy, digits)))
         return false;
-    for (int i = 0; i < 3; i++) {
-        const double angle = right_angle(u, rpy[i], digits[i]);
-        s[i] = sin(angle);
-        c[i] = cos(angle);
+    for (int i = 0; i < 3; i++) { /* Rz(yaw) Ry(pitch) Rx(roll) */
+        space_rotation(axes[i], right_angle(u, rpy[i], digits[i]), turn);
+        space_product(turn, rotation, rotation);
     }
-    const double R[9] = {c[2] * c[1],
-                         c[2] * s[1] * s[0] - s[2] * c[0],
-                         c[2] * s[1] * c[0] + s[2] * s[0], /* Rz(yaw) Ry(pitch) Rx(roll) */
-                         s[2] * c[1],
-                         s[2] * s[1] * s[0] + c[2] * c[0],
-                         s[2] * s[1] * c[0] - c[2] * s[0], /**/
-                         -s[1],
-                         c[1] * s[0],
-                         c[1] * c[0]};
     for (int i = 0; i < 9; i++) /* what right angles have left of a zero */
-        rotation[i / 3][i % 3] = fabs(R[i]) < 1e-15 ? 0 : R[i];
+        if (fabs(rotation[i / 3][i % 3]) < 1e-15)
+            rotation[i / 3][i % 3] = 0;
     return true;
 }

@@ -12,8 +12,8 @@
 
 enum { WIDTH = 99, TEXT = 2000 };
 
-/* Puts words into lines, of which all but the first begin with `next`; what would end a line, or is
- * no text, is shown. */
+/* Puts words, with `between` between them (0: one word), into lines, of which all but the first
+ * begin with `next`; what would end a line, or is no text, is shown. */
 static void fill(FILE *out, const char *first, const char *next, char between, const char *text)
 {
     const size_t size = strlen(text);
@@ -227,7 +227,7 @@ void import_write(FILE *out, const struct spatial_model *model, const struct pla
     /* In single quotes, of which one is two. */
     for (const char *c = model->title[0] ? model->title : model->file; *c; c++)
         add_text(title, sizeof title, *c == '\'' ? "''" : "%c", *c);
-    fill(out, "stance: 1\ntitle: '", "", '\n', title);
+    fill(out, "stance: 1\ntitle: '", "", '\0', title);
     fputs("'\nscene: mechanism\n\n", out);
     parts(out, &robot->mechanism);
     surroundings(out, robot);
