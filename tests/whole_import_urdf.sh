@@ -176,7 +176,7 @@ refused "a transmission of no joint" 17 'transmission of joint k, which the robo
 refused "a transmission of two joints" 17 'of several joints' '17i <transmission><joint name="j"/><joint name="j"/></transmission>'
 refused "a gear of nothing" 17 'reduction of 0' '17i <transmission><joint name="j"/><mechanicalReduction>0</mechanicalReduction></transmission>'
 refused "a rotor of less than nothing" 17 'inertia of -4 at the joint' '17i <transmission><joint name="j"/><drake:gear_ratio value="2"/><drake:rotor_inertia value="-1"/></transmission>'
-refused "a damper that drives" 16 'damping or friction is less than nothing' '16i <dynamics damping="-1"/>'
+refused "a damper that drives" 16 '<dynamics damping="-1">: less than nothing' '16i <dynamics damping="-1"/>'
 refused "xacro" 2 'expand the file first' '2i <xacro:property name="m" value="1"/>'
 refused "entities" '[0-9]+' 'DOCTYPE' '1i <!DOCTYPE robot [<!ENTITY m "1">]>'
 refused "what is not XML" 10 'not XML' '10s/link/lonk/'

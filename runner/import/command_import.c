@@ -40,33 +40,25 @@ static int fail(const char *text)
     return EXIT_USAGE;
 }
 
-/* ---- reading -----------------------------------------------------------------------------------
- */
-
 /* The first element of a file, as far as its beginning tells: what kind of file it is. */
 static bool first_element(const char *path, char name[16], stance_message *message)
 {
     char begin[65536];
     FILE *const in = fopen(path, "rb");
-    if (!in)
-        return complain(message, "%.150s: %s", path, strerror(errno));
-    const size_t size = fread(begin, 1, sizeof begin - 1, in);
-    const bool good = !ferror(in);
-    fclose(in);
-    begin[size] = 0;
-    name[0] = 0;
+    const size_t size = in ? fread(begin, 1, sizeof begin - 1, in) : 0;
+    const bool good = in && !ferror(in);
+    if (in)
+        fclose(in);
     if (!good)
         return complain(message, "%.150s: it cannot be read", path);
-    for (const char *s = begin; (s = strchr(s, '<')) != NULL;) {
-        const bool comment = strncmp(s, "<!--", 4) == 0;
-        if (!comment && s[1] != '?' && s[1] != '!') {
-            snprintf(name, 16, "%.*s", (int)strcspn(s + 1, " \t\r\n/>"), s + 1);
-            return true;
-        }
-        s = strstr(s + 1, comment ? "-->" : ">");
-        if (!s)
-            break;
+    begin[size] = name[0] = 0;
+    const char *s = strchr(begin, '<');
+    while (s && (s[1] == '?' || s[1] == '!')) {
+        s = strstr(s, strncmp(s, "<!--", 4) == 0 ? "-->" : ">");
+        s = s ? strchr(s, '<') : NULL;
     }
+    if (s)
+        snprintf(name, 16, "%.*s", (int)strcspn(s + 1, " \t\r\n/>"), s + 1);
     return true;
 }
 
@@ -83,18 +75,6 @@ static bool read_file(struct request *r, stance_message *message)
         return complain(message, "%.120s: SDF files are not read: export it as URDF or MJCF",
                         r->file);
     return complain(message, "%.120s: it is neither MJCF (<mujoco>) nor URDF (<robot>)", r->file);
-}
-
-/* ---- writing -----------------------------------------------------------------------------------
- */
-
-static bool write_text(struct request *r)
-{
-    FILE *const out = open_memstream(&r->text, &r->size);
-    if (!out)
-        return false;
-    import_write(out, &r->model, &r->robot);
-    return fclose(out) == 0;
 }
 
 /* At once, or not at all. */
@@ -115,17 +95,14 @@ static int put(const struct request *r)
     return EXIT_IO;
 }
 
-/* ---- what is said ------------------------------------------------------------------------------
- */
-
 static void report(const struct request *r, const char *agreement)
 {
     const stance_mechanism *const m = &r->robot.mechanism;
     const int root = r->robot.map.free_root;
+    const int count[] = {m->bodies - root, m->elements, m->actuators};
     printf("%s: %d bod%s in the plane%s, %d joint%s, %d contact%s, %d actuator%s\n", r->output,
-           m->bodies, m->bodies == 1 ? "y" : "ies", root ? ", free" : "", m->bodies - root,
-           m->bodies - root == 1 ? "" : "s", m->elements, m->elements == 1 ? "" : "s", m->actuators,
-           m->actuators == 1 ? "" : "s");
+           m->bodies, m->bodies == 1 ? "y" : "ies", root ? ", free" : "", count[0],
+           &"s"[count[0] == 1], count[1], &"s"[count[1] == 1], count[2], &"s"[count[2] == 1]);
     for (int n = 0; n < r->model.notes; n++)
         printf("  - %s\n", r->model.note[n].text);
     printf("%s\n", agreement);
@@ -153,9 +130,8 @@ static int finish(const struct scenario *s, const stance_case *c, void *asked)
     return EXIT_CASES_FAILED;
 }
 
-static int import(void *asked)
+static int import(struct request *r)
 {
-    struct request *const r = asked;
     const struct plane_wishes wishes = {.plane = plane_word(r->plane),
                                         .weld = r->weld.text,
                                         .welds = r->weld.count,
@@ -164,7 +140,10 @@ static int import(void *asked)
     stance_message message;
     if (!read_file(r, &message) || !plane_make(&r->model, &wishes, &r->robot, &message))
         return fail(message.text);
-    if (!write_text(r))
+    FILE *const out = open_memstream(&r->text, &r->size);
+    if (out)
+        import_write(out, &r->model, &r->robot);
+    if (!out || fclose(out) != 0)
         return fail(strerror(ENOMEM));
     /* What is written is what a reader takes: an error is said with the line of the result. */
     struct scenario *const s =

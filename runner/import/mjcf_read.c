@@ -12,142 +12,93 @@
 #include "runner/base/sandbox.h"
 
 #include <ctype.h>
-#include <errno.h>
+#include <libxml/parser.h>
 #include <stdlib.h>
-
-/* Why there is none. */
-static bool without_library(const char *file, const stance_message *why, stance_message *message)
-{
-    return complain(message, "%.60s: MJCF is read by MuJoCo's own library: %.130s", file,
-                    why->text);
-}
 
 #ifdef MUJOCO_HEADER
 
 struct reading {
-    const char *path;
-    char *text; /* the file's, for lines */
+    const xmlDoc *text; /* the file's, for lines */
     const struct mujoco *library;
     const mjModel *m;
     struct spatial_model *model;
 };
 
-/* ---- names and their lines ---------------------------------------------------------------------
- */
-
-/* Does the element that the text `at` stands in have this tag? */
-static bool in_element(const char *text, const char *at, const char *tag)
+/* Where the first element of a name stands whose tag has `tag` in it; 0: not in this file. */
+static int line_of(const xmlNode *node, const char *tag, const char *name)
 {
-    while (at > text && *at != '<')
-        at--;
-    return strncmp(at + 1, tag, strlen(tag)) == 0;
-}
-
-/* Where an element of a name begins; "": any tag. 0: not in this file. */
-static int line_of(const char *text, const char *tag, const char *name)
-{
-    char wanted[SPATIAL_NAME + 8];
-    for (int quote = 0; text && name[0] && quote < 2; quote++) {
-        snprintf(wanted, sizeof wanted, quote ? "name='%s'" : "name=\"%s\"", name);
-        const char *at = text;
-        while ((at = strstr(at, wanted)) != NULL && !in_element(text, at, tag))
-            at++;
-        if (!at)
-            continue;
-        int line = 1;
-        for (const char *s = text; s < at; s++)
-            line += *s == '\n';
-        return line;
+    int line = 0;
+    for (; node && line == 0; node = node->next) {
+        xmlChar *const own = xmlGetNoNsProp(node, (const xmlChar *)"name");
+        if (own && strcmp((const char *)own, name) == 0 && strstr((const char *)node->name, tag))
+            line = (int)xmlGetLineNo(node);
+        else if (node->type == XML_ELEMENT_NODE)
+            line = line_of(node->children, tag, name);
+        xmlFree(own);
     }
-    return 0;
+    return line;
 }
 
 static void take_name(const struct reading *r, int kind, int id, const char *tag,
                       char name[SPATIAL_NAME], int *line)
 {
-    const char *const given = r->library->mj_id2name(r->m, kind, id);
-    snprintf(name, SPATIAL_NAME, "%s", given ? given : "");
-    *line = line_of(r->text, tag, name);
+    spatial_name(name, r->library->mj_id2name(r->m, kind, id));
+    *line = name[0] && r->text ? line_of(r->text->children, tag, name) : 0;
 }
 
-/* ---- the tree ----------------------------------------------------------------------------------
- */
+/* ---- the tree ------------------------------------------------------------------------------- */
 
-static bool read_body(const struct reading *r, int b)
+static void read_body(const struct reading *r, int b)
 {
     const mjModel *const m = r->m;
-    struct spatial_body *const body = spatial_add_body(r->model);
+    struct spatial_body *const body = spatial_add(r->model, body, bodies);
     double axes[3][3];
-    if (!body)
-        return false;
     take_name(r, mjOBJ_BODY, b, "body", body->name, &body->line);
+    mujoco_body(m, b, body, false);
     body->parent = m->body_parentid[b] - 1;
-    memcpy(body->at, &m->body_pos[3 * b], sizeof body->at);
     space_of_quaternion(&m->body_quat[4 * b], body->rotation);
-    body->mass = m->body_mass[b];
-    body->massless = !(body->mass > 0);
-    memcpy(body->centre, &m->body_ipos[3 * b], sizeof body->centre);
     space_of_quaternion(&m->body_iquat[4 * b], axes);
-    for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++)
-            for (int k = 0; k < 3; k++)
-                body->inertia[i][j] += axes[i][k] * m->body_inertia[3 * b + k] * axes[j][k];
+    space_turn_moments(axes,
+                       (const double[3][3]){{m->body_inertia[3 * b]},
+                                            {0, m->body_inertia[3 * b + 1]},
+                                            {0, 0, m->body_inertia[3 * b + 2]}},
+                       body->inertia);
     if (m->body_mocapid[b] >= 0)
         spatial_note(r->model, "body %s is moved by hand in MuJoCo (mocap): it stands still here",
                      body->name);
-    return true;
 }
 
-/* The initial place of a joint: of the first keyframe, else that in which bodies are given. */
-static void take_start(const mjModel *m, struct spatial_joint *joint, int j)
-{
-    const mjtNum *const q = (m->nkey > 0 ? m->key_qpos : m->qpos0) + m->jnt_qposadr[j];
-    joint->start = q[0];
-    if (joint->kind != SPATIAL_FREE)
-        return;
-    memcpy(joint->start_place, q, sizeof joint->start_place);
-    const double length = sqrt(q[3] * q[3] + q[4] * q[4] + q[5] * q[5] + q[6] * q[6]);
-    double unit[4] = {1};
-    for (int i = 0; length > 0 && i < 4; i++)
-        unit[i] = q[3 + i] / length;
-    space_of_quaternion(unit, joint->start_rotation);
-}
-
-static bool read_joint(const struct reading *r, int j)
+static void read_joint(const struct reading *r, int j)
 {
     static const spatial_joint_kind kinds[] = {[mjJNT_FREE] = SPATIAL_FREE,
                                                [mjJNT_BALL] = SPATIAL_BALL,
                                                [mjJNT_SLIDE] = SPATIAL_SLIDE,
                                                [mjJNT_HINGE] = SPATIAL_HINGE};
     const mjModel *const m = r->m;
-    const int q = m->jnt_qposadr[j], dof = m->jnt_dofadr[j];
-    const bool passive = !(m->opt.disableflags & mjDSBL_PASSIVE);
-    struct spatial_joint *const joint = spatial_add_joint(r->model);
-    if (!joint)
-        return false;
+    const int off = m->opt.disableflags;
+    /* It begins as the first keyframe has it, else as bodies are given. */
+    const mjtNum *const q = (m->nkey > 0 ? m->key_qpos : m->qpos0) + m->jnt_qposadr[j];
+    struct spatial_joint *const joint = spatial_add(r->model, joint, joints);
     take_name(r, mjOBJ_JOINT, j, "", joint->name, &joint->line);
+    mujoco_joint(m, j, joint, false);
     joint->body = m->jnt_bodyid[j] - 1;
     joint->kind = kinds[m->jnt_type[j]];
-    memcpy(joint->axis, &m->jnt_axis[3 * j], sizeof joint->axis);
-    memcpy(joint->at, &m->jnt_pos[3 * j], sizeof joint->at);
-    joint->limited =
-        m->jnt_limited[j] && !(m->opt.disableflags & (mjDSBL_LIMIT | mjDSBL_CONSTRAINT));
-    memcpy(joint->limits, &m->jnt_range[2 * j], sizeof joint->limits);
-    joint->soft = joint->limited;
-    joint->damping = passive ? m->dof_damping[dof] : 0;
-    joint->stiffness = passive ? m->jnt_stiffness[j] : 0;
-    joint->armature = m->dof_armature[dof];
-    joint->friction = m->opt.disableflags & mjDSBL_FRICTIONLOSS ? 0 : m->dof_frictionloss[dof];
-    take_start(m, joint, j);
-    if (joint->kind != SPATIAL_HINGE && joint->kind != SPATIAL_SLIDE)
-        return true;
-    joint->reference = m->qpos0[q];
-    joint->spring_reference = m->qpos_spring[q];
-    return true;
+    joint->soft = joint->limited = m->jnt_limited[j] && !(off & (mjDSBL_LIMIT | mjDSBL_CONSTRAINT));
+    if (off & mjDSBL_PASSIVE)
+        joint->damping = joint->stiffness = 0;
+    joint->friction = off & mjDSBL_FRICTIONLOSS ? 0 : m->dof_frictionloss[m->jnt_dofadr[j]];
+    joint->start = q[0];
+    if (joint->kind == SPATIAL_FREE) {
+        const double length = sqrt(q[3] * q[3] + q[4] * q[4] + q[5] * q[5] + q[6] * q[6]);
+        double unit[4] = {1};
+        for (int i = 0; length > 0 && i < 4; i++)
+            unit[i] = q[3 + i] / length;
+        memcpy(joint->start_place, q, sizeof joint->start_place);
+        space_of_quaternion(unit, joint->start_rotation);
+    }
 }
 
-/* ---- what may touch ----------------------------------------------------------------------------
- */
+/* ---- what may touch ------------------------------------------------------------------------- */
 
 static bool is_static(const mjModel *m, int g)
 {
@@ -164,20 +115,6 @@ static int find_pair(const mjModel *m, int g, int h)
     return -1;
 }
 
-static bool is_excluded(const mjModel *m, int a, int b)
-{
-    const int low = a < b ? a : b, high = a < b ? b : a;
-    for (int e = 0; e < m->nexclude; e++)
-        if (m->exclude_signature[e] == ((low + 1) << 16) + high + 1)
-            return true;
-    return false;
-}
-
-static bool no_contacts(const mjModel *m)
-{
-    return (m->opt.disableflags & (mjDSBL_CONTACT | mjDSBL_CONSTRAINT)) != 0;
-}
-
 /* Two geoms of bodies that are not one, nor parent and child (but for the world's children). */
 static bool may_touch(const mjModel *m, int g, int h)
 {
@@ -185,8 +122,11 @@ static bool may_touch(const mjModel *m, int g, int h)
     const int weld_a = m->body_weldid[a], weld_b = m->body_weldid[b];
     if (find_pair(m, g, h) >= 0)
         return true;
-    if (m->opt.collision == mjCOL_PAIR || weld_a == weld_b || is_excluded(m, a, b))
+    if (m->opt.collision == mjCOL_PAIR || weld_a == weld_b)
         return false;
+    for (int e = 0; e < m->nexclude; e++)
+        if (m->exclude_signature[e] == (((a < b ? a : b) + 1) << 16) + (a < b ? b : a) + 1)
+            return false;
     if (weld_a != 0 && weld_b != 0 && !(m->opt.disableflags & mjDSBL_FILTERPARENT) &&
         (m->body_weldid[m->body_parentid[weld_a]] == weld_b ||
          m->body_weldid[m->body_parentid[weld_b]] == weld_a))
@@ -204,182 +144,147 @@ static int floor_of(const mjModel *m, int g)
     return -1;
 }
 
-static bool has_floor(const mjModel *m)
-{
-    for (int h = 0; h < m->ngeom; h++)
-        if (is_static(m, h) && m->geom_type[h] == mjGEOM_PLANE &&
-            (m->geom_contype[h] || m->geom_conaffinity[h]))
-            return true;
-    return false;
-}
-
 /* Of a geom against the floor, as MuJoCo mixes it. */
 static double friction_against(const mjModel *m, int g, int h)
 {
     const int pair = h < 0 ? -1 : find_pair(m, g, h);
     if (pair >= 0)
         return m->pair_dim[pair] > 1 ? m->pair_friction[5 * pair] : 0;
-    const int first = h < 0 || m->geom_priority[g] >= m->geom_priority[h] ? g : h;
-    const bool both = h >= 0 && m->geom_priority[g] == m->geom_priority[h];
-    double friction = m->geom_friction[3 * first];
-    int dimensions = m->geom_condim[first];
-    if (both) {
-        friction = fmax(friction, m->geom_friction[3 * h]);
-        dimensions = dimensions > m->geom_condim[h] ? dimensions : m->geom_condim[h];
-    }
-    return dimensions > 1 ? friction : 0;
-}
-
-static void take_shape(const mjModel *m, struct spatial_geom *geom, int g)
-{
-    static const struct {
-        int type;
-        spatial_shape shape;
-        const char *of;
-    } shapes[] = {
-        {mjGEOM_PLANE, SPATIAL_PLANE, "plane"},
-        {mjGEOM_SPHERE, SPATIAL_SPHERE, "sphere"},
-        {mjGEOM_CAPSULE, SPATIAL_CAPSULE, "capsule"},
-        {mjGEOM_BOX, SPATIAL_BOX, "box"},
-        {mjGEOM_CYLINDER, SPATIAL_CYLINDER, "cylinder"},
-        {mjGEOM_HFIELD, SPATIAL_OTHER, "height field"},
-        {mjGEOM_ELLIPSOID, SPATIAL_OTHER, "ellipsoid"},
-        {mjGEOM_MESH, SPATIAL_OTHER, "mesh"},
-    };
-    geom->shape = SPATIAL_OTHER;
-    geom->of = "shape";
-    for (size_t i = 0; i < sizeof shapes / sizeof *shapes; i++)
-        if (shapes[i].type == m->geom_type[g]) {
-            geom->shape = shapes[i].shape;
-            geom->of = shapes[i].of;
-        }
-    memcpy(geom->at, &m->geom_pos[3 * g], sizeof geom->at);
-    space_of_quaternion(&m->geom_quat[4 * g], geom->rotation);
-    memcpy(geom->size, &m->geom_size[3 * g], sizeof geom->size);
-}
-
-static bool meets_another(const mjModel *m, int g)
-{
-    for (int h = 0; h < m->ngeom; h++)
-        if (!is_static(m, h) && may_touch(m, g, h))
-            return true;
-    return false;
+    const int priority = h < 0 ? 1 : m->geom_priority[g] - m->geom_priority[h];
+    const bool ours = priority >= 0, theirs = priority <= 0;
+    const double friction =
+        fmax(ours ? m->geom_friction[3 * g] : 0, theirs ? m->geom_friction[3 * h] : 0);
+    return (ours && m->geom_condim[g] > 1) || (theirs && m->geom_condim[h] > 1) ? friction : 0;
 }
 
 /* Those that touch nothing are only drawn. Without a floor those that would touch one do. */
-static bool read_geom(const struct reading *r, int g, bool floor)
+static void read_geom(const struct reading *r, int g, bool floor)
 {
+    static const struct {
+        spatial_shape shape;
+        const char *of;
+    } shapes[] = {
+        [mjGEOM_PLANE] = {SPATIAL_PLANE, "plane"},
+        [mjGEOM_HFIELD] = {SPATIAL_OTHER, "height field"},
+        [mjGEOM_SPHERE] = {SPATIAL_SPHERE, "sphere"},
+        [mjGEOM_CAPSULE] = {SPATIAL_CAPSULE, "capsule"},
+        [mjGEOM_ELLIPSOID] = {SPATIAL_OTHER, "ellipsoid"},
+        [mjGEOM_CYLINDER] = {SPATIAL_CYLINDER, "cylinder"},
+        [mjGEOM_BOX] = {SPATIAL_BOX, "box"},
+        [mjGEOM_MESH] = {SPATIAL_OTHER, "mesh"},
+    };
     const mjModel *const m = r->m;
     const bool world = is_static(m, g), solid = m->geom_contype[g] || m->geom_conaffinity[g];
     const int under = world || !floor ? -1 : floor_of(m, g);
-    const bool meets = world ? solid : floor ? under >= 0 : solid;
-    const bool other = !world && meets_another(m, g);
+    const bool meets = world || !floor ? solid : under >= 0;
+    bool other = false;
+    for (int h = 0; !world && h < m->ngeom; h++)
+        other = other || (!is_static(m, h) && may_touch(m, g, h));
     if (!meets && !other)
-        return true;
-    struct spatial_geom *const geom = spatial_add_geom(r->model);
-    if (!geom)
-        return false;
+        return;
+    struct spatial_geom *const geom = spatial_add(r->model, geom, geoms);
     take_name(r, mjOBJ_GEOM, g, "geom", geom->name, &geom->line);
     geom->body = m->geom_bodyid[g] - 1;
-    take_shape(m, geom, g);
+    geom->shape = shapes[m->geom_type[g]].shape;
+    geom->of = shapes[m->geom_type[g]].of;
+    memcpy(geom->at, &m->geom_pos[3 * g], sizeof geom->at);
+    memcpy(geom->size, &m->geom_size[3 * g], sizeof geom->size);
+    space_of_quaternion(&m->geom_quat[4 * g], geom->rotation);
     geom->meets_floor = meets;
     geom->meets_robot = other;
     geom->friction = world && floor ? NAN : friction_against(m, g, under);
-    return true;
 }
 
-/* ---- what drives -------------------------------------------------------------------------------
- */
-
-static void of_either_sign(double gear, double least, double most, struct spatial_actuator *to)
+static void read_geoms(const struct reading *r)
 {
-    to->least = fmin(gear * least, gear * most);
-    to->most = fmax(gear * least, gear * most);
+    const mjModel *const m = r->m;
+    bool floor = false;
+    for (int h = 0; h < m->ngeom; h++)
+        floor = floor || (is_static(m, h) && m->geom_type[h] == mjGEOM_PLANE &&
+                          (m->geom_contype[h] || m->geom_conaffinity[h]));
+    if (m->opt.disableflags & (mjDSBL_CONTACT | mjDSBL_CONSTRAINT))
+        spatial_note(r->model, "contacts are disabled in the file: nothing touches the ground");
+    else
+        for (int g = 0; g < m->ngeom; g++)
+            read_geom(r, g, floor);
+}
+
+/* ---- what drives ---------------------------------------------------------------------------- */
+
+/* Which of MuJoCo's short names has these numbers. */
+static spatial_drive drive_of(const mjModel *m, int a)
+{
+    const double gain = m->actuator_gainprm[mjNGAIN * a], *const bias =
+                                                              &m->actuator_biasprm[mjNBIAS * a];
+    const int type = m->actuator_biastype[a], target = m->actuator_trntype[a];
+    if ((target != mjTRN_JOINT && target != mjTRN_JOINTINPARENT) ||
+        m->actuator_dyntype[a] != mjDYN_NONE || m->actuator_gaintype[a] != mjGAIN_FIXED)
+        return SPATIAL_GENERAL;
+    if (type == mjBIAS_NONE || (bias[0] == 0 && bias[1] == 0 && bias[2] == 0))
+        return SPATIAL_MOTOR;
+    if (type != mjBIAS_AFFINE || bias[0] != 0 || !(gain > 0))
+        return SPATIAL_GENERAL;
+    return bias[1] == -gain                   ? SPATIAL_POSITION
+           : bias[1] == 0 && bias[2] == -gain ? SPATIAL_VELOCITY
+                                              : SPATIAL_GENERAL;
 }
 
 /* force = gain control + bias, then its range, then the gear. */
-static void take_motor(const mjModel *m, struct spatial_actuator *actuator, int a)
+static void take_range(const mjModel *m, struct spatial_actuator *actuator, int a)
 {
-    const double gain = m->actuator_gainprm[mjNGAIN * a];
-    const bool clamped = m->actuator_ctrllimited[a] && !(m->opt.disableflags & mjDSBL_CLAMPCTRL);
-    const double *const control = &m->actuator_ctrlrange[2 * a];
+    const double gain = m->actuator_gainprm[mjNGAIN * a], gear = m->actuator_gear[6 * a];
+    const double *const control = &m->actuator_ctrlrange[2 * a], *const force =
+                                                                     &m->actuator_forcerange[2 * a];
     double least = -INFINITY, most = INFINITY;
-    if (actuator->drive == SPATIAL_MOTOR && clamped) {
+    if (actuator->drive == SPATIAL_MOTOR && m->actuator_ctrllimited[a] &&
+        !(m->opt.disableflags & mjDSBL_CLAMPCTRL)) {
         least = fmin(gain * control[0], gain * control[1]);
         most = fmax(gain * control[0], gain * control[1]);
     }
     if (m->actuator_forcelimited[a]) {
-        least = fmax(least, m->actuator_forcerange[2 * a]);
-        most = fmin(most, m->actuator_forcerange[2 * a + 1]);
+        least = fmax(least, force[0]);
+        most = fmin(most, force[1]);
     }
     actuator->limited = isfinite(least) || isfinite(most);
-    actuator->least = -INFINITY;
-    actuator->most = INFINITY;
-    if (actuator->limited)
-        of_either_sign(actuator->gear, least, most, actuator);
+    actuator->least = actuator->limited ? fmin(gear * least, gear * most) : -INFINITY;
+    actuator->most = actuator->limited ? fmax(gear * least, gear * most) : INFINITY;
 }
 
-/* Which of MuJoCo's short names has these numbers. */
-static void take_drive(const mjModel *m, struct spatial_actuator *actuator, int a)
+static void read_actuator(const struct reading *r, int a)
 {
-    const double *const gain = &m->actuator_gainprm[mjNGAIN * a],
-                        *const bias = &m->actuator_biasprm[mjNBIAS * a];
-    const double squared = actuator->gear * actuator->gear;
-    actuator->drive = SPATIAL_GENERAL;
-    if (actuator->joint < 0 || m->actuator_dyntype[a] != mjDYN_NONE ||
-        m->actuator_gaintype[a] != mjGAIN_FIXED)
-        return;
-    const bool none =
-        m->actuator_biastype[a] == mjBIAS_NONE || (bias[0] == 0 && bias[1] == 0 && bias[2] == 0);
-    if (none) {
-        actuator->drive = SPATIAL_MOTOR;
-    } else if (m->actuator_biastype[a] == mjBIAS_AFFINE && bias[0] == 0 && gain[0] > 0 &&
-               (bias[1] == -gain[0] || (bias[1] == 0 && bias[2] == -gain[0]))) {
-        actuator->drive = bias[1] == 0 ? SPATIAL_VELOCITY : SPATIAL_POSITION;
-        actuator->kp = 0 - bias[1] * squared;
-        actuator->kd = 0 - bias[2] * squared;
-    }
-}
-
-static bool read_actuator(const struct reading *r, int a)
-{
-    static const int kinds[] = {
-        [mjTRN_JOINT] = mjOBJ_JOINT,      [mjTRN_JOINTINPARENT] = mjOBJ_JOINT,
-        [mjTRN_SLIDERCRANK] = mjOBJ_SITE, [mjTRN_TENDON] = mjOBJ_TENDON,
-        [mjTRN_SITE] = mjOBJ_SITE,        [mjTRN_BODY] = mjOBJ_BODY};
     const mjModel *const m = r->m;
-    const int type = m->actuator_trntype[a];
-    struct spatial_actuator *const actuator = spatial_add_actuator(r->model);
-    if (!actuator)
-        return false;
+    const int type = m->actuator_trntype[a], of = m->actuator_trnid[2 * a];
+    const bool joint = type == mjTRN_JOINT || type == mjTRN_JOINTINPARENT;
+    const double gear = m->actuator_gear[6 * a], *const bias = &m->actuator_biasprm[mjNBIAS * a];
+    struct spatial_actuator *const actuator = spatial_add(r->model, actuator, actuators);
     take_name(r, mjOBJ_ACTUATOR, a, "", actuator->name, &actuator->line);
-    actuator->joint =
-        type == mjTRN_JOINT || type == mjTRN_JOINTINPARENT ? m->actuator_trnid[2 * a] : -1;
-    if (type >= 0 && type <= mjTRN_BODY) {
-        const char *const target = r->library->mj_id2name(m, kinds[type], m->actuator_trnid[2 * a]);
-        snprintf(actuator->target, sizeof actuator->target, "%s", target ? target : "");
+    actuator->joint = joint ? of : -1;
+    spatial_name(actuator->target, r->library->mj_id2name(m,
+                                                          joint                  ? mjOBJ_JOINT
+                                                          : type == mjTRN_TENDON ? mjOBJ_TENDON
+                                                          : type == mjTRN_BODY   ? mjOBJ_BODY
+                                                                                 : mjOBJ_SITE,
+                                                          of));
+    actuator->drive = drive_of(m, a);
+    actuator->gear = gear * m->actuator_gainprm[mjNGAIN * a];
+    if (actuator->drive == SPATIAL_POSITION || actuator->drive == SPATIAL_VELOCITY) {
+        actuator->kp = 0 - bias[1] * gear * gear;
+        actuator->kd = 0 - bias[2] * gear * gear;
     }
-    actuator->gear = m->actuator_gear[6 * a];
-    take_drive(m, actuator, a);
-    take_motor(m, actuator, a);
-    return true;
+    take_range(m, actuator, a);
 }
 
-/* ---- what has no counterpart -------------------------------------------------------------------
- */
+/* ---- what has no counterpart ---------------------------------------------------------------- */
 
-static bool add_alien(const struct reading *r, const char *what, int kind, int id, bool harmless)
+static void add_alien(const struct reading *r, const char *what, int kind, int id, bool harmless)
 {
-    struct spatial_alien *const alien = spatial_add_alien(r->model);
-    if (!alien)
-        return false;
-    alien->what = what;
-    alien->harmless = harmless;
-    take_name(r, kind, id, "", alien->name, &alien->line);
-    return true;
+    char name[SPATIAL_NAME];
+    int line;
+    take_name(r, kind, id, "", name, &line);
+    spatial_add_alien(r->model, what, name, line, harmless);
 }
 
-static bool read_aliens(const struct reading *r)
+static void read_aliens(const struct reading *r)
 {
     static const char *const ties[] = {[mjEQ_CONNECT] = "loop (equality connect)",
                                        [mjEQ_WELD] = "loop (equality weld)",
@@ -387,77 +292,49 @@ static bool read_aliens(const struct reading *r)
                                        [mjEQ_TENDON] = "coupling of tendons (equality tendon)",
                                        [mjEQ_DISTANCE] = "distance (equality distance)"};
     const mjModel *const m = r->m;
-    bool good = true;
-    for (int e = 0; good && e < m->neq; e++)
-        good = add_alien(r, ties[m->eq_type[e]], mjOBJ_EQUALITY, e,
-                         !m->eq_active[e] || (m->opt.disableflags & mjDSBL_EQUALITY) != 0);
-    for (int t = 0; good && t < m->ntendon; t++)
-        good = add_alien(r, "tendon", mjOBJ_TENDON, t,
-                         m->tendon_stiffness[t] == 0 && m->tendon_damping[t] == 0 &&
-                             !m->tendon_limited[t] && m->tendon_frictionloss[t] == 0);
-    for (int s = 0; good && s < m->nskin; s++)
-        good = add_alien(r, "skin", mjOBJ_SKIN, s, true);
-    if (no_contacts(m))
-        spatial_note(r->model, "contacts are disabled in the file: nothing touches the ground");
+    for (int e = 0; e < m->neq; e++)
+        add_alien(r, ties[m->eq_type[e]], mjOBJ_EQUALITY, e,
+                  !m->eq_active[e] || (m->opt.disableflags & mjDSBL_EQUALITY) != 0);
+    for (int t = 0; t < m->ntendon; t++)
+        add_alien(r, "tendon", mjOBJ_TENDON, t,
+                  m->tendon_stiffness[t] == 0 && m->tendon_damping[t] == 0 &&
+                      !m->tendon_limited[t] && m->tendon_frictionloss[t] == 0);
+    for (int s = 0; s < m->nskin; s++)
+        add_alien(r, "skin", mjOBJ_SKIN, s, true);
     if (m->opt.density != 0 || m->opt.viscosity != 0)
         spatial_note(r->model,
                      "the medium (density, viscosity) is left out: it has no counterpart");
-    return good;
 }
 
-/* ---- the file ----------------------------------------------------------------------------------
- */
+/* ---- the file ------------------------------------------------------------------------------- */
 
-static bool read_model(const struct reading *r)
+static void read_model(const struct reading *r)
 {
     const mjModel *const m = r->m;
     struct spatial_model *const model = r->model;
-    const bool floor = has_floor(m);
-    bool good = true;
     if (strcmp(m->names, "MuJoCo Model") != 0) /* which has no name */
-        snprintf(model->title, sizeof model->title, "%s", m->names);
+        spatial_name(model->title, m->names);
     if (!(m->opt.disableflags & mjDSBL_GRAVITY))
         memcpy(model->gravity, m->opt.gravity, sizeof model->gravity);
     model->step = m->opt.timestep;
-    model->has_keyframe = m->nkey > 0;
-    for (int b = 1; good && b < m->nbody; b++)
-        good = read_body(r, b);
-    for (int j = 0; good && j < m->njnt; j++)
-        good = read_joint(r, j);
-    for (int g = 0; good && g < m->ngeom && !no_contacts(m); g++)
-        good = read_geom(r, g, floor);
-    for (int a = 0; good && a < m->nu; a++)
-        good = read_actuator(r, a);
-    return good && read_aliens(r);
-}
-
-/* Its text with an end; NULL: `message`. */
-static char *text_of(const char *path, stance_message *message)
-{
-    FILE *const in = fopen(path, "rb");
-    char *text = NULL;
-    size_t size = 0;
-    errno = 0;
-    const bool read = in && getdelim(&text, &size, -1, in) > 0;
-    const int error = errno;
-    if (in)
-        fclose(in);
-    if (read)
-        return text;
-    free(text);
-    complain(message, "%.150s: %s", path, error ? strerror(error) : "the file is empty");
-    return NULL;
+    for (int b = 1; b < m->nbody; b++)
+        read_body(r, b);
+    for (int j = 0; j < m->njnt; j++)
+        read_joint(r, j);
+    for (int a = 0; a < m->nu; a++)
+        read_actuator(r, a);
+    read_geoms(r);
+    read_aliens(r);
 }
 
 /* MuJoCo's own, of several lines and with the line of the element where it knows one. */
-static bool refuse_as_mujoco(const char *file, const char *error, stance_message *message)
+static bool refuse_as_mujoco(const struct spatial_model *model, const char *error,
+                             stance_message *message)
 {
     int number = 0;
     for (const char *at = error; number == 0 && (at = strcasestr(at, "line")) != NULL; at++)
         number = atoi(at + strcspn(at, "0123456789"));
-    complain(message,
-             number > 0 ? "%.80s:%d: MuJoCo cannot read it: " : "%.80s: MuJoCo cannot read it: ",
-             file, number);
+    spatial_say(model, message, number, "MuJoCo cannot read it: ");
     size_t n = strlen(message->text);
     for (const char *s = error; *s && n + 1 < sizeof message->text; s++)
         if (!isspace((unsigned char)*s) && !iscntrl((unsigned char)*s))
@@ -468,42 +345,38 @@ static bool refuse_as_mujoco(const char *file, const char *error, stance_message
     return false;
 }
 
-bool mjcf_read(const char *path, struct spatial_model *model, stance_message *message)
+static bool load(const struct mujoco *library, const char *path, struct spatial_model *model,
+                 stance_message *message)
 {
-    struct mujoco library;
-    struct reading r = {.path = path, .library = &library, .model = model};
     char error[1000] = "no memory";
-    const char *const slash = strrchr(path, '/');
-    model->format = "MJCF";
-    snprintf(model->file, sizeof model->file, "%s", slash ? slash + 1 : path);
-    r.text = text_of(path, message);
-    if (!r.text)
-        return false;
-    stance_message why;
-    bool good = mujoco_open(&library, &why) || without_library(model->file, &why, message);
-    if (good) {
-        sandbox_limit(true);
-        mjModel *const m = mujoco_load(&library, path, error, sizeof error);
-        sandbox_limit(false);
-        r.m = m;
-        good = m ? read_model(&r) || no_memory(message)
-                 : refuse_as_mujoco(model->file, error, message);
-        if (m)
-            library.mj_deleteModel(m);
-        mujoco_close(&library);
-    }
-    free(r.text);
-    return good;
-}
-
-#else
-
-bool mjcf_read(const char *path, struct spatial_model *model, stance_message *message)
-{
-    struct mujoco none;
-    stance_message why;
-    model->format = "MJCF";
-    return mujoco_open(&none, &why) || without_library(path, &why, message);
+    sandbox_limit(true);
+    mjModel *const m = mujoco_load(library, path, error, sizeof error);
+    sandbox_limit(false);
+    if (!m)
+        return refuse_as_mujoco(model, error, message);
+    xmlDoc *const text = xmlReadFile(path, NULL,
+                                     XML_PARSE_NONET | XML_PARSE_NOERROR | XML_PARSE_NOWARNING |
+                                         XML_PARSE_RECOVER | XML_PARSE_BIG_LINES);
+    read_model(&(struct reading){.text = text, .library = library, .m = m, .model = model});
+    xmlFreeDoc(text);
+    library->mj_deleteModel(m);
+    return true;
 }
 
 #endif
+
+bool mjcf_read(const char *path, struct spatial_model *model, stance_message *message)
+{
+    struct mujoco library;
+    stance_message why;
+    bool good = false;
+    spatial_begin(model, path, "MJCF");
+    if (!mujoco_open(&library, &why))
+        return spatial_refuse(model, message, 0, "MJCF is read by MuJoCo's own library: %.130s",
+                              why.text);
+#ifdef MUJOCO_HEADER
+    good = load(&library, path, model, message);
+    mujoco_close(&library);
+#endif
+    return good;
+}

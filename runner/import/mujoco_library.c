@@ -100,6 +100,31 @@ mjModel *mujoco_load(const struct mujoco *m, const char *path, char *error, int 
     return model;
 }
 
+static void move(double *ours, double *theirs, size_t count, bool put)
+{
+    memcpy(put ? theirs : ours, put ? ours : theirs, count * sizeof *ours);
+}
+
+void mujoco_body(const mjModel *m, int id, struct spatial_body *body, bool put)
+{
+    move(body->at, m->body_pos + 3 * id, 3, put);
+    move(body->centre, m->body_ipos + 3 * id, 3, put);
+    move(&body->mass, m->body_mass + id, 1, put);
+}
+
+void mujoco_joint(const mjModel *m, int id, struct spatial_joint *joint, bool put)
+{
+    const int q = m->jnt_qposadr[id], dof = m->jnt_dofadr[id];
+    move(joint->axis, m->jnt_axis + 3 * id, 3, put);
+    move(joint->at, m->jnt_pos + 3 * id, 3, put);
+    move(joint->limits, m->jnt_range + 2 * id, 2, put);
+    move(&joint->stiffness, m->jnt_stiffness + id, 1, put);
+    move(&joint->damping, m->dof_damping + dof, 1, put);
+    move(&joint->armature, m->dof_armature + dof, 1, put);
+    move(&joint->reference, m->qpos0 + q, 1, put);
+    move(&joint->spring_reference, m->qpos_spring + q, 1, put);
+}
+
 void mujoco_close(struct mujoco *m)
 {
     if (m->library)

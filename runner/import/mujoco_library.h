@@ -8,7 +8,7 @@
 #ifndef RUNNER_IMPORT_MUJOCO_LIBRARY_H
 #define RUNNER_IMPORT_MUJOCO_LIBRARY_H
 
-#include "engine/stance.h"
+#include "spatial.h"
 
 #if __has_include(<mujoco/mujoco.h>)
 #include <mujoco/mujoco.h>
@@ -22,9 +22,8 @@
 /* clang-format off */
 #define MUJOCO_FUNCTIONS(X) \
     X(mj_version) X(mj_loadXML) X(mj_deleteModel) X(mj_makeData) X(mj_deleteData) X(mj_resetData) \
-    X(mj_name2id) X(mj_id2name) X(mj_kinematics) X(mj_comPos) X(mj_crb) X(mj_fullM) X(mj_comVel) X(mj_passive) \
-    X(mj_rne) X(mj_transmission) X(mj_fwdActuation) X(mj_rnePostConstraint) X(mj_objectVelocity) \
-    X(mj_objectAcceleration) X(mj_forward)
+    X(mj_name2id) X(mj_id2name) X(mj_forward) X(mj_fwdPosition) X(mj_fwdVelocity) X(mj_fwdActuation) \
+    X(mj_fullM) X(mj_rnePostConstraint) X(mj_objectVelocity) X(mj_objectAcceleration) X(mju_mat2Quat)
 /* clang-format on */
 
 struct mujoco {
@@ -39,6 +38,11 @@ void mujoco_close(struct mujoco *m);
 /* A file's model, to be given to mj_deleteModel; NULL: `error` of `size` bytes says why, in lines.
  * What the library's helpers print meanwhile (of meshes) goes nowhere. */
 mjModel *mujoco_load(const struct mujoco *m, const char *path, char *error, int size);
+
+/* Numbers that both models have in the same units, of MuJoCo's body or joint (of one coordinate)
+ * `id`: from there, or with `put` to there. */
+void mujoco_body(const mjModel *m, int id, struct spatial_body *body, bool put);
+void mujoco_joint(const mjModel *m, int id, struct spatial_joint *joint, bool put);
 #else
 struct mujoco {
     void *library;

@@ -17,18 +17,17 @@ struct plane_map {
     double ahead[3], up[3], normal[3], origin[3];
     int coordinates; /* of the scene, in its order */
     struct {
-        int joint; /* index of the spatial model's; -1: x, z, angle of a free root, see below */
-        double sign, offset; /* the file's = sign * the scene's + offset */
+        int joint;   /* index of the spatial model's; -1: x, z, angle of a free root, see below */
+        double sign; /* the file's = sign * the scene's */
     } coordinate[STANCE_MAX_COORDINATES];
     bool free_root;
     int root_joints, root_joint[3]; /* a free one; or two slides and a hinge, in the file's order */
     int root_body;                  /* of the file: that carries the root's frame */
     double root_at[3];              /* m, of that frame's origin, in that body's frame */
-    double root_angle; /* the scene's angle where that body stands turned as in the file's posture
-                        * (all joints at `reference`, welded ones at `start`) */
-    double root_rotation[3][3]; /* of that body in the file's world, then */
-    bool *held;    /* [joints] moves no coordinate: welded, or on a link that was merged */
-    int actuators; /* of the scene, in its order */
+    double root_angle; /* the scene's angle = it + how that body is turned in the plane (x ahead,
+                        * y up) by space_turned */
+    bool *held;        /* [joints] moves no coordinate: welded, or of a link without mass */
+    int actuators;     /* of the scene, in its order */
     struct {
         int actuator; /* index of the spatial model's */
         double sign;  /* the scene's torque = sign * the force of that joint in the file */
@@ -52,8 +51,8 @@ struct plane_robot {
     double kp, kd;
 };
 
-/* False: `message` says file, line and what to do. Notes are added to the model's. `robot` is to be
- * freed either way. */
+/* False: `message` says file, line and what to do. Notes are added to the model's, and its joints
+ * begin where they do in the scene. `robot` is to be freed either way. */
 bool plane_make(struct spatial_model *model, const struct plane_wishes *wishes,
                 struct plane_robot *robot, stance_message *message);
 void plane_free(struct plane_robot *robot);

@@ -8,12 +8,12 @@ enum { CORNERS = 8 };
 
 /* What a shape becomes. */
 struct candidate {
-    int link, line;
+    int link;
     const char *name; /* of the geom */
     bool sole;        /* flat, or with a radius a capsule: two ends */
     bool taken;
-    stance_element_numbers number;
-    double friction; /* NAN: not given */
+    double complex at, to;   /* of the link's frame */
+    double radius, friction; /* NAN: not given */
 };
 
 struct candidates {
@@ -21,85 +21,60 @@ struct candidates {
     struct candidate *list;
 };
 
-static bool is_end(const struct plane_tree *t, const struct candidate *c)
+/* Where a place of a link's frame is when the robot begins. */
+static double complex as_it_begins(const struct plane_tree *t, int k, double complex place)
 {
-    return t->link[c->link].children == 0;
+    static const double origin[3] = {0};
+    const struct plane_link *const link = &t->link[k];
+    const double turn =
+        space_turned(t->start[link->body].rotation) - space_turned(t->pose[link->body].rotation);
+    const double complex arm =
+        link->at + cexp(I * link->turn) * place - plane_place(t, t->pose, link->body, origin);
+    return plane_place(t, t->start, link->body, origin) + cexp(I * turn) * arm;
 }
 
-/* ---- from shapes -------------------------------------------------------------------------------
- */
+/* ---- from shapes ---------------------------------------------------------------------------- */
 
 /* A place of a geom's frame in its link's. */
-static void corner(const struct plane_tree *t, const struct spatial_geom *geom, const double at[3],
-                   double out[2])
+static double complex corner(const struct plane_tree *t, const struct spatial_geom *geom, double x,
+                             double y, double z)
 {
     double inner[3];
-    space_place(geom->at, geom->rotation, at, inner);
-    plane_in_link(t, geom->body, inner, out);
-    for (int i = 0; i < 2; i++)
-        out[i] = fabs(out[i]) < 1e-14 ? 0 : out[i];
+    space_place(geom->at, geom->rotation, (const double[]){x, y, z}, inner);
+    return plane_in_link(t, geom->body, inner);
 }
 
-/* How a link is turned in the world as the robot begins. */
-static double start_turn(const struct plane_tree *t, int k)
-{
-    int coordinate = t->robot->map.free_root ? 2 : 0;
-    double turn = 0;
-    bool above[STANCE_MAX_COORDINATES + 1] = {false};
-    for (int i = k; i >= 0; i = t->link[i].parent)
-        above[i] = true;
-    for (int i = 0; i < t->links; i++, coordinate++)
-        if (above[i])
-            turn += t->robot->mechanism.value.body[i].angle +
-                    (t->link[i].kind == STANCE_SLIDE ? 0 : t->robot->start[coordinate]);
-    return turn;
-}
-
-/* From which to which corner the lowest side goes of a shape that is turned so: of all pairs with
- * no corner below their line, that whose middle is lowest. */
-static void lowest_side(const double at[CORNERS][2], double turn, int side[2])
-{
-    double world[CORNERS][2], least = INFINITY, size = 0;
-    for (int i = 0; i < CORNERS; i++) {
-        plane_turn(turn, at[i], world[i]);
-        size = fmax(size, hypot(world[i][0] - world[0][0], world[i][1] - world[0][1]));
-    }
-    side[0] = side[1] = 0;
-    for (int i = 0; i < CORNERS; i++)
-        for (int j = 0; j < CORNERS; j++) {
-            const double x = world[j][0] - world[i][0], z = world[j][1] - world[i][1],
-                         length = hypot(x, z), middle = world[i][1] + world[j][1];
-            bool under = x > 0 && length > 1e-9 * size;
-            for (int k = 0; under && k < CORNERS; k++)
-                under = x * (world[k][1] - world[i][1]) - z * (world[k][0] - world[i][0]) >
-                        -1e-9 * size * length;
-            /* Of sides that lie in one line the longest. */
-            if (under && (middle < least - 1e-9 * size ||
-                          (middle < least + 1e-9 * size &&
-                           length > hypot(world[side[1]][0] - world[side[0]][0],
-                                          world[side[1]][1] - world[side[0]][1])))) {
-                least = middle;
-                side[0] = i;
-                side[1] = j;
-            }
-        }
-}
-
-/* The lower side of a box as a sole; of one without extent a point. */
+/* The lower side of a box as a sole; of one without extent a point. As the robot begins: of all
+ * pairs of corners with none below their line that whose middle is lowest, of such in one line the
+ * longest. */
 static void of_box(struct plane_tree *t, const struct spatial_geom *geom, const double half[3],
                    struct candidate *c)
 {
-    double at[CORNERS][2];
-    int side[2];
+    double complex at[CORNERS], world[CORNERS];
+    double least = INFINITY, longest = 0, size = 0;
+    for (int i = 0; i < CORNERS; i++) {
+        at[i] = corner(t, geom, i & 1 ? half[0] : -half[0], i & 2 ? half[1] : -half[1],
+                       i & 4 ? half[2] : -half[2]);
+        world[i] = as_it_begins(t, c->link, at[i]);
+        size = fmax(size, cabs(world[i] - world[0]));
+    }
+    c->at = c->to = at[0];
     for (int i = 0; i < CORNERS; i++)
-        corner(t, geom,
-               (const double[]){(i & 1 ? 1 : -1) * half[0], (i & 2 ? 1 : -1) * half[1],
-                                (i & 4 ? 1 : -1) * half[2]},
-               at[i]);
-    lowest_side(at, start_turn(t, c->link), side);
-    c->sole = side[0] != side[1];
-    memcpy(c->number.at, at[side[0]], sizeof c->number.at);
-    memcpy(c->number.to, at[side[1]], sizeof c->number.to);
+        for (int j = 0; j < CORNERS; j++) {
+            const double complex side = world[j] - world[i];
+            const double length = cabs(side), middle = cimag(world[i] + world[j]);
+            bool under = creal(side) > 0 && length > 1e-9 * size;
+            for (int k = 0; under && k < CORNERS; k++)
+                under = cimag(conj(side) * (world[k] - world[i])) > -1e-9 * size * length;
+            if (under && (middle < least - 1e-9 * size ||
+                          (middle < least + 1e-9 * size && length > longest))) {
+                least = middle;
+                longest = length;
+                c->at = at[i];
+                c->to = at[j];
+            }
+        }
+    c->sole = longest > 0;
     if (c->sole)
         spatial_note(t->model, "of boxes and cylinders the lower side touches, as a sole");
 }
@@ -107,31 +82,27 @@ static void of_box(struct plane_tree *t, const struct spatial_geom *geom, const 
 static bool of_geom(struct plane_tree *t, const struct spatial_geom *geom, struct candidate *c)
 {
     const double radius = geom->size[0], half = geom->size[1];
-    double axis[3], normal;
+    double axis[3];
+    space_column(geom->rotation, 2, axis);
+    const bool across = fabs(space_dot(t->pose[geom->body].rotation[2], axis)) >= 1 - 1e-6;
+    c->at = corner(t, geom, 0, 0, 0);
+    c->radius = radius;
     switch (geom->shape) {
     case SPATIAL_SPHERE:
-        c->number.radius = radius;
-        corner(t, geom, (const double[3]){0}, c->number.at);
         return true;
     case SPATIAL_CAPSULE:
-        c->number.radius = radius;
-        corner(t, geom, (const double[]){0, 0, -half}, c->number.at);
-        corner(t, geom, (const double[]){0, 0, half}, c->number.to);
-        c->sole = hypot(c->number.to[0] - c->number.at[0], c->number.to[1] - c->number.at[1]) >
-                  1e-6 * (half + radius);
+        c->at = corner(t, geom, 0, 0, -half);
+        c->to = corner(t, geom, 0, 0, half);
+        c->sole = cabs(c->to - c->at) > 1e-6 * (half + radius);
         return true;
     case SPATIAL_CYLINDER:
-        space_column(geom->rotation, 2, axis);
-        space_turn(t->pose[geom->body].rotation, axis, axis);
-        normal = space_dot(axis, t->robot->map.normal);
-        if (fabs(normal) < 1 - 1e-6) {
-            of_box(t, geom, (const double[]){radius, radius, half}, c);
+        if (across)
             return true;
-        }
-        c->number.radius = radius;
-        corner(t, geom, (const double[3]){0}, c->number.at);
+        c->radius = 0;
+        of_box(t, geom, (const double[]){radius, radius, half}, c);
         return true;
     case SPATIAL_BOX:
+        c->radius = 0;
         of_box(t, geom, geom->size, c);
         return true;
     default:
@@ -139,108 +110,86 @@ static bool of_geom(struct plane_tree *t, const struct spatial_geom *geom, struc
     }
 }
 
-/* ---- soles that are asked for ------------------------------------------------------------------
- */
-
 /* LINK=X,Z,X,Z in the axes of the link's frame that lie in the plane. */
-static bool parse_sole(const struct plane_tree *t, const char *text, int *body, double at[4])
-{
-    const char *const equals = strchr(text, '=');
-    char *end = NULL;
-    const char *next = equals ? equals + 1 : text;
-    int count = 0;
-    *body = -1;
-    for (int b = 0; equals && b < t->model->bodies; b++)
-        if (strlen(t->model->body[b].name) == (size_t)(equals - text) &&
-            strncmp(t->model->body[b].name, text, (size_t)(equals - text)) == 0)
-            *body = b;
-    while (equals && count < 4) {
-        at[count] = strtod(next, &end);
-        if (end == next || !isfinite(at[count]))
-            break;
-        count++;
-        next = end + strspn(end, ", ");
-    }
-    if (count < 4 || *next)
-        return plane_refuse(t, 0, "--sole %.60s: write LINK=X,Z,X,Z, m in the link's frame", text);
-    if (*body < 0 || t->link_of[*body] < 0)
-        return plane_refuse(t, 0, "--sole %.60s: %s", text,
-                            *body < 0 ? "there is no link of this name" : "it does not move");
-    return true;
-}
-
 static bool add_sole(struct plane_tree *t, const char *text, struct candidates *c)
 {
-    double given[4] = {0};
-    int body;
-    if (!parse_sole(t, text, &body, given))
-        return false;
-    /* Which axes of the frame lie in the plane. */
-    double up[3];
-    space_column(t->pose[body].rotation, 2, up);
-    const bool flat = fabs(space_dot(up, t->robot->map.normal)) > 0.7; /* its x and y */
-    space_column(t->pose[body].rotation, 0, up);
-    const bool across = fabs(space_dot(up, t->robot->map.normal)) > 0.7; /* its y and z */
-    struct candidate *const sole = &c->list[c->count++];
-    *sole = (struct candidate){.link = t->link_of[body], .name = "", .sole = true, .friction = NAN};
+    const size_t length = strcspn(text, "=");
+    double given[4];
+    int body = t->model->bodies, read = 0;
+    if (sscanf(text + length, "=%lf ,%lf ,%lf ,%lf%n", &given[0], &given[1], &given[2], &given[3],
+               &read) < 4 ||
+        text[length + (size_t)read] || !isfinite(given[0] + given[1] + given[2] + given[3]))
+        return plane_refuse(t, 0, "--sole %.60s: write LINK=X,Z,X,Z, m in the link's frame", text);
+    while (--body >= 0 && (strlen(t->model->body[body].name) != length ||
+                           strncmp(t->model->body[body].name, text, length) != 0))
+        ;
+    if (body < 0 || t->link_of[body] < 0)
+        return plane_refuse(t, 0, "--sole %.60s: %s", text,
+                            body < 0 ? "there is no link of this name" : "it does not move");
+    /* Which of its axes are across the plane: z (then x and y are in it), x, else y. */
+    const double *const across = t->pose[body].rotation[2];
+    const int first = fabs(across[0]) > 0.7 ? 1 : 0, second = fabs(across[2]) > 0.7 ? 1 : 2;
+    double at[2][3] = {{0}};
     for (int k = 0; k < 2; k++) {
-        double at[3] = {0};
-        at[across ? 1 : 0] = given[2 * k];
-        at[flat ? 1 : 2] = given[2 * k + 1];
-        plane_in_link(t, body, at, k ? sole->number.to : sole->number.at);
+        at[k][first] = given[2 * k];
+        at[k][second] = given[2 * k + 1];
     }
+    c->list[c->count++] = (struct candidate){.link = t->link_of[body],
+                                             .name = "",
+                                             .sole = true,
+                                             .at = plane_in_link(t, body, at[0]),
+                                             .to = plane_in_link(t, body, at[1]),
+                                             .friction = NAN};
     return true;
 }
 
-static bool has_sole(const struct candidates *c, int soles, int link)
-{
-    for (int k = 0; k < soles; k++)
-        if (c->list[k].link == link)
-            return true;
-    return false;
-}
-
-/* ---- all of them -------------------------------------------------------------------------------
- */
-
-static double friction_of(const struct plane_tree *t, const struct spatial_geom *geom)
-{
-    return fmax(geom->friction, t->floor_friction); /* of a number and none the number */
-}
-
-static bool is_simple(const struct spatial_geom *geom)
-{
-    return geom->meets_floor && geom->shape != SPATIAL_OTHER && geom->shape != SPATIAL_PLANE;
-}
+/* ---- all of them ---------------------------------------------------------------------------- */
 
 /* A mesh at the end of a chain is a foot, unless a simple shape is that. */
 static bool refuse_shape(struct plane_tree *t, const struct spatial_geom *geom)
 {
-    const struct spatial_body *const body = &t->model->body[geom->body];
+    const char *const body = t->model->body[geom->body].name;
     const int link = t->link_of[geom->body];
     bool foot = t->link[link].children == 0;
     for (int g = 0; g < t->model->geoms; g++) {
         const struct spatial_geom *const other = &t->model->geom[g];
-        foot = foot && !(other->body >= 0 && t->link_of[other->body] == link && is_simple(other));
+        foot = foot && (other->body < 0 || t->link_of[other->body] != link || !other->meets_floor ||
+                        other->shape == SPATIAL_OTHER || other->shape == SPATIAL_PLANE);
     }
     if (foot)
         return plane_refuse(t, geom->line,
                             "%s %.50s of %.50s may touch the ground: give it a sole, "
                             "--sole %.50s=X,Z,X,Z, or a simple shape",
-                            geom->of, geom->name, body->name, body->name);
-    spatial_note(t->model, "%s %.50s of %.50s touches nothing here", geom->of, geom->name,
-                 body->name);
+                            geom->of, geom->name, body, body);
+    spatial_note(t->model, "%s %.50s of %.50s touches nothing here", geom->of, geom->name, body);
     return true;
 }
 
-/* What moves along a rail cannot leave the ground. */
-static bool on_rail(struct plane_tree *t, const struct spatial_geom *geom)
+/* A shape that may touch, but for what moves along a rail, which cannot leave the ground. */
+static bool add_geom(struct plane_tree *t, const struct spatial_geom *geom, int soles,
+                     struct candidates *c)
 {
     const int link = t->link_of[geom->body];
-    if (link != 0 || t->link[link].kind != STANCE_SLIDE)
-        return false;
-    spatial_note(t->model, "%.60s touches no ground: its rail holds it",
-                 t->model->body[geom->body].name);
+    struct candidate *const next = &c->list[c->count];
+    if (link == 0 && t->link[0].kind == STANCE_SLIDE) {
+        spatial_note(t->model, "%.60s touches no ground: its rail holds it",
+                     t->model->body[geom->body].name);
+        return true;
+    }
+    for (int k = 0; k < soles; k++)
+        if (c->list[k].link == link) {
+            spatial_note(t->model, "%s %.60s is left out: --sole stands for it", geom->of,
+                         geom->name);
+            return true;
+        }
+    *next = (struct candidate){
+        .link = link,
+        .name = geom->name,
+        .friction = fmax(geom->friction, t->floor_friction), /* of a number and none the number */
+    };
+    if (!of_geom(t, geom, next))
+        return refuse_shape(t, geom);
+    c->count++;
     return true;
 }
 
@@ -252,63 +201,42 @@ static bool gather(struct plane_tree *t, struct candidates *c)
     const int soles = c->count;
     for (int g = 0; g < t->model->geoms; g++) {
         const struct spatial_geom *const geom = &t->model->geom[g];
-        if (geom->body < 0 || t->link_of[geom->body] < 0 || !geom->meets_floor ||
-            geom->shape == SPATIAL_PLANE || on_rail(t, geom))
-            continue;
-        struct candidate *const next = &c->list[c->count];
-        *next = (struct candidate){.link = t->link_of[geom->body],
-                                   .line = geom->line,
-                                   .name = geom->name,
-                                   .friction = friction_of(t, geom)};
-        if (has_sole(c, soles, next->link))
-            spatial_note(t->model, "%s %.60s is left out: --sole stands for it", geom->of,
-                         geom->name);
-        else if (of_geom(t, geom, next))
-            c->count++;
-        else if (!refuse_shape(t, geom))
+        if (geom->body >= 0 && t->link_of[geom->body] >= 0 && geom->meets_floor &&
+            geom->shape != SPATIAL_PLANE && !add_geom(t, geom, soles, c))
             return false;
     }
     return true;
-}
-
-static int stops(const struct plane_tree *t)
-{
-    int count = 0;
-    for (int k = 0; k < t->links; k++)
-        for (int side = 0; side < 2; side++)
-            count += stance_mechanism_stops(&t->robot->mechanism, k, side);
-    return count;
 }
 
 /* As many as there is room for, those of the ends of chains first; the others are told. */
 static void choose(struct plane_tree *t, struct candidates *c)
 {
     char dropped[120] = "";
-    int room = STANCE_MAX_CONTACTS - stops(t), elements = STANCE_MAX_ELEMENTS, left = 0;
-    for (int ends = 1; ends >= 0; ends--)
-        for (int k = 0; k < c->count; k++) {
-            struct candidate *const one = &c->list[k];
-            const int takes = one->sole ? 2 : 1;
-            if (is_end(t, one) != (ends == 1))
-                continue;
-            one->taken = takes <= room && elements > 0;
-            if (one->taken) {
-                room -= takes;
-                elements--;
-            } else {
-                add_text(dropped, sizeof dropped, "%s%.30s", left++ ? ", " : "",
-                         one->name[0] ? one->name : t->robot->mechanism.body[one->link].name);
-            }
-        }
+    int room = STANCE_MAX_CONTACTS, elements = STANCE_MAX_ELEMENTS, left = 0;
+    for (int k = 0; k < 2 * t->links; k++)
+        room -= stance_mechanism_stops(&t->robot->mechanism, k / 2, k % 2);
+    for (int n = 0; n < 2 * c->count; n++) {
+        struct candidate *const one = &c->list[n % c->count];
+        const int takes = one->sole ? 2 : 1;
+        if ((t->link[one->link].children == 0) != (n < c->count))
+            continue;
+        one->taken = takes <= room && elements > 0;
+        room -= one->taken ? takes : 0;
+        elements -= one->taken;
+        if (!one->taken)
+            add_text(dropped, sizeof dropped, "%s%.30s", left++ ? ", " : "",
+                     one->name[0] ? one->name : t->robot->mechanism.body[one->link].name);
+    }
     if (left > 0)
         spatial_note(t->model, "%d contacts more than there is room for are left out: %s", left,
                      dropped);
 }
 
-/* What most of them have, of as many the first; NAN: none has any. */
-static double common_friction(const struct candidates *c)
+/* What most of them have, of as many the first; but not 0, where another has any, as factors are of
+ * something. */
+static void take_friction(struct plane_tree *t, const struct candidates *c)
 {
-    double best = NAN;
+    double friction = NAN;
     int most = 0;
     for (int k = 0; k < c->count; k++) {
         int same = 0;
@@ -316,21 +244,17 @@ static double common_friction(const struct candidates *c)
             same += c->list[i].taken && c->list[i].friction == c->list[k].friction;
         if (c->list[k].taken && same > most) {
             most = same;
-            best = c->list[k].friction;
+            friction = c->list[k].friction;
         }
     }
-    return best;
-}
-
-/* The end that is further back, or lower, is the heel. */
-static void sort_ends(struct candidate *c)
-{
-    const stance_element_numbers n = c->number;
-    const double ahead = n.to[0] - n.at[0], up = n.to[1] - n.at[1];
-    if (!c->sole || ahead > 1e-12 || (ahead > -1e-12 && up >= 0))
-        return;
-    memcpy(c->number.at, n.to, sizeof n.to);
-    memcpy(c->number.to, n.at, sizeof n.at);
+    for (int k = 0; k < c->count && friction == 0; k++)
+        if (c->list[k].taken && c->list[k].friction > 0)
+            friction = c->list[k].friction;
+    if (friction > 10)
+        spatial_note(t->model, "friction is 10 at most, not %g", friction);
+    else if (isnan(friction) && c->count > 0)
+        spatial_note(t->model, "no friction is given: 0.8");
+    t->robot->friction = isnan(friction) ? 0.8 : fmin(friction, 10);
 }
 
 static void take(struct plane_tree *t, const struct candidate *c)
@@ -339,48 +263,43 @@ static void take(struct plane_tree *t, const struct candidate *c)
     const int e = m->elements;
     const double ground = t->robot->friction,
                  factor = isnan(c->friction) || ground == 0 ? 1 : c->friction / ground;
+    const double complex way =
+        c->to - c->at; /* the end that is further back, or lower, is the heel */
+    const bool turned =
+        c->sole && !(creal(way) > 1e-12 || (creal(way) > -1e-12 && cimag(way) >= 0));
+    stance_element_numbers *const number = &m->value.element[e];
     m->element[e].body = c->link;
     m->element[e].sole = c->sole;
-    m->value.element[e] = c->number;
-    m->value.element[e].friction_factor = fmin(fmax(factor, 0.01), 100);
-    m->element[e].rough = m->value.element[e].friction_factor != 1;
+    plane_put(turned ? c->to : c->at, number->at);
+    plane_put(turned ? c->at : c->to, number->to);
+    number->radius = c->radius;
+    number->friction_factor = fmin(fmax(factor, 0.01), 100);
+    m->element[e].rough = number->friction_factor != 1;
     plane_name_contact(t, e, c->name);
     m->elements++;
     if (factor < 0.01 || factor > 100)
         spatial_note(t->model, "contact %s has %g of the ground's friction, not %g of it",
-                     m->element[e].name, m->value.element[e].friction_factor, factor);
+                     m->element[e].name, number->friction_factor, factor);
 }
 
-static void take_friction(struct plane_tree *t, const struct candidates *c)
+/* Out of the ground, straight up. */
+static void raise_start(struct plane_tree *t, const struct candidates *c)
 {
-    double friction = common_friction(c);
-    for (int k = 0; k < c->count && friction == 0; k++) /* factors are of something */
-        if (c->list[k].taken && c->list[k].friction > 0)
-            friction = c->list[k].friction;
-    if (isnan(friction)) {
-        friction = 0.8;
-        if (c->count > 0)
-            spatial_note(t->model, "no friction is given: 0.8");
-    } else if (friction > 10) {
-        spatial_note(t->model, "friction is 10 at most, not %g", friction);
-        friction = 10;
+    double lowest = 0;
+    for (int k = 0; k < c->count; k++)
+        for (int end = 0; c->list[k].taken && end < (c->list[k].sole ? 2 : 1); end++) {
+            const double complex at =
+                as_it_begins(t, c->list[k].link, end ? c->list[k].to : c->list[k].at);
+            lowest = fmin(lowest, cimag(cexp(I * t->robot->slope) * at) - c->list[k].radius);
+        }
+    if (lowest > -1e-12)
+        return;
+    if (!t->robot->map.free_root) {
+        spatial_note(t->model, "it begins %.6g m inside the ground", -lowest);
+        return;
     }
-    t->robot->friction = friction;
-}
-
-static void note_robot(struct plane_tree *t)
-{
-    for (int g = 0; g < t->model->geoms; g++)
-        if (t->model->geom[g].meets_robot)
-            spatial_note(t->model, "the robot's bodies do not touch each other here");
-}
-
-static bool any_touches(const struct plane_tree *t)
-{
-    for (int k = 0; k < t->links; k++)
-        if (t->link[k].touches)
-            return true;
-    return t->wishes->soles > 0;
+    t->robot->start[1] -= lowest / cos(t->robot->slope);
+    spatial_note(t->model, "it began %.6g m inside the ground: raised by as much", -lowest);
 }
 
 /* Is there ground to touch? Where the file has none it is level, at its height 0, for what falls.
@@ -388,10 +307,11 @@ static bool any_touches(const struct plane_tree *t)
 static bool has_ground(struct plane_tree *t)
 {
     const bool falls = t->robot->map.free_root && t->robot->gravity > 0;
-    if (!any_touches(t) || t->along_floor)
-        return false;
-    if (t->has_floor)
-        return true;
+    bool touches = t->wishes->soles > 0;
+    for (int k = 0; k < t->links; k++)
+        touches = touches || t->link[k].touches;
+    if (!touches || t->along_floor || t->has_floor)
+        return touches && t->has_floor;
     if (falls)
         spatial_note(t->model, "the file has no floor: level ground at its height 0");
     else
@@ -402,23 +322,21 @@ static bool has_ground(struct plane_tree *t)
 bool plane_contacts(struct plane_tree *t)
 {
     struct candidates c = {0};
-    bool good = true;
     t->robot->friction = 0.8;
-    note_robot(t);
+    for (int g = 0; g < t->model->geoms; g++)
+        if (t->model->geom[g].meets_robot)
+            spatial_note(t->model, "the robot's bodies do not touch each other here");
     if (!has_ground(t))
         return true;
-    c.list = calloc((size_t)t->model->geoms + t->wishes->soles + 1, sizeof *c.list);
-    if (!c.list)
-        return no_memory(t->message);
-    good = gather(t, &c);
+    c.list = spatial_room((size_t)t->model->geoms + t->wishes->soles, sizeof *c.list);
+    const bool good = gather(t, &c);
     if (good) {
         choose(t, &c);
         take_friction(t, &c);
         for (int k = 0; k < c.count; k++)
-            if (c.list[k].taken) {
-                sort_ends(&c.list[k]);
+            if (c.list[k].taken)
                 take(t, &c.list[k]);
-            }
+        raise_start(t, &c);
     }
     free(c.list);
     return good;

@@ -4,55 +4,24 @@
 
 #include "runner/base/words.h"
 
-#include <stdarg.h>
 #include <stdlib.h>
 
 #define PARALLEL 1e-6 /* sine of the angle by which directions may differ */
 
-void plane_say(const struct plane_tree *t, int line, const char *format, ...)
+double complex plane_place(const struct plane_tree *t, const struct plane_pose *pose, int body,
+                           const double at[3])
 {
-    char *const text = t->message->text;
-    const size_t size = sizeof t->message->text;
-    va_list arguments;
-    snprintf(text, size, line > 0 ? "%.100s:%d: " : "%.100s: ", t->model->file, line);
-    const size_t length = strlen(text);
-    va_start(arguments, format);
-    vsnprintf(text + length, size - length, format, arguments);
-    va_end(arguments);
+    const struct plane_pose *const of = body < 0 ? &t->base : &pose[body];
+    double place[3];
+    space_place(of->at, of->rotation, at, place);
+    return place[0] + I * place[1];
 }
 
-void plane_turn(double angle, const double v[2], double out[2])
-{
-    const double c = cos(angle), s = sin(angle), x = v[0], z = v[1];
-    out[0] = c * x - s * z;
-    out[1] = s * x + c * z;
-}
-
-void plane_direction(const struct plane_tree *t, const double of[3], double out[2])
-{
-    out[0] = space_dot(of, t->robot->map.ahead);
-    out[1] = space_dot(of, t->robot->map.up);
-}
-
-void plane_place(const struct plane_tree *t, const double at[3], double out[2])
-{
-    double from[3];
-    for (int i = 0; i < 3; i++)
-        from[i] = at[i] - t->robot->map.origin[i];
-    plane_direction(t, from, out);
-}
-
-void plane_in_link(const struct plane_tree *t, int body, const double at[3], double out[2])
+double complex plane_in_link(const struct plane_tree *t, int body, const double at[3])
 {
     const struct plane_link *const link = &t->link[t->link_of[body]];
-    double world[3], flat[2];
-    space_place(t->pose[body].at, t->pose[body].rotation, at, world);
-    plane_place(t, world, flat);
-    plane_turn(-link->turn, (const double[]){flat[0] - link->at[0], flat[1] - link->at[1]}, out);
+    return (plane_place(t, t->pose, body, at) - link->at) * cexp(-I * link->turn);
 }
-
-/* ---- welds -------------------------------------------------------------------------------------
- */
 
 const char *plane_joint_name(const struct plane_tree *t, int j)
 {
@@ -63,77 +32,68 @@ const char *plane_joint_name(const struct plane_tree *t, int j)
 static bool weld(struct plane_tree *t, const char *name)
 {
     const int joints = t->model->joints;
-    const char **const names = calloc((size_t)joints + 1, sizeof *names);
+    const char **const names = spatial_room((size_t)joints, sizeof *names);
     int found = -1;
-    if (!names)
-        return no_memory(t->message);
-    for (int j = 0; j < joints; j++) {
-        names[j] = plane_joint_name(t, j);
-        if (strcmp(names[j], name) == 0)
+    for (int j = 0; j < joints; j++)
+        if (strcmp(names[j] = plane_joint_name(t, j), name) == 0)
             found = j;
-    }
     const char *const near = nearest_word(name, names, (size_t)joints);
     free(names);
     if (found < 0)
         return plane_refuse(t, 0, "--weld %.60s: there is no joint of this name%s%.60s%s", name,
                             near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
-    t->welded[found] = true;
-    t->robot->map.held[found] = true;
+    t->held[found] = true;
     spatial_note(t->model, "joint %.60s is welded where it begins, at %.6g", name,
                  t->model->joint[found].start + 0.0);
     return true;
 }
 
-/* ---- poses -------------------------------------------------------------------------------------
- */
+/* ---- poses ---------------------------------------------------------------------------------- */
 
-/* A welded joint stands where it begins. */
-static void pose_welded(const struct spatial_joint *joint, const struct plane_line *line,
-                        struct plane_pose *pose)
+/* A joint takes its body to where it begins. */
+static void begin(const struct plane_tree *t, int j, struct plane_pose *pose)
 {
+    const struct spatial_joint *const joint = &t->model->joint[j];
     const double by = joint->start - joint->reference;
-    double turn[3][3], at[3];
+    double axis[3], line[3], turn[3][3], at[3];
+    space_turn(pose->rotation, joint->axis, axis);
+    space_place(pose->at, pose->rotation, joint->at, line);
     if (joint->kind == SPATIAL_SLIDE) {
         for (int i = 0; i < 3; i++)
-            pose->at[i] += by * line->axis[i];
+            pose->at[i] += by * axis[i];
     } else if (joint->kind == SPATIAL_HINGE) {
-        space_rotation(line->axis, by, turn);
+        space_rotation(axis, by, turn);
         space_product(turn, pose->rotation, pose->rotation);
         space_turn(pose->rotation, joint->at, at);
         for (int i = 0; i < 3; i++)
-            pose->at[i] = line->at[i] - at[i];
+            pose->at[i] = line[i] - at[i];
     } else if (joint->kind == SPATIAL_FREE) {
-        memcpy(pose->at, joint->start_place, sizeof pose->at);
-        memcpy(pose->rotation, joint->start_rotation, sizeof pose->rotation);
+        space_place(t->base.at, t->base.rotation, joint->start_place, pose->at);
+        space_product(t->base.rotation, joint->start_rotation, pose->rotation);
     }
 }
 
 /* Joints stand in the order of their bodies, and act one after the other. */
-static void pose_all(struct plane_tree *t)
+void plane_pose_all(struct plane_tree *t, struct plane_pose *pose)
 {
     const struct spatial_model *const model = t->model;
-    int j = 0;
-    for (int b = 0; b < model->bodies; b++) {
+    for (int b = 0, j = 0; b < model->bodies; b++) {
         const struct spatial_body *const body = &model->body[b];
-        struct plane_pose *const pose = &t->pose[b];
-        memcpy(pose->at, body->at, sizeof pose->at);
-        memcpy(pose->rotation, body->rotation, sizeof pose->rotation);
-        if (body->parent >= 0) {
-            const struct plane_pose *const from = &t->pose[body->parent];
-            space_place(from->at, from->rotation, body->at, pose->at);
-            space_product(from->rotation, body->rotation, pose->rotation);
-        }
+        const struct plane_pose *const from = body->parent < 0 ? &t->base : &pose[body->parent];
+        space_place(from->at, from->rotation, body->at, pose[b].at);
+        space_product(from->rotation, body->rotation, pose[b].rotation);
         for (; j < model->joints && model->joint[j].body == b; j++) {
-            space_turn(pose->rotation, model->joint[j].axis, t->line[j].axis);
-            space_place(pose->at, pose->rotation, model->joint[j].at, t->line[j].at);
-            if (t->welded[j])
-                pose_welded(&model->joint[j], &t->line[j], pose);
+            if (pose == t->pose) {
+                space_turn(pose[b].rotation, model->joint[j].axis, t->axis[j]);
+                space_place(pose[b].at, pose[b].rotation, model->joint[j].at, t->line[j]);
+            }
+            if (pose == t->start || t->held[j])
+                begin(t, j, &pose[b]);
         }
     }
 }
 
-/* ---- the plane ---------------------------------------------------------------------------------
- */
+/* ---- the plane ------------------------------------------------------------------------------ */
 
 static bool parallel(const double a[3], const double b[3])
 {
@@ -148,76 +108,65 @@ static const char *axis_text(const double v[3], char text[64])
     return text;
 }
 
-/* The direction that most hinges have; of as many that which is across gravity, the first. */
-static bool common_axis(const struct plane_tree *t, double normal[3])
+static bool is_moving(const struct plane_tree *t, int j, spatial_joint_kind kind)
 {
-    const struct spatial_model *const model = t->model;
-    double best = 0;
-    for (int j = 0; j < model->joints; j++) {
-        const double *const axis = t->line[j].axis;
-        double votes =
-            fabs(space_dot(axis, model->gravity)) < PARALLEL * (1 + space_length(model->gravity))
-                ? 0.5
-                : 0;
-        if (model->joint[j].kind != SPATIAL_HINGE || t->welded[j])
-            continue;
-        for (int k = 0; k < model->joints; k++)
-            votes += model->joint[k].kind == SPATIAL_HINGE && !t->welded[k] &&
-                     parallel(axis, t->line[k].axis);
-        if (votes > best) {
-            best = votes;
-            memcpy(normal, axis, sizeof(double[3]));
-        }
-    }
-    return best > 0;
+    return t->model->joint[j].kind == kind && !t->held[j];
 }
 
-/* Without hinges: y, unless a slide or gravity goes along it; then x, then z. */
-static void free_axis(const struct plane_tree *t, double normal[3])
+/* How good a normal is: for hinges along it, else gravity across it, else slides. */
+static double votes(const struct plane_tree *t, const double axis[3])
 {
-    static const int order[3] = {1, 0, 2};
-    for (int k = 0; k < 3; k++) {
-        const int axis = order[k];
-        bool across = fabs(t->model->gravity[axis]) <= PARALLEL * space_length(t->model->gravity);
-        for (int i = 0; i < 3; i++)
-            normal[i] = i == axis;
-        for (int j = 0; j < t->model->joints; j++)
-            across = across && (t->model->joint[j].kind != SPATIAL_SLIDE || t->welded[j] ||
-                                fabs(t->line[j].axis[axis]) < PARALLEL);
-        if (across)
-            return;
+    const double *const gravity = t->model->gravity;
+    const bool falls = fabs(space_dot(axis, gravity)) < PARALLEL * (1 + space_length(gravity));
+    bool slides = true;
+    double hinges = 0;
+    for (int j = 0; j < t->model->joints; j++) {
+        hinges += is_moving(t, j, SPATIAL_HINGE) && parallel(axis, t->axis[j]);
+        slides = slides &&
+                 (!is_moving(t, j, SPATIAL_SLIDE) || fabs(space_dot(t->axis[j], axis)) < PARALLEL);
     }
+    return hinges + (falls ? 0.5 : 0) + (slides ? 0.25 : 0);
 }
 
+/* The first of the best directions: that of a hinge, or without any y, x, z. */
 static void choose_normal(const struct plane_tree *t, double normal[3])
 {
-    static const char *const planes[] = {"xz", "yz", "xy"};
-    static const double normals[][3] = {{0, 1, 0}, {1, 0, 0}, {0, 0, 1}};
-    for (int k = 0; t->wishes->plane && k < 3; k++)
-        if (strcmp(t->wishes->plane, planes[k]) == 0) {
-            memcpy(normal, normals[k], sizeof normals[k]);
-            return;
+    static const struct {
+        const char *name;
+        double normal[3];
+    } planes[] = {{"xz", {0, 1, 0}}, {"yz", {1, 0, 0}}, {"xy", {0, 0, 1}}};
+    const int joints = t->model->joints;
+    const char *const wish = t->wishes->plane;
+    double best = -1;
+    for (int j = 0; j < joints + 3; j++) {
+        const double *const axis = j < joints ? t->axis[j] : planes[j - joints].normal;
+        const bool may = j < joints ? !wish && is_moving(t, j, SPATIAL_HINGE)
+                                    : !wish || strcmp(wish, planes[j - joints].name) == 0;
+        if (may && votes(t, axis) > best) {
+            best = votes(t, axis);
+            memcpy(normal, axis, 3 * sizeof *axis);
         }
-    if (!common_axis(t, normal))
-        free_axis(t, normal);
-    /* Exactly an axis of the file's, where it is one but for rounding. */
-    for (int k = 0; k < 3; k++)
-        if (parallel(normal, normals[k]))
-            memcpy(normal, normals[k], sizeof normals[k]);
+    }
+    for (int k = 0; k < 3;
+         k++) /* exactly an axis of the file's, where it is one but for rounding */
+        if (parallel(normal, planes[k].normal))
+            memcpy(normal, planes[k].normal, sizeof planes[k].normal);
 }
 
 static bool in_plane(const struct plane_tree *t, int j, const double normal[3])
 {
     const spatial_joint_kind kind = t->model->joint[j].kind;
-    return t->welded[j] || kind == SPATIAL_FREE ||
-           (kind == SPATIAL_HINGE && parallel(t->line[j].axis, normal)) ||
-           (kind == SPATIAL_SLIDE && fabs(space_dot(t->line[j].axis, normal)) < PARALLEL);
+    const bool has_axis = space_length(t->axis[j]) > 0.5;
+    return t->held[j] || kind == SPATIAL_FREE ||
+           (has_axis && kind == SPATIAL_HINGE && parallel(t->axis[j], normal)) ||
+           (has_axis && kind == SPATIAL_SLIDE && fabs(space_dot(t->axis[j], normal)) < PARALLEL);
 }
 
 /* The first joint that is not of the plane, and how many more are not: " (so with a, b)". */
 static bool refuse_joint(const struct plane_tree *t, int j, const double normal[3])
 {
     const struct spatial_joint *const joint = &t->model->joint[j];
+    const bool hinge = joint->kind == SPATIAL_HINGE;
     const char *const name = plane_joint_name(t, j);
     char axis[64], of[64], others[90] = "";
     for (int k = j + 1; k < t->model->joints; k++)
@@ -231,22 +180,11 @@ static bool refuse_joint(const struct plane_tree *t, int j, const double normal[
                             "joint '%.40s' is a ball, which turns out of the plane: --weld %.40s "
                             "holds it%s",
                             name, name, others);
-    const bool hinge = joint->kind == SPATIAL_HINGE;
     return plane_refuse(t, joint->line,
                         "joint '%.25s' %s %s, not %s the normal %s: --weld %.25s "
                         "holds it%s, --plane chooses another plane",
-                        name, hinge ? "turns about" : "slides along",
-                        axis_text(t->line[j].axis, axis), hinge ? "along" : "across",
-                        axis_text(normal, of), name, others);
-}
-
-static bool check_joint(const struct plane_tree *t, int j, const double normal[3])
-{
-    const struct spatial_joint *const joint = &t->model->joint[j];
-    if (!t->welded[j] && (joint->kind == SPATIAL_HINGE || joint->kind == SPATIAL_SLIDE) &&
-        !(fabs(space_length(t->line[j].axis) - 1) < PARALLEL))
-        return plane_refuse(t, joint->line, "joint '%.60s' has no axis", plane_joint_name(t, j));
-    return in_plane(t, j, normal) || refuse_joint(t, j, normal);
+                        name, hinge ? "turns about" : "slides along", axis_text(t->axis[j], axis),
+                        hinge ? "along" : "across", axis_text(normal, of), name, others);
 }
 
 /* Up is against gravity; without any, along the file's z, else its y. */
@@ -255,31 +193,28 @@ static bool choose_axes(struct plane_tree *t, const double normal[3])
     struct plane_map *const map = &t->robot->map;
     const double *const gravity = t->model->gravity;
     const double across = space_dot(gravity, normal), size = space_length(gravity);
-    const bool wanted = t->wishes->plane != NULL;
-    double flat[3];
-    char text[64];
-    if (fabs(across) > PARALLEL * size && !wanted)
+    const bool lies = fabs(across) > PARALLEL * size;
+    const int vertical = fabs(normal[2]) < 0.9 ? 2 : 1;
+    int largest = 0;
+    char text[2][64];
+    if (lies && !t->wishes->plane)
         return plane_refuse(t, 0,
                             "gravity %s is not in the plane of the joints, whose normal is %s: "
                             "--plane xz, yz or xy takes one, and of gravity what is in it",
-                            axis_text(gravity, text), axis_text(normal, (char[64]){0}));
-    for (int i = 0; i < 3; i++)
-        flat[i] = gravity[i] - across * normal[i];
-    t->robot->gravity = space_length(flat);
-    if (fabs(across) > PARALLEL * size)
+                            axis_text(gravity, text[0]), axis_text(normal, text[1]));
+    if (lies)
         spatial_note(t->model, "gravity across the plane, %.6g m/s^2, is left out", fabs(across));
+    for (int i = 0; i < 3; i++)
+        map->up[i] = across * normal[i] - gravity[i];
+    t->robot->gravity = space_length(map->up);
     if (t->robot->gravity <= PARALLEL * size) {
         t->robot->gravity = 0;
-        const int up = fabs(normal[2]) < 0.9 ? 2 : 1;
         for (int i = 0; i < 3; i++)
-            flat[i] = (i == up ? -1 : 0) + normal[up] * normal[i];
+            map->up[i] = (i == vertical) - normal[vertical] * normal[i];
     }
-    space_unit(flat, map->up);
-    for (int i = 0; i < 3; i++)
-        map->up[i] = 0 - map->up[i];
+    space_unit(map->up, map->up);
     space_cross(map->up, normal, map->ahead);
     /* Ahead is where the largest part of it is positive. */
-    int largest = 0;
     for (int i = 1; i < 3; i++)
         largest = fabs(map->ahead[i]) > fabs(map->ahead[largest]) + 1e-9 ? i : largest;
     const double sign = map->ahead[largest] < 0 ? -1 : 1;
@@ -287,143 +222,124 @@ static bool choose_axes(struct plane_tree *t, const double normal[3])
         map->ahead[i] = 0.0 + sign * map->ahead[i]; /* no negative zeros */
     space_cross(map->ahead, map->up, map->normal);
     if (map->ahead[0] != 1 || map->up[2] != 1)
-        spatial_note(t->model, "x is the file's %s, z its %s", axis_text(map->ahead, text),
-                     axis_text(map->up, (char[64]){0}));
+        spatial_note(t->model, "x is the file's %s, z its %s", axis_text(map->ahead, text[0]),
+                     axis_text(map->up, text[1]));
     return true;
 }
 
+/* From here on poses are in the plane's axes. */
 static bool choose_plane(struct plane_tree *t)
 {
+    const struct plane_map *const map = &t->robot->map;
     double normal[3] = {0};
     choose_normal(t, normal);
     for (int j = 0; j < t->model->joints; j++)
-        if (!check_joint(t, j, normal))
-            return false;
-    return choose_axes(t, normal);
-}
-
-/* ---- links -------------------------------------------------------------------------------------
- */
-
-/* How a body's frame is turned in the plane: by its x axis, where that is in the plane, else its
- * z. */
-static double frame_turn(const struct plane_tree *t, int body)
-{
-    double axis[3], flat[2], angle;
-    space_column(t->pose[body].rotation, 0, axis);
-    plane_direction(t, axis, flat);
-    if (hypot(flat[0], flat[1]) > 0.7) {
-        angle = atan2(flat[1], flat[0]);
-    } else {
-        space_column(t->pose[body].rotation, 2, axis);
-        plane_direction(t, axis, flat);
-        angle = atan2(-flat[0], flat[1]);
+        if (!in_plane(t, j, normal))
+            return refuse_joint(t, j, normal);
+    if (!choose_axes(t, normal))
+        return false;
+    for (int i = 0; i < 3; i++) {
+        t->base.rotation[0][i] = map->ahead[i];
+        t->base.rotation[1][i] = map->up[i];
+        t->base.rotation[2][i] = map->normal[i];
     }
-    return fabs(angle) < 1e-14 ? 0 : angle;
+    plane_pose_all(t, t->pose);
+    return true;
 }
+
+/* ---- links ---------------------------------------------------------------------------------- */
 
 static void add_link(struct plane_tree *t, int j, bool last)
 {
-    const struct spatial_joint *const joint = &t->model->joint[j];
-    struct plane_link *const link = &t->link[t->links];
-    const int parent = t->link_of[joint->body];
-    *link = (struct plane_link){
-        .parent = parent, .joint = j, .body = joint->body, .between = !last, .sign = 1};
-    link->kind = joint->kind == SPATIAL_FREE    ? STANCE_FREE
-                 : joint->kind == SPATIAL_SLIDE ? STANCE_SLIDE
-                                                : STANCE_HINGE;
-    plane_place(t, joint->kind == SPATIAL_HINGE ? t->line[j].at : t->pose[joint->body].at,
-                link->at);
-    plane_direction(t, t->line[j].axis, link->axis);
-    if (joint->kind == SPATIAL_HINGE)
-        link->sign = space_dot(t->line[j].axis, t->robot->map.normal) > 0 ? 1 : -1;
-    link->turn = last ? frame_turn(t, joint->body) : parent < 0 ? 0 : t->link[parent].turn;
+    const spatial_joint_kind kind = t->model->joint[j].kind;
+    const int body = t->model->joint[j].body, parent = t->link_of[body];
+    const double *const at = kind == SPATIAL_HINGE ? t->line[j] : t->pose[body].at;
+    t->link[t->links] = (struct plane_link){
+        .parent = parent,
+        .joint = j,
+        .body = body,
+        .between = !last,
+        .kind = kind == SPATIAL_FREE    ? STANCE_FREE
+                : kind == SPATIAL_SLIDE ? STANCE_SLIDE
+                                        : STANCE_HINGE,
+        .at = at[0] + I * at[1],
+        .axis = t->axis[j][0] + I * t->axis[j][1],
+        .sign = kind == SPATIAL_HINGE && !(t->axis[j][2] > 0) ? -1 : 1,
+        .turn = last         ? space_turned(t->pose[body].rotation)
+                : parent < 0 ? 0
+                             : t->link[parent].turn,
+    };
     if (parent >= 0)
         t->link[parent].children++;
-    t->link_of[joint->body] = t->links++;
+    t->link_of[body] = t->links++;
+}
+
+/* What has no mass at the end of a chain moves nothing: it stays at its reference. */
+static void hold_massless_ends(struct plane_tree *t)
+{
+    struct spatial_model *const model = t->model;
+    bool *const heavy =
+        spatial_room((size_t)model->bodies, sizeof *heavy); /* all that hangs on it */
+    int moving = 0;
+    for (int b = model->bodies - 1; b >= 0; b--) {
+        heavy[b] = heavy[b] || model->body[b].mass > 0;
+        if (heavy[b] && model->body[b].parent >= 0)
+            heavy[model->body[b].parent] = true;
+    }
+    for (int j = 0; j < model->joints; j++) {
+        struct spatial_joint *const joint = &model->joint[j];
+        if (t->held[j] || heavy[joint->body] || moving == 0) {
+            moving += !t->held[j];
+            continue;
+        }
+        spatial_note(model,
+                     "link %.50s has no mass, and nothing hangs on it: its joint is left out",
+                     model->body[joint->body].name);
+        t->held[j] = true;
+        joint->start = joint->reference;
+    }
+    free(heavy);
 }
 
 static void add_links(struct plane_tree *t)
 {
     const struct spatial_model *const model = t->model;
-    int j = 0;
-    for (int b = 0; b < model->bodies; b++) {
-        t->link_of[b] = model->body[b].parent < 0 ? -1 : t->link_of[model->body[b].parent];
+    for (int b = 0, j = 0; b < model->bodies; b++) {
         int last = -1;
+        t->link_of[b] = model->body[b].parent < 0 ? -1 : t->link_of[model->body[b].parent];
         for (int k = j; k < model->joints && model->joint[k].body == b; k++)
-            last = t->welded[k] ? last : k;
+            last = t->held[k] ? last : k;
         for (; j < model->joints && model->joint[j].body == b; j++)
-            if (!t->welded[j])
+            if (!t->held[j])
                 add_link(t, j, j == last);
         if (t->link_of[b] >= 0)
             t->link[t->link_of[b]].mass += model->body[b].mass;
     }
     for (int g = 0; g < model->geoms; g++)
-        if (model->geom[g].body >= 0 && t->link_of[model->geom[g].body] >= 0 &&
-            model->geom[g].meets_floor)
-            t->link[t->link_of[model->geom[g].body]].touches = true;
+        if (model->geom[g].body >= 0 && t->link_of[model->geom[g].body] >= 0)
+            t->link[t->link_of[model->geom[g].body]].touches |= model->geom[g].meets_floor;
 }
 
-/* Links `from` and after it move up to `to`; those in between are no more. */
-static void drop_links(struct plane_tree *t, int to, int from, int instead)
-{
-    const int by = from - to;
-    for (int b = 0; b < t->model->bodies; b++)
-        if (t->link_of[b] >= to)
-            t->link_of[b] = t->link_of[b] < from ? instead : t->link_of[b] - by;
-    for (int k = from; k < t->links; k++) {
-        t->link[k - by] = t->link[k];
-        if (t->link[k - by].parent >= to)
-            t->link[k - by].parent -= by;
-    }
-    t->links -= by;
-}
-
-/* A link without mass at the end of a chain moves nothing: it stays at its reference. */
-static void drop_massless_ends(struct plane_tree *t)
-{
-    for (int k = t->links - 1; k > 0; k--) {
-        const struct plane_link link = t->link[k];
-        if (link.children > 0 || link.mass > 0)
-            continue;
-        spatial_note(t->model,
-                     "link %.50s has no mass, and nothing hangs on it: its joint is "
-                     "left out",
-                     t->model->body[link.body].name);
-        t->robot->map.held[link.joint] = true;
-        if (link.parent >= 0) {
-            t->link[link.parent].children--;
-            t->link[link.parent].touches |= link.touches;
-        }
-        drop_links(t, k, k + 1, link.parent);
-    }
-}
-
-/* ---- the root ----------------------------------------------------------------------------------
- */
-
-static bool is_driven(const struct spatial_model *model, int j)
-{
-    for (int a = 0; a < model->actuators; a++)
-        if (model->actuator[a].joint == j)
-            return true;
-    return false;
-}
+/* ---- the root ------------------------------------------------------------------------------- */
 
 /* Does a joint nothing but lead? */
 static bool is_bare(const struct spatial_model *model, int j)
 {
     const struct spatial_joint *const joint = &model->joint[j];
-    return joint->damping == 0 && joint->stiffness == 0 && joint->armature == 0 &&
-           !joint->limited && !is_driven(model, j);
+    bool bare =
+        joint->damping == 0 && joint->stiffness == 0 && joint->armature == 0 && !joint->limited;
+    for (int a = 0; a < model->actuators; a++)
+        bare = bare && model->actuator[a].joint != j;
+    return bare;
 }
 
 /* Two slides and a hinge of links without mass but for the last: they are one, and free. */
 static void merge_root(struct plane_tree *t)
 {
-    const struct plane_link *const link = t->link;
+    struct plane_link *const link = t->link;
+    struct plane_link root = link[2];
     struct plane_map *const map = &t->robot->map;
-    int slides = 0, hinge = -1, way[3] = {0};
+    int slides = 0, hinge = 0, way[3] = {0};
     bool bare = true;
     for (int k = 0; k < 3 && k < t->links; k++) {
         if (link[k].parent != k - 1 ||
@@ -435,26 +351,28 @@ static void merge_root(struct plane_tree *t)
         else
             hinge = k;
     }
-    if (t->links < 3 || slides != 2 || link[hinge].kind != STANCE_HINGE)
-        return;
-    const double *const a = link[way[0]].axis, *const b = link[way[1]].axis;
-    if (fabs(a[0] * b[1] - a[1] * b[0]) < PARALLEL)
+    if (t->links < 3 || slides != 2 || link[hinge].kind != STANCE_HINGE ||
+        fabs(cimag(conj(link[way[0]].axis) * link[way[1]].axis)) < PARALLEL)
         return;
     if (!bare) {
         spatial_note(t->model, "the root's slides and hinge have springs, dampers, limits or "
                                "motors: they stay joints of their own");
         return;
     }
-    struct plane_link root = link[2];
     root.kind = STANCE_FREE;
     root.parent = -1;
     root.joint = link[hinge].joint;
     root.sign = link[hinge].sign;
-    memcpy(root.at, link[hinge].at, sizeof root.at);
+    root.at = link[hinge].at;
     for (int k = 0; k < 3; k++)
         map->root_joint[map->root_joints++] = link[k].joint;
-    drop_links(t, 0, 2, 0);
-    t->link[0] = root;
+    for (int b = 0; b < t->model->bodies; b++)
+        t->link_of[b] = t->link_of[b] < 0 ? -1 : t->link_of[b] < 2 ? 0 : t->link_of[b] - 2;
+    t->links -= 2;
+    memmove(link, link + 2, (size_t)t->links * sizeof *link);
+    link[0] = root;
+    for (int k = 1; k < t->links; k++)
+        link[k].parent -= 2;
 }
 
 static bool check_roots(const struct plane_tree *t)
@@ -465,61 +383,44 @@ static bool check_roots(const struct plane_tree *t)
         const struct spatial_body *const body = &t->model->body[link->body];
         if (link->parent >= 0 && link->kind == STANCE_FREE)
             return plane_refuse(t, body->line,
-                                "body '%.60s' is free, but hangs from another: only "
-                                "a root is free",
+                                "body '%.60s' is free, but hangs from another: only a root is free",
                                 body->name);
-        if (link->parent >= 0)
-            continue;
-        if (first >= 0)
+        if (link->parent < 0 && first >= 0)
             return plane_refuse(t, body->line,
                                 "bodies '%.50s' and '%.50s' both begin a tree: a robot is one "
                                 "tree, take the other out of the file",
                                 t->model->body[t->link[first].body].name, body->name);
-        first = k;
+        first = link->parent < 0 ? k : first;
     }
     return first >= 0 || plane_refuse(t, 0, "nothing moves: all bodies are fixed to the world");
 }
 
-static bool find_root(struct plane_tree *t)
-{
-    struct plane_map *const map = &t->robot->map;
-    if (!check_roots(t))
-        return false;
-    drop_massless_ends(t);
-    if (t->link[0].kind == STANCE_FREE)
-        map->root_joint[map->root_joints++] = t->link[0].joint;
-    else
-        merge_root(t);
-    map->free_root = t->link[0].kind == STANCE_FREE;
-    return true;
-}
-
-/* ---- the floor ---------------------------------------------------------------------------------
- */
+/* ---- the floor ------------------------------------------------------------------------------ */
 
 static bool is_fixed(const struct plane_tree *t, int body)
 {
     for (; body >= 0; body = t->model->body[body].parent)
         for (int j = 0; j < t->model->joints; j++)
-            if (t->model->joint[j].body == body && !t->welded[j])
+            if (t->model->joint[j].body == body && !t->held[j])
                 return false;
     return true;
+}
+
+/* Axes of a geom, in the plane's. */
+static void axes_of(const struct plane_tree *t, const struct spatial_geom *geom, double R[3][3])
+{
+    space_product(geom->body < 0 ? t->base.rotation : t->pose[geom->body].rotation, geom->rotation,
+                  R);
 }
 
 /* Is a box as ground is: wider in the plane than it is high, and wider than a step? */
 static bool is_wide(const struct plane_tree *t, const struct spatial_geom *box)
 {
-    double rotation[3][3], extent[2] = {0};
-    memcpy(rotation, box->rotation, sizeof rotation);
-    if (box->body >= 0)
-        space_product(t->pose[box->body].rotation, box->rotation, rotation);
-    for (int k = 0; k < 3; k++) {
-        double axis[3], flat[2];
-        space_column(rotation, k, axis);
-        plane_direction(t, axis, flat);
-        extent[0] += 2 * box->size[k] * fabs(flat[0]);
-        extent[1] += 2 * box->size[k] * fabs(flat[1]);
-    }
+    double R[3][3], extent[2] = {0};
+    axes_of(t, box, R);
+    for (int k = 0; k < 3; k++)
+        for (int i = 0; i < 2; i++)
+            extent[i] += 2 * box->size[k] * fabs(R[i][k]);
     return extent[0] >= 1 && extent[0] > extent[1];
 }
 
@@ -538,33 +439,24 @@ static int find_floor(const struct plane_tree *t)
 }
 
 /* The upper face of the floor: a place on it, and its normal. */
-static void floor_face(const struct plane_tree *t, const struct spatial_geom *geom, double at[3],
-                       double normal[3])
+static double complex floor_face(const struct plane_tree *t, const struct spatial_geom *geom,
+                                 double normal[3])
 {
-    static const struct plane_pose world = {.rotation = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
-    const struct plane_pose *const pose = geom->body < 0 ? &world : &t->pose[geom->body];
-    double rotation[3][3], least = -2;
+    double R[3][3], at[3];
     int face = 2;
-    space_place(pose->at, pose->rotation, geom->at, at);
-    space_product(pose->rotation, geom->rotation, rotation);
-    space_column(rotation, face, normal);
-    if (geom->shape != SPATIAL_BOX)
-        return;
-    for (int k = 0; k < 6; k++) {
-        double out[3];
-        space_column(rotation, k / 2, out);
-        for (int i = 0; i < 3; i++)
-            out[i] *= k % 2 ? -1 : 1;
-        if (space_dot(out, t->robot->map.up) > least) {
-            least = space_dot(out, t->robot->map.up);
-            face = k / 2;
-            memcpy(normal, out, sizeof out);
-        }
+    memcpy(at, geom->at, sizeof at);
+    axes_of(t, geom, R);
+    for (int k = 0; geom->shape == SPATIAL_BOX && k < 2; k++)
+        face = fabs(R[1][k]) > fabs(R[1][face]) ? k : face;
+    const double side = geom->shape != SPATIAL_BOX ? 0 : R[1][face] < 0 ? -1 : 1;
+    for (int i = 0; i < 3; i++) {
+        at[i] += side * geom->size[face] * geom->rotation[i][face];
+        normal[i] = side < 0 ? -R[i][face] : R[i][face];
     }
-    for (int i = 0; i < 3; i++)
-        at[i] += geom->size[face] * normal[i];
+    return plane_place(t, t->pose, geom->body, at);
 }
 
+/* What stands still beside the floor. */
 static void note_others(struct plane_tree *t, int floor)
 {
     for (int g = 0; g < t->model->geoms; g++) {
@@ -573,8 +465,7 @@ static void note_others(struct plane_tree *t, int floor)
             geom->name[0] || geom->body < 0 ? geom->name : t->model->body[geom->body].name;
         if (g != floor && geom->meets_floor && is_fixed(t, geom->body))
             spatial_note(t->model,
-                         "%s%s%.60s stands still and is left out: the ground is one half "
-                         "plane",
+                         "%s%s%.60s stands still and is left out: the ground is one half plane",
                          geom->of, of[0] ? " " : "", of);
     }
 }
@@ -584,79 +475,78 @@ static bool take_floor(struct plane_tree *t)
 {
     struct plane_map *const map = &t->robot->map;
     const int floor = find_floor(t);
-    double at[3], normal[3];
+    double normal[3];
     t->floor_friction = NAN;
-    t->has_floor = floor >= 0;
     note_others(t, floor);
     if (floor < 0)
         return true;
     const struct spatial_geom *const geom = &t->model->geom[floor];
-    floor_face(t, geom, at, normal);
-    const double across = fabs(space_dot(normal, map->normal));
-    if (across > 1 - PARALLEL) { /* as one who lies on it sees it */
+    const double complex at = floor_face(t, geom, normal);
+    if (fabs(normal[2]) > 1 - PARALLEL) { /* as one who lies on it sees it */
         spatial_note(t->model, "the floor is left out: the robot moves along it");
         t->along_floor = true;
-        t->has_floor = false;
         return true;
     }
-    if (across > PARALLEL)
+    if (fabs(normal[2]) > PARALLEL)
         return plane_refuse(t, geom->line, "floor '%.60s' is tilted across the plane", geom->name);
-    if (space_dot(normal, map->up) < 0.02)
-        return plane_refuse(t, geom->line,
-                            "floor '%.60s' stands upright, or is overhead: gravity "
-                            "does not press the robot on it",
-                            geom->name);
-    const double height = space_dot(at, normal) / space_dot(map->up, normal);
+    if (normal[1] < 0.02)
+        return plane_refuse(
+            t, geom->line,
+            "floor '%.60s' stands upright, or is overhead: gravity does not press the robot on it",
+            geom->name);
+    const double height = cimag(at) + creal(at) * normal[0] / normal[1];
     for (int i = 0; i < 3; i++)
         map->origin[i] = height * map->up[i];
-    t->robot->slope = atan2(space_dot(normal, map->ahead), space_dot(normal, map->up));
-    if (fabs(t->robot->slope) < 1e-14)
-        t->robot->slope = 0;
-    else
+    t->base.at[1] = -height;
+    plane_pose_all(t, t->pose);
+    t->robot->slope = plane_tidy(atan2(normal[0], normal[1]));
+    if (t->robot->slope != 0)
         spatial_note(t->model, "the floor slopes by %.6g rad against gravity", t->robot->slope);
     if (fabs(height) > 1e-14)
         spatial_note(t->model, "z is 0 on the floor, %.6g m in the file", height);
-    t->floor_friction = geom->friction;
     if (geom->shape == SPATIAL_BOX)
         spatial_note(t->model, "box %.60s is the ground, without ends", geom->name);
+    t->has_floor = true;
+    t->floor_friction = geom->friction;
     return true;
-}
-
-/* ---- all of it ---------------------------------------------------------------------------------
- */
-
-static bool make_room(struct plane_tree *t)
-{
-    const size_t bodies = (size_t)t->model->bodies + 1, joints = (size_t)t->model->joints + 1;
-    t->pose = calloc(bodies, sizeof *t->pose);
-    t->line = calloc(joints, sizeof *t->line);
-    t->link_of = calloc(bodies, sizeof *t->link_of);
-    t->welded = calloc(joints, sizeof *t->welded);
-    t->link = calloc(joints, sizeof *t->link);
-    t->robot->map.held = calloc(joints, sizeof *t->robot->map.held);
-    return (t->pose && t->line && t->link_of && t->welded && t->link && t->robot->map.held) ||
-           no_memory(t->message);
 }
 
 bool plane_tree_make(struct plane_tree *t)
 {
-    if (!make_room(t))
-        return false;
+    const size_t bodies = (size_t)t->model->bodies, joints = (size_t)t->model->joints;
+    t->pose = spatial_room(bodies, sizeof *t->pose);
+    t->start = spatial_room(bodies, sizeof *t->start);
+    t->axis = spatial_room(joints, sizeof *t->axis);
+    t->line = spatial_room(joints, sizeof *t->line);
+    t->link_of = spatial_room(bodies, sizeof *t->link_of);
+    t->link = spatial_room(joints + 2, sizeof *t->link);
+    t->robot->map.held = t->held = spatial_room(joints, sizeof *t->held);
     for (size_t w = 0; w < t->wishes->welds; w++)
         if (!weld(t, t->wishes->weld[w]))
             return false;
-    pose_all(t);
+    for (int i = 0; i < 3; i++)
+        t->base.rotation[i][i] = 1;
+    plane_pose_all(t, t->pose);
     if (!choose_plane(t) || !take_floor(t))
         return false;
+    hold_massless_ends(t);
     add_links(t);
-    return find_root(t);
+    if (!check_roots(t))
+        return false;
+    if (t->link[0].kind == STANCE_FREE)
+        t->robot->map.root_joint[t->robot->map.root_joints++] = t->link[0].joint;
+    else
+        merge_root(t);
+    t->robot->map.free_root = t->link[0].kind == STANCE_FREE;
+    return true;
 }
 
 void plane_tree_free(struct plane_tree *t)
 {
     free(t->pose);
+    free(t->start);
+    free(t->axis);
     free(t->line);
     free(t->link_of);
-    free(t->welded);
     free(t->link);
 }

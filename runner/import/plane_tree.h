@@ -1,13 +1,15 @@
 /* plane_tree.h - the tree of links that move against each other in the plane, while it is made.
  *
- * All of it is measured in one posture: joints at `reference`, welded ones at `start`.
+ * Places of the plane are complex numbers, x + i z, so that a factor e^(i angle) turns them. Poses
+ * are in the plane's axes: x, z and across.
  */
 #ifndef RUNNER_IMPORT_PLANE_TREE_H
 #define RUNNER_IMPORT_PLANE_TREE_H
 
 #include "plane.h"
 
-#include "runner/base/message.h"
+#include <complex.h>
+#include <math.h>
 
 /* A link: what one joint moves. All bodies that are fixed to each other are one. */
 struct plane_link {
@@ -17,13 +19,15 @@ struct plane_link {
                  * body, too */
     bool between;
     stance_joint kind;
-    double at[2];   /* m, of its frame's origin, in the plane */
-    double turn;    /* rad, of its frame */
-    double axis[2]; /* of a slide */
-    double sign;    /* of a hinge */
+    double complex at, axis; /* m, of its frame's origin; of a slide */
+    double turn, sign;       /* rad, of its frame; of a hinge */
     int children;
     double mass;
     bool touches; /* something of it may touch the ground */
+};
+
+struct plane_pose {
+    double at[3], rotation[3][3];
 };
 
 struct plane_tree {
@@ -31,14 +35,11 @@ struct plane_tree {
     const struct plane_wishes *wishes;
     struct plane_robot *robot;
     stance_message *message;
-    struct plane_pose {
-        double at[3], rotation[3][3];
-    } * pose; /* [bodies] in the world */
-    struct plane_line {
-        double at[3], axis[3];
-    } * line;     /* [joints] in the world */
-    int *link_of; /* [bodies] -1: fixed to the world */
-    bool *welded; /* [joints] asked for */
+    struct plane_pose base, /* of the file's world */
+        *pose, *start;      /* [bodies] joints at `reference` (held ones at `start`); at `start` */
+    double (*axis)[3], (*line)[3]; /* [joints] a joint's direction, a place on it; at `reference` */
+    bool *held;                    /* [joints] of the map */
+    int *link_of;                  /* [bodies] -1: fixed to the world */
     int links;
     struct plane_link *link; /* [joints] parents first */
     bool has_floor;          /* the file has one */
@@ -46,11 +47,7 @@ struct plane_tree {
     double floor_friction;   /* NAN: not given */
 };
 
-/* Fills message with "FILE:LINE: ..."; line 0: not known. plane_refuse(t, line, format, ...) is
- * false. */
-void plane_say(const struct plane_tree *t, int line, const char *format, ...)
-    __attribute__((format(printf, 3, 4)));
-#define plane_refuse(...) (plane_say(__VA_ARGS__), as_false())
+#define plane_refuse(t, ...) spatial_refuse((t)->model, (t)->message, __VA_ARGS__)
 
 /* What a joint is called; without a name as its body is. */
 const char *plane_joint_name(const struct plane_tree *t, int j);
@@ -58,19 +55,28 @@ const char *plane_joint_name(const struct plane_tree *t, int j);
 /* Poses, the plane, links, the root, floor and gravity. */
 bool plane_tree_make(struct plane_tree *t);
 void plane_tree_free(struct plane_tree *t);
+/* Where bodies are: into t->pose (and lines), or into t->start. */
+void plane_pose_all(struct plane_tree *t, struct plane_pose *pose);
 
-/* A place of the file's world in the plane; a direction. */
-void plane_place(const struct plane_tree *t, const double at[3], double out[2]);
-void plane_direction(const struct plane_tree *t, const double of[3], double out[2]);
+/* A place of a body's frame (-1: the world's) in the plane, with all bodies at `pose`. */
+double complex plane_place(const struct plane_tree *t, const struct plane_pose *pose, int body,
+                           const double at[3]);
 /* A place of a body's frame in the frame of that body's link. */
-void plane_in_link(const struct plane_tree *t, int body, const double at[3], double out[2]);
-/* R(angle) v; out may be v. */
-void plane_turn(double angle, const double v[2], double out[2]);
+double complex plane_in_link(const struct plane_tree *t, int body, const double at[3]);
+/* Without what rounding has left of a zero. */
+static inline double plane_tidy(double value)
+{
+    return fabs(value) < 1e-14 ? 0 : value;
+}
+static inline void plane_put(double complex place, double out[2])
+{
+    out[0] = plane_tidy(creal(place));
+    out[1] = plane_tidy(cimag(place));
+}
 
-/* plane_contacts.c: what may touch, into the mechanism, with ground.friction. */
+/* plane_contacts.c: what may touch, into the mechanism, with ground.friction; what begins inside
+ * the ground is raised. */
 bool plane_contacts(struct plane_tree *t);
-/* plane_drives.c: motors and servos. */
-bool plane_drives(struct plane_tree *t);
 /* plane_names.c: of links; of contacts and motors by what they are called in the file. */
 void plane_name_bodies(struct plane_tree *t);
 void plane_name_contact(struct plane_tree *t, int element, const char *geom);

@@ -4,6 +4,7 @@
 #define RUNNER_IMPORT_SPACE_H
 
 #include <math.h>
+#include <stdbool.h>
 #include <string.h>
 
 static inline double space_dot(const double a[3], const double b[3])
@@ -58,6 +59,17 @@ static inline void space_product(const double A[3][3], const double B[3][3], dou
     memcpy(out, C, sizeof C);
 }
 
+/* R I R'. */
+static inline void space_turn_moments(const double R[3][3], const double moment[3][3],
+                                      double out[3][3])
+{
+    for (int i = 0; i < 9; i++) {
+        double by[3];
+        space_turn(moment, R[i % 3], by);
+        out[i / 3][i % 3] = space_dot(R[i / 3], by);
+    }
+}
+
 /* About a unit vector (Rodrigues). */
 static inline void space_rotation(const double axis[3], double angle, double R[3][3])
 {
@@ -78,6 +90,15 @@ static inline void space_of_quaternion(const double q[4], double R[3][3])
         {2 * (x * y + w * z), w * w - x * x + y * y - z * z, 2 * (y * z - w * x)},
         {2 * (x * z - w * y), 2 * (y * z + w * x), w * w - x * x - y * y + z * z}};
     memcpy(R, C, sizeof C);
+}
+
+/* How a frame is turned in the plane of the first two axes: by its x axis, where that is in the
+ * plane, else its z. */
+static inline double space_turned(const double R[3][3])
+{
+    const bool ahead = hypot(R[0][0], R[1][0]) > 0.7;
+    const double angle = ahead ? atan2(R[1][0], R[0][0]) : atan2(-R[0][2], R[1][2]);
+    return fabs(angle) < 1e-14 ? 0 : angle;
 }
 
 static inline void space_column(const double R[3][3], int column, double out[3])

@@ -1,55 +1,80 @@
 /* spatial.c - the lists of a spatial model, and its notes. */
 #include "spatial.h"
 
-#include <stdarg.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
+#include "runner/base/command.h"
 
-/* Lists grow by doubling: one of `count` things has room for the next power of two. */
-static void *add(void **list, int *count, size_t size)
+#include <stdarg.h>
+#include <stdlib.h>
+
+static void *or_end(void *room)
 {
-    if ((*count & (*count - 1)) == 0) {
-        void *const more = realloc(*list, (size_t)(*count ? 2 * *count : 1) * size);
-        if (!more)
-            return NULL;
-        *list = more;
-    }
-    char *const at = (char *)*list + (size_t)(*count)++ * size;
-    memset(at, 0, size);
-    return at;
+    if (room)
+        return room;
+    fputs("stance import: not enough memory\n", stderr);
+    exit(EXIT_USAGE);
 }
 
-#define ADD(one, many)                                                                             \
-    struct spatial_##one *spatial_add_##one(struct spatial_model *model)                           \
-    {                                                                                              \
-        void *list = model->one;                                                                   \
-        struct spatial_##one *const at = add(&list, &model->many, sizeof *at);                     \
-        model->one = list;                                                                         \
-        return at;                                                                                 \
-    }
-ADD(body, bodies)
-ADD(joint, joints)
-ADD(geom, geoms)
-ADD(actuator, actuators)
-ADD(alien, aliens)
+void *spatial_room(size_t count, size_t size)
+{
+    return or_end(calloc(count + 1, size));
+}
+
+/* One of `count` things has room for the next power of two. */
+void *spatial_more(void *list, int *count, size_t size)
+{
+    char *at;
+    memcpy(&at, list, sizeof at);
+    if ((*count & (*count - 1)) == 0)
+        at = or_end(realloc(at, (size_t)(*count ? 2 * *count : 1) * size));
+    memcpy(list, &at, sizeof at);
+    return memset(at + (size_t)(*count)++ * size, 0, size);
+}
+
+void spatial_name(char name[SPATIAL_NAME], const char *text)
+{
+    snprintf(name, SPATIAL_NAME, "%s", text ? text : "");
+}
+
+void spatial_say(const struct spatial_model *model, stance_message *message, int line,
+                 const char *format, ...)
+{
+    char *const text = message->text;
+    va_list arguments;
+    snprintf(text, sizeof message->text, line > 0 ? "%.100s:%d: " : "%.100s: ", model->file, line);
+    const size_t length = strlen(text);
+    va_start(arguments, format);
+    vsnprintf(text + length, sizeof message->text - length, format, arguments);
+    va_end(arguments);
+}
+
+void spatial_begin(struct spatial_model *model, const char *path, const char *format)
+{
+    const char *const slash = strrchr(path, '/');
+    *model = (struct spatial_model){.format = format};
+    spatial_name(model->file, slash ? slash + 1 : path);
+}
+
+void spatial_add_alien(struct spatial_model *model, const char *what, const char *name, int line,
+                       bool harmless)
+{
+    struct spatial_alien *const alien = spatial_add(model, alien, aliens);
+    alien->what = what;
+    alien->line = line;
+    alien->harmless = harmless;
+    spatial_name(alien->name, name);
+}
 
 void spatial_note(struct spatial_model *model, const char *format, ...)
 {
-    void *list = model->note;
-    struct spatial_note *const note = add(&list, &model->notes, sizeof *note);
+    struct spatial_note note;
     va_list arguments;
-    model->note = list;
-    if (!note)
-        return;
     va_start(arguments, format);
-    vsnprintf(note->text, sizeof note->text, format, arguments);
+    vsnprintf(note.text, sizeof note.text, format, arguments);
     va_end(arguments);
-    for (int i = 0; i + 1 < model->notes; i++)
-        if (strcmp(model->note[i].text, note->text) == 0) {
-            model->notes--;
-            break;
-        }
+    for (int i = 0; i < model->notes; i++)
+        if (strcmp(model->note[i].text, note.text) == 0)
+            return;
+    *spatial_add(model, note, notes) = note;
 }
 
 void spatial_free(struct spatial_model *model)

@@ -8,7 +8,7 @@
 #ifndef RUNNER_IMPORT_SPATIAL_H
 #define RUNNER_IMPORT_SPATIAL_H
 
-#include "engine/stance.h"
+#include "runner/base/message.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -38,7 +38,6 @@ struct spatial_joint {
     double friction;                    /* N m, N: dry friction in the joint: has no counterpart */
     bool soft;                          /* its stops are (MuJoCo's all; hard here) */
     double effort;                      /* N m, N: a limit of its own (URDF), 0: none */
-    bool continuous;                    /* URDF's word for a hinge without limits */
     double start;                       /* the initial coordinate: keyframe 0, else `reference` */
     double start_place[3], start_rotation[3][3]; /* of a free one: initial place, m, and rotation */
 };
@@ -48,7 +47,6 @@ struct spatial_body {
     int line;
     int parent;                   /* -1: the world. Parents stand before their children */
     double at[3], rotation[3][3]; /* in the parent's frame, with all joints at `reference` */
-    bool massless;                /* the file gives no mass (or 0) */
     double mass, centre[3];       /* kg; m, in the body's frame */
     double inertia[3][3];         /* kg m^2, about the centre of mass, in the body's axes */
 };
@@ -116,7 +114,6 @@ struct spatial_model {
     const char *format;       /* "MJCF", "URDF"; static */
     double gravity[3];        /* m/s^2 */
     double step;              /* s, 0: not given */
-    bool has_keyframe;
     int bodies, joints, geoms, actuators, aliens, notes;
     struct spatial_body *body;
     struct spatial_joint *joint; /* of one body in order, bodies in order */
@@ -126,13 +123,25 @@ struct spatial_model {
     struct spatial_note *note;
 };
 
-/* Room for one more, cleared, at the end of a list; NULL: no memory. */
-struct spatial_body *spatial_add_body(struct spatial_model *model);
-struct spatial_joint *spatial_add_joint(struct spatial_model *model);
-struct spatial_geom *spatial_add_geom(struct spatial_model *model);
-struct spatial_actuator *spatial_add_actuator(struct spatial_model *model);
-struct spatial_alien *spatial_add_alien(struct spatial_model *model);
-/* A line of a comment; more than fits is cut, without memory it is lost. */
+/* One more, cleared, at the end of a list of the model: spatial_add(model, body, bodies). Without
+ * memory the process ends with a line: it is one of its own (runner/base/sandbox.h). */
+#define spatial_add(model, one, many)                                                              \
+    ((struct spatial_##one *)spatial_more(&(model)->one, &(model)->many, sizeof *(model)->one))
+void *spatial_more(void *list, int *count, size_t size);
+void spatial_add_alien(struct spatial_model *model, const char *what, const char *name, int line,
+                       bool harmless);
+/* Cleared room; to be freed. Without memory as above. */
+void *spatial_room(size_t count, size_t size);
+/* spatial_refuse(model, message, line, format, ...): "FILE:LINE: ...", line 0: not known. Is false.
+ */
+#define spatial_refuse(...) (spatial_say(__VA_ARGS__), as_false())
+void spatial_say(const struct spatial_model *model, stance_message *message, int line,
+                 const char *format, ...) __attribute__((format(printf, 4, 5)));
+/* NULL: "". */
+void spatial_name(char name[SPATIAL_NAME], const char *text);
+/* An empty model of a file. */
+void spatial_begin(struct spatial_model *model, const char *path, const char *format);
+/* A line of a comment, once; more than fits is cut. */
 void spatial_note(struct spatial_model *model, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 void spatial_free(struct spatial_model *model);

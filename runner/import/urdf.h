@@ -1,36 +1,17 @@
-/* urdf.h - what the parts of the URDF reader share: the document, its links and joints, attributes
- * and numbers with their places.
+/* urdf.h - elements of a URDF, their attributes and numbers with their places. A node may be NULL,
+ * which has nothing.
  */
 #ifndef RUNNER_IMPORT_URDF_H
 #define RUNNER_IMPORT_URDF_H
 
 #include "spatial.h"
 
-#include "runner/base/message.h"
-
 #include <libxml/tree.h>
 
-/* A <link>; `node` NULL: the world that joints name and no link does. */
-struct urdf_link {
-    const xmlNode *node;
-    const char *name;
-    int above; /* the joint whose child it is, -1: none */
-    int body;  /* of the model; -1: the world's, or not taken up yet */
-    bool taken;
-};
-
-/* A <joint>. */
-struct urdf_joint {
-    const xmlNode *node;
-    const char *name, *type;
-    int parent, child; /* links */
-    int joint;         /* of the model, the hinge of a planar one; -1: it is fixed */
-};
-
+/* A file while it is read. */
 struct urdf {
     struct spatial_model *model;
     stance_message *message;
-    const char *path;
     const xmlNode *root;
     struct urdf_link *link;
     struct urdf_joint *joint;
@@ -38,16 +19,12 @@ struct urdf {
     int turned; /* angles taken as right angles */
 };
 
-/* ---- urdf_xml.c ------------------------------------------------------------------------------ */
-
-/* "FILE:LINE: ..."; returns false. */
-#define urdf_refuse(...) (urdf_complain(__VA_ARGS__), false)
-void urdf_complain(const struct urdf *u, const xmlNode *at, const char *format, ...)
-    __attribute__((format(printf, 3, 4)));
-
+/* ... by the place of `at`. Is false. */
+#define urdf_refuse(u, at, ...) spatial_refuse((u)->model, (u)->message, urdf_line(at), __VA_ARGS__)
 int urdf_line(const xmlNode *node);
 /* An element's name without a prefix: gazebo's, drake's. */
 const char *urdf_name(const xmlNode *node);
+bool urdf_is(const xmlNode *node, const char *name);
 /* The first child element of a name, or with NULL of any, that comes after `after` (NULL: the
  * first); NULL: there is none. */
 const xmlNode *urdf_child(const xmlNode *node, const char *name, const xmlNode *after);
@@ -58,22 +35,16 @@ const xmlNode *urdf_child(const xmlNode *node, const char *name, const xmlNode *
 const char *urdf_text(const xmlNode *node, const char *key);
 /* The text of an attribute that must be there, and say something. False: refused. */
 bool urdf_need(const struct urdf *u, const xmlNode *node, const char *key, const char **text);
-/* What an element says as `value="..."` or between its tags, cut; false: nothing. */
-bool urdf_value(const xmlNode *node, char text[SPATIAL_NAME]);
+/* What an element says as an attribute, or between its tags, cut; false: nothing. */
+bool urdf_value(const xmlNode *node, const char *key, char text[SPATIAL_NAME]);
 
-/* Numbers of an attribute that may be missing, when value[count] stays as it is. False: refused. */
-bool urdf_numbers(struct urdf *u, const xmlNode *node, const char *key, int count, double *value);
-/* A number as of urdf_value; false: refused, as when there is none. */
-bool urdf_number(struct urdf *u, const xmlNode *node, double *value);
+/* Numbers of an attribute; value[count] stays as it is where it is missing. False: refused. */
+enum { URDF_NEEDED = 1, URDF_POSITIVE = 2 };
+bool urdf_numbers(const struct urdf *u, const xmlNode *node, const char *key, int count,
+                  double *value, int must);
+/* The number that an element says as `value="..."` or between its tags; stays without a node. */
+bool urdf_number(const struct urdf *u, const xmlNode *node, double *value);
 /* <origin> of an element: none is no offset. */
 bool urdf_origin(struct urdf *u, const xmlNode *of, double at[3], double rotation[3][3]);
-
-/* ---- urdf_extras.c --------------------------------------------------------------------------- */
-
-/* Transmissions, and what drives joints without them; what Gazebo, Drake and others add. */
-bool urdf_drives(struct urdf *u);
-bool urdf_extras(struct urdf *u);
-int urdf_find_joint(const struct urdf *u, const char *name); /* -1: there is none */
-int urdf_find_link(const struct urdf *u, const char *name);
 
 #endif

@@ -6,90 +6,67 @@
  * by it is said in notes. Where nothing says otherwise the root is free, as URDF has no word for
  * it: it is the world's where it is called `world`, or where neither it nor what is fixed to it has
  * a mass.
+ *
+ * Of what Gazebo, Drake and others add friction, springs, gravity that is turned off, gears and
+ * rotors are taken up; what couples links is refused; the rest is named in notes. Elements of a
+ * prefix that nobody declared (`drake:`) are known by the name behind it.
  */
+#include "space.h"
 #include "urdf.h"
 
-#include <errno.h>
-#include <fcntl.h>
 #include <libxml/parser.h>
-#include <math.h>
 #include <stdlib.h>
-#include <sys/stat.h>
-#include <unistd.h>
+#include <strings.h>
+
+/* A <link>; `node` NULL: the world that joints name and no link does. */
+struct urdf_link {
+    const xmlNode *node;
+    const char *name;
+    double mass;
+    int above; /* the joint whose child it is, -1: none */
+    int body;  /* of the model; -1: the world's, or not taken up yet */
+    bool taken;
+    const xmlNode *weightless; /* what turns its gravity off */
+};
+
+/* A <joint>. */
+struct urdf_joint {
+    const xmlNode *node;
+    const char *name, *type;
+    int parent, child; /* links */
+    int joint;         /* of the model, the hinge of a planar one; -1: it is fixed */
+};
 
 /* The frame itself. */
 static const double unturned[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
 
-static void name_it(char name[SPATIAL_NAME], const char *text)
-{
-    snprintf(name, SPATIAL_NAME, "%s", text);
-}
-
-/* ---- the document ---------------------------------------------------------------------------- */
-
-static bool not_xml(const char *path, const xmlError *why, stance_message *message)
-{
-    if (!why)
-        return complain(message, "%s: cannot be read as XML", path);
-    if (why->domain == XML_FROM_IO)
-        return complain(message, "%s: cannot be read: %s", path, strerror(errno));
-    if (why->code == XML_ERR_DOCUMENT_EMPTY)
-        return complain(message, "%s:%d: no XML stands here, so no robot", path, why->line);
-    const char *const text = why->message ? why->message : "malformed\n";
-    return complain(message, "%s:%d: not XML: %.*s", path, why->line, (int)strcspn(text, "\n"),
-                    text);
-}
+/* ---- the document --------------------------------------------------------------------------- */
 
 static xmlDoc *parse(const char *path, stance_message *message)
 {
-    const int options =
-        XML_PARSE_NONET | XML_PARSE_NOERROR | XML_PARSE_NOWARNING | XML_PARSE_BIG_LINES;
-    const int file = open(path, O_RDONLY | O_CLOEXEC);
-    xmlParserCtxt *const context = file >= 0 ? xmlNewParserCtxt() : NULL;
-    xmlDoc *document = NULL;
-    struct stat what;
-    if (file < 0)
-        complain(message, "%s: cannot be read: %s", path, strerror(errno));
-    else if (fstat(file, &what) == 0 && S_ISDIR(what.st_mode))
-        complain(message, "%s: cannot be read: %s", path, strerror(EISDIR));
-    else if (!context)
-        no_memory(message);
-    else if (!(document = xmlCtxtReadFd(context, file, path, NULL, options)))
-        not_xml(path, xmlCtxtGetLastError(context), message);
-    xmlFreeParserCtxt(context);
-    if (file >= 0)
-        close(file);
+    xmlDoc *const document = xmlReadFile(path, NULL,
+                                         XML_PARSE_NONET | XML_PARSE_NOERROR | XML_PARSE_NOWARNING |
+                                             XML_PARSE_BIG_LINES);
+    const xmlError *const why = document ? NULL : xmlGetLastError();
+    if (why)
+        complain(message, "%s:%d: not XML: %.*s", path, why->line,
+                 why->message ? (int)strcspn(why->message, "\n") : 0, why->message);
+    else if (!document)
+        complain(message, "%s: cannot be read as XML", path);
     return document;
 }
 
-/* Whether an element is one that xacro replaces; `<robot xmlns:xacro=...>` remains after it. */
-static bool of_xacro(const xmlNode *node)
-{
-    return (node->ns && node->ns->prefix && strcmp((const char *)node->ns->prefix, "xacro") == 0) ||
-           strncmp((const char *)node->name, "xacro:", 6) == 0;
-}
-
-static bool right_root(const struct urdf *u)
-{
-    const char *const name = urdf_name(u->root);
-    const char *const other = strcmp(name, "sdf") == 0 ? "this is SDF, which is not read"
-                              : strcmp(name, "mujoco") == 0
-                                  ? "this is MJCF: a file of that is called .xml"
-                                  : "this is no robot's description";
-    return strcmp(name, "robot") == 0 ||
-           urdf_refuse(u, u->root, "<%.40s> begins it, not <robot>: %s", name, other);
-}
-
-static bool check_document(struct urdf *u, const xmlDoc *document)
+/* Elements that xacro replaces; `<robot xmlns:xacro=...>` remains after it. */
+static bool check_document(const struct urdf *u, const xmlDoc *document)
 {
     if (document->intSubset)
         return urdf_refuse(u, u->root,
                            "it declares a document type (<!DOCTYPE ...>) or entities, "
                            "which are not read: take that out");
-    if (!right_root(u))
-        return false;
     EACH_IN (child, u->root, NULL)
-        if (of_xacro(child))
+        if ((child->ns && child->ns->prefix &&
+             strcmp((const char *)child->ns->prefix, "xacro") == 0) ||
+            strncmp((const char *)child->name, "xacro:", 6) == 0)
             return urdf_refuse(u, child,
                                "<%.40s> is for xacro: expand the file first (xacro FILE > "
                                "robot.urdf)",
@@ -97,17 +74,9 @@ static bool check_document(struct urdf *u, const xmlDoc *document)
     return true;
 }
 
-/* ---- the tree -------------------------------------------------------------------------------- */
+/* ---- the tree ------------------------------------------------------------------------------- */
 
-static int count_of(const xmlNode *root, const char *name)
-{
-    int count = 0;
-    EACH_IN (child, root, name)
-        count++;
-    return count;
-}
-
-int urdf_find_link(const struct urdf *u, const char *name)
+static int find_link(const struct urdf *u, const char *name)
 {
     int i = u->links;
     while (--i >= 0 && strcmp(u->link[i].name, name) != 0)
@@ -115,7 +84,7 @@ int urdf_find_link(const struct urdf *u, const char *name)
     return i;
 }
 
-int urdf_find_joint(const struct urdf *u, const char *name)
+static int find_joint(const struct urdf *u, const char *name)
 {
     int i = u->joints;
     while (--i >= 0 && strcmp(u->joint[i].name, name) != 0)
@@ -123,49 +92,51 @@ int urdf_find_joint(const struct urdf *u, const char *name)
     return i;
 }
 
-static bool list_links(struct urdf *u)
+static bool list_link(struct urdf *u, const xmlNode *node)
 {
-    EACH_IN (child, u->root, "link") {
-        const char *name;
-        if (!urdf_need(u, child, "name", &name))
-            return false;
-        const int other = urdf_find_link(u, name);
-        if (other >= 0)
-            return urdf_refuse(u, child,
-                               "there are two links called %.60s, the other one at line %d", name,
-                               urdf_line(u->link[other].node));
-        u->link[u->links++] =
-            (struct urdf_link){.node = child, .name = name, .above = -1, .body = -1};
-    }
-    return u->links > 0 || urdf_refuse(u, u->root, "the robot has no <link>");
+    const xmlNode *const inertial = urdf_child(node, "inertial", NULL), *const mass = urdf_child(
+                                                                            inertial, "mass", NULL);
+    struct urdf_link link = {.node = node, .above = -1, .body = -1};
+    if (!urdf_need(u, node, "name", &link.name))
+        return false;
+    const int other = find_link(u, link.name);
+    if (other >= 0)
+        return urdf_refuse(u, node, "there are two links called %.60s, the other one at line %d",
+                           link.name, urdf_line(u->link[other].node));
+    if (inertial && !mass)
+        return urdf_refuse(u, inertial, "<inertial> has no <mass value=\"...\"/>");
+    if (mass && !urdf_numbers(u, mass, "value", 1, &link.mass, URDF_NEEDED | URDF_POSITIVE))
+        return false;
+    u->link[u->links++] = link;
+    return true;
 }
 
 /* The link that <parent link="..."/> or <child .../> of a joint names. The world needs no link. */
-static bool end_of(struct urdf *u, const xmlNode *joint, const char *end, int *link)
+static bool end_of(struct urdf *u, const struct urdf_joint *j, const char *end, int *link)
 {
-    const xmlNode *const at = urdf_child(joint, end, NULL);
+    const xmlNode *const at = urdf_child(j->node, end, NULL);
     const char *name;
     if (!at)
-        return urdf_refuse(u, joint, "joint %.60s has no <%s link=\"...\"/>",
-                           urdf_text(joint, "name"), end);
+        return urdf_refuse(u, j->node, "joint %.60s has no <%s link=\"...\"/>", j->name, end);
     if (!urdf_need(u, at, "link", &name))
         return false;
-    *link = urdf_find_link(u, name);
+    *link = find_link(u, name);
     if (*link < 0 && strcmp(name, "world") == 0 && strcmp(end, "parent") == 0) {
         *link = u->links;
         u->link[u->links++] = (struct urdf_link){.name = "world", .above = -1, .body = -1};
     }
-    return *link >= 0 || urdf_refuse(u, at, "joint %.60s: there is no link called %.60s",
-                                     urdf_text(joint, "name"), name);
+    return *link >= 0 ||
+           urdf_refuse(u, at, "joint %.60s: there is no link called %.60s", j->name, name);
 }
 
-static bool list_joint(struct urdf *u, const xmlNode *node, struct urdf_joint *j)
+static bool list_joint(struct urdf *u, const xmlNode *node)
 {
+    struct urdf_joint *const j = &u->joint[u->joints];
     *j = (struct urdf_joint){.node = node, .joint = -1};
     if (!urdf_need(u, node, "name", &j->name) || !urdf_need(u, node, "type", &j->type) ||
-        !end_of(u, node, "parent", &j->parent) || !end_of(u, node, "child", &j->child))
+        !end_of(u, j, "parent", &j->parent) || !end_of(u, j, "child", &j->child))
         return false;
-    const int other = urdf_find_joint(u, j->name);
+    const int other = find_joint(u, j->name);
     if (other >= 0)
         return urdf_refuse(u, node, "there are two joints called %.60s, the other one at line %d",
                            j->name, urdf_line(u->joint[other].node));
@@ -190,6 +161,8 @@ static bool find_root(struct urdf *u)
                                u->link[u->root_link].name, u->link[i].name);
         u->root_link = i;
     }
+    if (u->links == 0)
+        return urdf_refuse(u, u->root, "the robot has no <link>");
     return u->root_link >= 0 ||
            urdf_refuse(u, u->link[0].node,
                        "every link is the child of a joint: the joints go round "
@@ -199,133 +172,84 @@ static bool find_root(struct urdf *u)
 /* Room for every <link> and <joint>, and a world. */
 static bool list_tree(struct urdf *u)
 {
-    u->link = calloc((size_t)count_of(u->root, "link") + 1, sizeof *u->link);
-    u->joint = calloc((size_t)count_of(u->root, "joint") + 1, sizeof *u->joint);
-    if (!u->link || !u->joint)
-        return no_memory(u->message);
-    if (!list_links(u))
-        return false;
+    const size_t elements = xmlChildElementCount((xmlNode *)(uintptr_t)u->root);
+    u->link = spatial_room(elements + 1, sizeof *u->link);
+    u->joint = spatial_room(elements, sizeof *u->joint);
+    EACH_IN (child, u->root, "link")
+        if (!list_link(u, child))
+            return false;
     EACH_IN (child, u->root, "joint")
-        if (!list_joint(u, child, &u->joint[u->joints]))
+        if (!list_joint(u, child))
             return false;
     return find_root(u);
 }
 
-/* ---- inertia --------------------------------------------------------------------------------- */
-
-static bool mass_of(struct urdf *u, const xmlNode *inertial, double *mass)
-{
-    const xmlNode *const at = urdf_child(inertial, "mass", NULL);
-    if (!at)
-        return urdf_refuse(u, inertial, "<inertial> has no <mass value=\"...\"/>");
-    return urdf_number(u, at, mass) &&
-           (*mass >= 0 || urdf_refuse(u, at, "<mass value=\"%g\">: less than nothing", *mass));
-}
+/* ---- bodies --------------------------------------------------------------------------------- */
 
 /* Moments in the axes of <origin>. */
-static bool moments_of(struct urdf *u, const xmlNode *at, double moment[3][3])
+static bool inertia_of(struct urdf *u, const struct urdf_link *link, struct spatial_body *body)
 {
-    static const struct {
-        const char *key;
-        int i, k;
-    } list[] = {{"ixx", 0, 0}, {"iyy", 1, 1}, {"izz", 2, 2},
-                {"ixy", 0, 1}, {"ixz", 0, 2}, {"iyz", 1, 2}};
-    for (size_t n = 0; n < sizeof list / sizeof *list; n++) {
-        double value = 0;
-        const char *text;
-        const bool own = list[n].i == list[n].k;
-        if ((own && !urdf_need(u, at, list[n].key, &text)) ||
-            !urdf_numbers(u, at, list[n].key, 1, &value))
-            return false;
-        if (own && value < 0)
-            return urdf_refuse(u, at, "<inertia %s=\"%g\">: less than nothing", list[n].key, value);
-        moment[list[n].i][list[n].k] = moment[list[n].k][list[n].i] = value;
-    }
-    return true;
-}
-
-/* R I R'. */
-static void turn_moments(double r[3][3], double moment[3][3], double out[3][3])
-{
-    for (int i = 0; i < 3; i++)
-        for (int k = 0; k < 3; k++) {
-            out[i][k] = 0;
-            for (int m = 0; m < 3; m++)
-                for (int n = 0; n < 3; n++)
-                    out[i][k] += r[i][m] * moment[m][n] * r[k][n];
-        }
-}
-
-static bool inertia_of(struct urdf *u, const xmlNode *link, struct spatial_body *body)
-{
-    const xmlNode *const inertial = urdf_child(link, "inertial", NULL);
-    const xmlNode *const at = inertial ? urdf_child(inertial, "inertia", NULL) : NULL;
+    static const char *const keys[3][3] = {
+        {"ixx", "ixy", "ixz"}, {"", "iyy", "iyz"}, {"", "", "izz"}};
+    const xmlNode *const inertial = urdf_child(link->node, "inertial", NULL), *const at =
+                                                                                  urdf_child(
+                                                                                      inertial,
+                                                                                      "inertia",
+                                                                                      NULL);
     double rotation[3][3], moment[3][3] = {{0}};
-    body->massless = true;
-    if (!inertial)
-        return true;
-    if (!urdf_origin(u, inertial, body->centre, rotation) || !mass_of(u, inertial, &body->mass) ||
-        (at && !moments_of(u, at, moment)))
+    body->mass = link->mass;
+    for (int i = 0; at && i < 3; i++)
+        for (int k = i; k < 3; k++) {
+            if (!urdf_numbers(u, at, keys[i][k], 1, &moment[i][k],
+                              i == k ? URDF_NEEDED | URDF_POSITIVE : 0))
+                return false;
+            moment[k][i] = moment[i][k];
+        }
+    if (!urdf_origin(u, inertial, body->centre, rotation))
         return false;
-    body->massless = body->mass == 0;
-    turn_moments(rotation, moment, body->inertia);
-    if (!at && !body->massless)
+    space_turn_moments(rotation, moment, body->inertia);
+    if (!at && body->mass > 0)
         spatial_note(u->model, "link %s has no <inertia>: it is a point mass", body->name);
     return true;
 }
 
-/* ---- what may touch -------------------------------------------------------------------------- */
-
-static bool sizes_of(struct urdf *u, const xmlNode *shape, struct spatial_geom *geom)
-{
-    const bool box = geom->shape == SPATIAL_BOX;
-    const char *text;
-    if (!urdf_need(u, shape, box ? "size" : "radius", &text) ||
-        !urdf_numbers(u, shape, box ? "size" : "radius", box ? 3 : 1, geom->size))
-        return false;
-    if (geom->shape == SPATIAL_CYLINDER || geom->shape == SPATIAL_CAPSULE) {
-        if (!urdf_need(u, shape, "length", &text) ||
-            !urdf_numbers(u, shape, "length", 1, &geom->size[1]))
-            return false;
-        geom->size[1] /= 2;
-    }
-    for (int i = 0; i < 3; i++) {
-        if (geom->size[i] < 0)
-            return urdf_refuse(u, shape, "<%s>: a size is less than nothing", urdf_name(shape));
-        if (box)
-            geom->size[i] /= 2;
-    }
-    return true;
-}
-
+/* Sizes, of which half count but for a radius. */
 static bool shape_of(struct urdf *u, const xmlNode *collision, struct spatial_geom *geom)
 {
-    static const char *const words[] = {"sphere", "capsule", "cylinder", "box"};
-    static const spatial_shape shapes[] = {SPATIAL_SPHERE, SPATIAL_CAPSULE, SPATIAL_CYLINDER,
-                                           SPATIAL_BOX};
-    const xmlNode *const geometry = urdf_child(collision, "geometry", NULL);
-    const xmlNode *const shape = geometry ? urdf_child(geometry, NULL, NULL) : NULL;
+    static const struct {
+        const char *name, *key[2];
+        int count;
+        spatial_shape shape;
+    } shapes[] = {{"sphere", {"radius"}, 1, SPATIAL_SPHERE},
+                  {"capsule", {"radius", "length"}, 1, SPATIAL_CAPSULE},
+                  {"cylinder", {"radius", "length"}, 1, SPATIAL_CYLINDER},
+                  {"box", {"size"}, 3, SPATIAL_BOX}};
+    const xmlNode *const shape = urdf_child(urdf_child(collision, "geometry", NULL), NULL, NULL);
     if (!shape)
         return urdf_refuse(u, collision, "<collision> has no <geometry> with a shape");
-    for (size_t i = 0; i < sizeof words / sizeof *words; i++)
-        if (strcmp(urdf_name(shape), words[i]) == 0) {
-            geom->shape = shapes[i];
-            geom->of = words[i];
-            return sizes_of(u, shape, geom);
-        }
     geom->shape = SPATIAL_OTHER;
-    geom->of = strcmp(urdf_name(shape), "mesh") == 0 ? "mesh" : "shape that is not known";
+    geom->of = urdf_is(shape, "mesh") ? "mesh" : "shape that is not known";
+    for (size_t i = 0; i < sizeof shapes / sizeof *shapes; i++) {
+        if (!urdf_is(shape, shapes[i].name))
+            continue;
+        geom->shape = shapes[i].shape;
+        geom->of = shapes[i].name;
+        for (int k = 0; k < 2 && shapes[i].key[k]; k++)
+            if (!urdf_numbers(u, shape, shapes[i].key[k], shapes[i].count, geom->size + k,
+                              URDF_NEEDED | URDF_POSITIVE))
+                return false;
+        for (int k = geom->shape != SPATIAL_BOX; k < 3; k++)
+            geom->size[k] /= 2;
+    }
     return true;
 }
 
 static bool geoms_of(struct urdf *u, const struct urdf_link *link)
 {
     EACH_IN (child, link->node, "collision") {
-        struct spatial_geom *const geom = spatial_add_geom(u->model);
+        struct spatial_geom *const geom = spatial_add(u->model, geom, geoms);
         const char *const name = urdf_text(child, "name");
-        if (!geom)
-            return no_memory(u->message);
-        name_it(geom->name, name && *name ? name : link->name);
+        spatial_name(geom->name, name && *name ? name : link->name);
         geom->line = urdf_line(child);
         geom->body = link->body;
         geom->friction = NAN;
@@ -336,23 +260,19 @@ static bool geoms_of(struct urdf *u, const struct urdf_link *link)
     return true;
 }
 
-/* ---- joints ---------------------------------------------------------------------------------- */
+/* ---- joints --------------------------------------------------------------------------------- */
 
-static struct spatial_joint *add_joint(struct urdf *u, const struct urdf_joint *of, int body,
-                                       spatial_joint_kind kind)
+static struct spatial_joint *add_joint(struct urdf *u, const char *name, const xmlNode *node,
+                                       int body, spatial_joint_kind kind)
 {
-    struct spatial_joint *const joint = spatial_add_joint(u->model);
-    if (!joint) {
-        no_memory(u->message);
-        return NULL;
-    }
+    struct spatial_joint *const joint = spatial_add(u->model, joint, joints);
+    const struct spatial_body *const b = &u->model->body[body];
     joint->kind = kind;
     joint->body = body;
-    memcpy(joint->start_rotation, unturned, sizeof unturned);
-    if (of) {
-        name_it(joint->name, of->name);
-        joint->line = urdf_line(of->node);
-    }
+    joint->line = urdf_line(node);
+    spatial_name(joint->name, name);
+    memcpy(joint->start_place, b->at, sizeof b->at);
+    memcpy(joint->start_rotation, b->rotation, sizeof b->rotation);
     return joint;
 }
 
@@ -360,81 +280,66 @@ static bool axis_of(struct urdf *u, const struct urdf_joint *j, double axis[3])
 {
     const xmlNode *const at = urdf_child(j->node, "axis", NULL);
     axis[0] = 1;
-    if (at && !urdf_numbers(u, at, "xyz", 3, axis))
+    if (!urdf_numbers(u, at, "xyz", 3, axis, 0))
         return false;
-    const double length = hypot(hypot(axis[0], axis[1]), axis[2]);
-    for (int i = 0; i < 3; i++)
-        axis[i] /= length;
+    space_unit(axis, axis);
     return isfinite(axis[0] + axis[1] + axis[2]) ||
            urdf_refuse(u, at, "joint %.60s: its axis has no direction", j->name);
 }
 
-/* Exporters write lower = upper = 0 where a designer gave nothing, and others leave them out. */
+/* Exporters write lower = upper = 0 where a designer gave nothing, and others leave them out. URDF
+ * begins where all coordinates are 0, or at the stop that is nearest to that. */
 static bool limits_of(struct urdf *u, const struct urdf_joint *j, struct spatial_joint *joint)
 {
     const xmlNode *const at = urdf_child(j->node, "limit", NULL);
-    if (!at) {
-        if (!joint->continuous)
-            spatial_note(u->model, "joint %s has no <limit>: it has no stops here", j->name);
-        return true;
-    }
-    if (!urdf_numbers(u, at, "lower", 1, &joint->limits[0]) ||
-        !urdf_numbers(u, at, "upper", 1, &joint->limits[1]) ||
-        !urdf_numbers(u, at, "effort", 1, &joint->effort))
+    const bool given = urdf_text(at, "lower") || urdf_text(at, "upper"),
+               continuous = strcmp(j->type, "continuous") == 0;
+    double *const limits = joint->limits;
+    if (!urdf_numbers(u, at, "lower", 1, &limits[0], 0) ||
+        !urdf_numbers(u, at, "upper", 1, &limits[1], 0) ||
+        !urdf_numbers(u, at, "effort", 1, &joint->effort, 0))
         return false;
-    const bool given = urdf_text(at, "lower") || urdf_text(at, "upper");
-    const bool any = joint->limits[0] != 0 || joint->limits[1] != 0;
-    if (joint->limits[0] > joint->limits[1])
+    if (limits[0] > limits[1])
         return urdf_refuse(u, at, "joint %.60s: its lower limit %g is above its upper one, %g",
-                           j->name, joint->limits[0], joint->limits[1]);
-    joint->limited = any;
-    if (joint->continuous && any)
-        spatial_note(u->model, "joint %s is continuous, and its limits are kept", j->name);
-    else if (given && !any && !joint->continuous)
-        spatial_note(
-            u->model,
-            "joint %s: lower = upper = 0 is what exporters write without limits: it has no "
-            "stops here (if it is not to move: --weld %s)",
-            j->name, j->name);
-    else if (!any && !joint->continuous)
-        spatial_note(u->model, "joint %s has neither lower nor upper limit: it has no stops here",
-                     j->name);
-    return true;
-}
-
-/* URDF begins where all coordinates are 0, or at the stop that is nearest to that. */
-static void begin(struct urdf *u, struct spatial_joint *joint)
-{
+                           j->name, limits[0], limits[1]);
+    joint->limited = limits[0] != 0 || limits[1] != 0;
     if (joint->limited)
-        joint->start = fmin(fmax(0, joint->limits[0]), joint->limits[1]);
+        joint->start = fmin(fmax(0, limits[0]), limits[1]);
+    if (continuous && joint->limited)
+        spatial_note(u->model, "joint %s is continuous, and its limits are kept", j->name);
+    if (!continuous && !joint->limited)
+        spatial_note(u->model,
+                     "joint %s: %s: it has no stops here (if it is not to move: --weld %s)",
+                     j->name,
+                     given ? "lower = upper = 0 is what exporters write without limits"
+                           : "no limits are given",
+                     j->name);
     if (joint->start != 0)
         spatial_note(u->model, "joint %s begins at its stop, %g: 0 is beyond it", joint->name,
                      joint->start);
+    return true;
 }
 
 static bool one_way(struct urdf *u, struct urdf_joint *j, int body, spatial_joint_kind kind)
 {
-    struct spatial_joint *const joint = add_joint(u, j, body, kind);
-    const xmlNode *const dynamics = urdf_child(j->node, "dynamics", NULL);
-    if (!joint)
-        return false;
-    j->joint = (int)(joint - u->model->joint);
-    joint->continuous = strcmp(j->type, "continuous") == 0;
-    if (!axis_of(u, j, joint->axis) || !limits_of(u, j, joint) ||
-        (dynamics && (!urdf_numbers(u, dynamics, "damping", 1, &joint->damping) ||
-                      !urdf_numbers(u, dynamics, "friction", 1, &joint->friction))))
-        return false;
-    if (joint->damping < 0 || joint->friction < 0)
-        return urdf_refuse(u, dynamics, "joint %.60s: its damping or friction is less than nothing",
-                           j->name);
-    begin(u, joint);
-    return true;
+    struct spatial_joint *const joint = add_joint(u, j->name, j->node, body, kind);
+    const xmlNode *const dynamics = urdf_child(j->node, "dynamics", NULL), *const mimic =
+                                                                               urdf_child(j->node,
+                                                                                          "mimic",
+                                                                                          NULL);
+    j->joint = u->model->joints - 1;
+    if (mimic)
+        spatial_add_alien(u->model, SPATIAL_MIMIC, j->name, urdf_line(mimic), false);
+    return axis_of(u, j, joint->axis) && limits_of(u, j, joint) &&
+           urdf_numbers(u, dynamics, "damping", 1, &joint->damping, URDF_POSITIVE) &&
+           urdf_numbers(u, dynamics, "friction", 1, &joint->friction, URDF_POSITIVE);
 }
 
 /* Two slides at right angles to each other and to the normal, then the hinge about it. */
-static bool planar(struct urdf *u, struct urdf_joint *j, int body)
+static bool planar(struct urdf *u, struct urdf_joint *j, int body, spatial_joint_kind kind)
 {
-    double n[3] = {0}, a[3] = {0}, b[3], length = 0;
+    static const char *const suffix[] = {"_a", "_b", ""};
+    double axis[3][3] = {{0}}, *const a = axis[0], *const n = axis[2];
     int least = 0;
     if (!axis_of(u, j, n))
         return false;
@@ -442,101 +347,67 @@ static bool planar(struct urdf *u, struct urdf_joint *j, int body)
         least = fabs(n[i]) < fabs(n[least]) ? i : least;
     for (int i = 0; i < 3; i++)
         a[i] = (i == least) - n[least] * n[i];
-    length = hypot(hypot(a[0], a[1]), a[2]);
-    for (int i = 0; i < 3; i++)
-        a[i] /= length;
-    for (int i = 0; i < 3; i++)
-        b[i] = n[(i + 1) % 3] * a[(i + 2) % 3] - n[(i + 2) % 3] * a[(i + 1) % 3];
-    const double *const axes[] = {a, b, n};
-    static const char *const suffix[] = {"_a", "_b", ""};
+    space_unit(a, a);
+    space_cross(n, a, axis[1]);
     for (int i = 0; i < 3; i++) {
         struct spatial_joint *const joint =
-            add_joint(u, j, body, i < 2 ? SPATIAL_SLIDE : SPATIAL_HINGE);
-        if (!joint)
-            return false;
+            add_joint(u, j->name, j->node, body, i < 2 ? SPATIAL_SLIDE : kind);
         add_text(joint->name, sizeof joint->name, "%s", suffix[i]);
-        memcpy(joint->axis, axes[i], sizeof joint->axis);
+        memcpy(joint->axis, axis[i], sizeof joint->axis);
     }
     j->joint = u->model->joints - 1;
     return true;
 }
 
-static bool floating(struct urdf *u, const struct urdf_joint *j, int body)
+static bool floating(struct urdf *u, struct urdf_joint *j, int body, spatial_joint_kind kind)
 {
-    const struct spatial_body *const b = &u->model->body[body];
-    if (b->parent >= 0)
+    if (u->model->body[body].parent >= 0)
         return urdf_refuse(
             u, j->node,
             "joint %.60s is floating, but its parent %.60s is not the world: two robots", j->name,
             u->link[j->parent].name);
-    struct spatial_joint *const joint = add_joint(u, j, body, SPATIAL_FREE);
-    if (!joint)
-        return false;
-    memcpy(joint->start_place, b->at, sizeof b->at);
-    memcpy(joint->start_rotation, b->rotation, sizeof b->rotation);
-    return true;
-}
-
-static bool mimic(struct urdf *u, const struct urdf_joint *j)
-{
-    const xmlNode *const at = urdf_child(j->node, "mimic", NULL);
-    struct spatial_alien *const alien = at ? spatial_add_alien(u->model) : NULL;
-    if (at && !alien)
-        return no_memory(u->message);
-    if (alien) {
-        alien->what = SPATIAL_MIMIC;
-        name_it(alien->name, j->name);
-        alien->line = urdf_line(at);
-    }
+    add_joint(u, j->name, j->node, body, kind);
     return true;
 }
 
 static bool joint_of(struct urdf *u, struct urdf_joint *j, int body)
 {
-    if (strcmp(j->type, "fixed") == 0)
-        return true;
-    if (strcmp(j->type, "revolute") == 0 || strcmp(j->type, "continuous") == 0)
-        return one_way(u, j, body, SPATIAL_HINGE) && mimic(u, j);
-    if (strcmp(j->type, "prismatic") == 0)
-        return one_way(u, j, body, SPATIAL_SLIDE) && mimic(u, j);
-    if (strcmp(j->type, "planar") == 0)
-        return planar(u, j, body);
-    if (strcmp(j->type, "floating") == 0)
-        return floating(u, j, body);
-    return urdf_refuse(u, j->node,
+    static const struct {
+        const char *type;
+        spatial_joint_kind kind;
+        bool (*read)(struct urdf *u, struct urdf_joint *j, int body, spatial_joint_kind kind);
+    } types[] = {{"revolute", SPATIAL_HINGE, one_way},
+                 {"continuous", SPATIAL_HINGE, one_way},
+                 {"prismatic", SPATIAL_SLIDE, one_way},
+                 {"floating", SPATIAL_FREE, floating},
+                 {"planar", SPATIAL_HINGE, planar}};
+    for (size_t i = 0; i < sizeof types / sizeof *types; i++)
+        if (strcmp(j->type, types[i].type) == 0)
+            return types[i].read(u, j, body, types[i].kind);
+    return strcmp(j->type, "fixed") == 0 ||
+           urdf_refuse(u, j->node,
                        "joint %.60s: type \"%.30s\" is none of fixed, revolute, continuous, "
                        "prismatic, planar, floating",
                        j->name, j->type);
 }
 
-/* ---- links ----------------------------------------------------------------------------------- */
+/* ---- links ---------------------------------------------------------------------------------- */
 
-/* Whether a link with a mass is rigid with the root, and so gives it one. */
-static bool weighs_on_root(const struct urdf *u, int link)
-{
-    const xmlNode *const inertial =
-        u->link[link].node ? urdf_child(u->link[link].node, "inertial", NULL) : NULL;
-    const xmlNode *const mass = inertial ? urdf_child(inertial, "mass", NULL) : NULL;
-    char text[SPATIAL_NAME];
-    int above;
-    if (!mass || !urdf_value(mass, text) || strtod(text, NULL) == 0)
-        return false;
-    for (int steps = 0; (above = u->link[link].above) >= 0 && steps < u->links; steps++) {
-        if (strcmp(u->joint[above].type, "fixed") != 0)
-            return false;
-        link = u->joint[above].parent;
-    }
-    return link == u->root_link;
-}
-
+/* The root, or what is rigid with it and so gives it its mass. */
 static bool is_world(const struct urdf *u)
 {
     const char *const name = u->link[u->root_link].name;
     if (strcmp(name, "world") == 0)
         return true;
-    for (int i = 0; i < u->links; i++)
-        if (weighs_on_root(u, i))
+    for (int i = 0; i < u->links; i++) {
+        int link = i;
+        for (int steps = 0; steps < u->links && u->link[link].above >= 0 &&
+                            strcmp(u->joint[u->link[link].above].type, "fixed") == 0;
+             steps++)
+            link = u->joint[u->link[link].above].parent;
+        if (u->link[i].mass > 0 && link == u->root_link)
             return false;
+    }
     spatial_note(u->model, "root %s, and what is fixed to it, has no mass: it is the world", name);
     return true;
 }
@@ -545,49 +416,35 @@ static bool is_world(const struct urdf *u)
 static bool take_link(struct urdf *u, struct urdf_link *link)
 {
     struct urdf_joint *const above = link->above >= 0 ? &u->joint[link->above] : NULL;
-    struct spatial_body *const body = spatial_add_body(u->model);
-    if (!body)
-        return no_memory(u->message);
+    link->taken = true;
+    if (!above && is_world(u)) /* of which no more is of interest than what may touch */
+        return geoms_of(u, link);
+    struct spatial_body *const body = spatial_add(u->model, body, bodies);
     link->body = u->model->bodies - 1;
-    name_it(body->name, link->name);
+    spatial_name(body->name, link->name);
     body->line = urdf_line(link->node);
     body->parent = above ? u->link[above->parent].body : -1;
     memcpy(body->rotation, unturned, sizeof unturned);
     if ((above && !urdf_origin(u, above->node, body->at, body->rotation)) ||
-        !inertia_of(u, link->node, body))
+        !inertia_of(u, link, body))
         return false;
+    if (!above) {
+        add_joint(u, link->name, link->node, link->body, SPATIAL_FREE);
+        spatial_note(u->model, "root %s is free: nothing fixes it (--weld %s does)", link->name,
+                     link->name);
+    }
     return (!above || joint_of(u, above, link->body)) && geoms_of(u, link);
-}
-
-/* The first link: the world, of which no more is of interest than what may touch, or one that
- * moves freely. */
-static bool take_root(struct urdf *u)
-{
-    struct urdf_link *const root = &u->link[u->root_link];
-    root->taken = true;
-    if (is_world(u))
-        return !root->node || geoms_of(u, root);
-    if (!take_link(u, root))
-        return false;
-    struct spatial_joint *const joint = add_joint(u, NULL, root->body, SPATIAL_FREE);
-    if (!joint)
-        return false;
-    name_it(joint->name, root->name);
-    joint->line = urdf_line(root->node);
-    spatial_note(u->model, "root %s is free: nothing fixes it (--weld %s does)", root->name,
-                 root->name);
-    return true;
 }
 
 /* From the root, a leg after the other: links that wait lie on a stack, the next one on top. */
 static bool take_tree(struct urdf *u)
 {
-    int *const stack = calloc((size_t)u->links, sizeof *stack), waiting = 0;
-    bool good = stack ? take_root(u) : no_memory(u->message);
-    for (int at = u->root_link; good && at >= 0; at = waiting > 0 ? stack[--waiting] : -1) {
-        struct urdf_link *const link = &u->link[at];
-        good = link->taken || take_link(u, link);
-        link->taken = true;
+    int *const stack = spatial_room((size_t)u->links, sizeof *stack), waiting = 1;
+    bool good = true;
+    stack[0] = u->root_link;
+    while (good && waiting > 0) {
+        const int at = stack[--waiting];
+        good = take_link(u, &u->link[at]);
         for (int j = u->joints - 1; j >= 0; j--)
             if (u->joint[j].parent == at)
                 stack[waiting++] = u->joint[j].child;
@@ -601,17 +458,201 @@ static bool take_tree(struct urdf *u)
     return good;
 }
 
+/* ---- what drives joints --------------------------------------------------------------------- */
+
+static void add_motor(struct urdf *u, const xmlNode *at, const char *name, int joint, double gear)
+{
+    const struct urdf_joint *const j = &u->joint[joint];
+    const double effort = j->joint >= 0 ? fabs(u->model->joint[j->joint].effort) : 0;
+    struct spatial_actuator *const motor = spatial_add(u->model, actuator, actuators);
+    spatial_name(motor->name, name && *name ? name : j->name);
+    spatial_name(motor->target, j->name);
+    motor->line = urdf_line(at);
+    motor->joint = j->joint;
+    motor->drive = SPATIAL_MOTOR;
+    motor->gear = gear;
+    motor->limited = effort > 0;
+    motor->most = effort > 0 ? effort : INFINITY;
+    motor->least = -motor->most;
+}
+
+/* A number of the first descendant of a name, as authors put it into the transmission, its joint or
+ * actuator; stays where there is none. */
+static bool number_within(const struct urdf *u, const xmlNode *node, const char *name,
+                          double *value)
+{
+    EACH_IN (child, node, NULL)
+        if (urdf_is(child, name) ? !urdf_number(u, child, value)
+                                 : !number_within(u, child, name, value))
+            return false;
+    return true;
+}
+
+/* Of a joint as <joint name="hip"/> or <joint>hip</joint>. What the rotor's inertia is there: n^2
+ * J, by Drake's gear ratio or else the reduction. */
+static bool transmission(struct urdf *u, const xmlNode *node)
+{
+    const xmlNode *const at = urdf_child(node, "joint", NULL);
+    double reduction = NAN, ratio = NAN, rotor = 0;
+    char name[SPATIAL_NAME];
+    if (!urdf_value(at, "name", name))
+        return urdf_refuse(u, node, "a transmission without <joint name=\"...\"/>");
+    if (urdf_child(node, "joint", at))
+        return urdf_refuse(u, node,
+                           "a transmission of several joints (the first is %.60s) couples them: it "
+                           "is not read",
+                           name);
+    const int joint = find_joint(u, name);
+    if (joint < 0)
+        return urdf_refuse(u, at, "a transmission of joint %.60s, which the robot does not have",
+                           name);
+    if (!number_within(u, node, "mechanicalReduction", &reduction) ||
+        !number_within(u, node, "gear_ratio", &ratio) ||
+        !number_within(u, node, "rotor_inertia", &rotor))
+        return false;
+    ratio = isfinite(ratio) ? ratio : isfinite(reduction) ? reduction : 1;
+    reduction = isfinite(reduction) ? reduction : ratio;
+    const double armature = ratio * ratio * rotor;
+    if (reduction == 0 || ratio == 0)
+        return urdf_refuse(u, node, "the transmission of joint %.60s has a reduction of 0", name);
+    if (armature < 0 || !isfinite(armature))
+        return urdf_refuse(u, node, "the rotor of joint %.60s has an inertia of %g at the joint",
+                           name, armature);
+    if (u->joint[joint].joint >= 0)
+        u->model->joint[u->joint[joint].joint].armature += armature;
+    add_motor(u, node, urdf_text(urdf_child(node, "actuator", NULL), "name"), joint, reduction);
+    return true;
+}
+
+/* Then joints that say how much can drive them and have nothing that does. */
+static bool drives(struct urdf *u)
+{
+    const bool transmissions = urdf_child(u->root, "transmission", NULL) != NULL;
+    int motors = 0;
+    EACH_IN (child, u->root, "transmission")
+        if (!transmission(u, child))
+            return false;
+    for (int i = 0; i < u->joints; i++) {
+        const struct urdf_joint *const j = &u->joint[i];
+        bool driven = j->joint < 0 || u->model->joint[j->joint].effort <= 0;
+        for (int a = 0; transmissions && a < u->model->actuators; a++)
+            driven = driven || u->model->actuator[a].joint == j->joint;
+        if (driven)
+            continue;
+        if (transmissions)
+            spatial_note(u->model, "joint %s has an effort and no <transmission>: no motor",
+                         j->name);
+        else
+            add_motor(u, j->node, j->name, i, 1);
+        motors++;
+    }
+    if (motors > 0 && !transmissions)
+        spatial_note(u->model,
+                     "no <transmission>: each joint with an effort has a motor, %d of them",
+                     motors);
+    return true;
+}
+
+/* ---- Gazebo and others ---------------------------------------------------------------------- */
+
+/* Notes are kept once each. */
+static void leave_out(struct urdf *u, const xmlNode *node)
+{
+    spatial_note(u->model, "left out, as it does not move the robot by itself: %.60s",
+                 urdf_name(node));
+}
+
+static bool of_link(struct urdf *u, const xmlNode *at, struct urdf_link *link)
+{
+    char text[SPATIAL_NAME];
+    urdf_value(at, "value", text);
+    const bool on = strcmp(text, "1") == 0 || strcasecmp(text, "true") == 0;
+    double friction = 0;
+    if (urdf_is(at, "mu1") || urdf_is(at, "mu")) {
+        if (!urdf_number(u, at, &friction))
+            return false;
+        for (int g = 0; g < u->model->geoms; g++)
+            if (u->model->geom[g].body == link->body)
+                u->model->geom[g].friction = friction;
+    } else if (urdf_is(at, "turnGravityOff") || urdf_is(at, "gravity")) {
+        link->weightless = urdf_is(at, "gravity") != on ? at : NULL;
+    } else if (!urdf_is(at, "mu2") && !urdf_is(at, "material")) {
+        leave_out(u, at);
+    }
+    return true;
+}
+
+static bool gazebo(struct urdf *u, const xmlNode *node)
+{
+    const char *const of = urdf_text(node, "reference");
+    const int link = of ? find_link(u, of) : -1, joint = of ? find_joint(u, of) : -1;
+    const int own = joint >= 0 ? u->joint[joint].joint : -1;
+    EACH_IN (child, node, NULL) {
+        const bool spring = own >= 0 && urdf_is(child, "springStiffness"),
+                   rest = own >= 0 && urdf_is(child, "springReference");
+        if (spring || rest) {
+            struct spatial_joint *const j = &u->model->joint[own];
+            if (!urdf_number(u, child, spring ? &j->stiffness : &j->spring_reference))
+                return false;
+        } else if (link >= 0) {
+            if (!of_link(u, child, &u->link[link]))
+                return false;
+        } else {
+            leave_out(u, child);
+        }
+    }
+    return true;
+}
+
+/* Gravity that acts on some of the robot only cannot be had; that on none of it is none. */
+static void weigh(struct urdf *u)
+{
+    int heavy = 0, off = 0;
+    for (int i = 0; i < u->links; i++) {
+        if (u->link[i].body < 0 || u->link[i].mass == 0)
+            u->link[i].weightless = NULL;
+        else
+            heavy++;
+        off += u->link[i].weightless != NULL;
+    }
+    for (int i = 0; off < heavy && i < u->links; i++)
+        if (u->link[i].weightless)
+            spatial_add_alien(u->model, "link without gravity", u->link[i].name,
+                              urdf_line(u->link[i].weightless), false);
+    if (off == 0 || off < heavy)
+        return;
+    u->model->gravity[2] = 0;
+    spatial_note(u->model, "no link has gravity: there is none");
+}
+
+static bool extras(struct urdf *u)
+{
+    static const char *const known[] = {"link", "joint", "transmission", "material"};
+    static const char *const couples[] = {"loop_joint", "ball_constraint", "linear_bushing_rpy",
+                                          "force_element"};
+    EACH_IN (child, u->root, NULL) {
+        bool passed = urdf_is(child, "gazebo");
+        if (passed && !gazebo(u, child))
+            return false;
+        for (int i = 0; i < 4; i++) {
+            passed = passed || urdf_is(child, known[i]);
+            if (urdf_is(child, couples[i])) {
+                const char *const name = urdf_text(child, "name");
+                spatial_add_alien(u->model, couples[i], name ? name : "", urdf_line(child), false);
+            }
+        }
+        if (!passed)
+            leave_out(u, child);
+    }
+    weigh(u);
+    return true;
+}
+
 static bool read_robot(struct urdf *u, const xmlDoc *document)
 {
-    const char *const slash = strrchr(u->path, '/'), *name;
-    if (!check_document(u, document))
-        return false;
-    name = urdf_text(u->root, "name");
-    u->model->format = "URDF";
-    name_it(u->model->file, slash ? slash + 1 : u->path);
-    name_it(u->model->title, name && *name ? name : u->model->file);
+    spatial_name(u->model->title, urdf_text(u->root, "name"));
     u->model->gravity[2] = -STANCE_GRAVITY;
-    if (!list_tree(u) || !take_tree(u) || !urdf_drives(u) || !urdf_extras(u))
+    if (!check_document(u, document) || !list_tree(u) || !take_tree(u) || !drives(u) || !extras(u))
         return false;
     if (u->turned > 0)
         spatial_note(u->model,
@@ -623,9 +664,9 @@ static bool read_robot(struct urdf *u, const xmlDoc *document)
 
 bool urdf_read(const char *path, struct spatial_model *model, stance_message *message)
 {
-    struct urdf u = {.model = model, .message = message, .path = path};
+    struct urdf u = {.model = model, .message = message};
     xmlDoc *const document = parse(path, message);
-    *model = (struct spatial_model){0};
+    spatial_begin(model, path, "URDF");
     if (!document)
         return false;
     u.root = xmlDocGetRootElement(document);

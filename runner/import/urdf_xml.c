@@ -4,24 +4,14 @@
  * is out of the plane by what was cut. An angle that is a multiple of pi/2 as far as its digits
  * tell, of which two at least stand behind the point, is taken as that.
  */
+#include "space.h"
 #include "urdf.h"
 
 #include "runner/base/problem.h"
 
-#include <math.h>
-#include <stdarg.h>
 #include <stdlib.h>
 
-void urdf_complain(const struct urdf *u, const xmlNode *at, const char *format, ...)
-{
-    char *const text = u->message->text;
-    const size_t size = sizeof u->message->text;
-    va_list arguments;
-    complain(u->message, "%s:%d: ", u->path, urdf_line(at));
-    va_start(arguments, format);
-    vsnprintf(text + strlen(text), size - strlen(text), format, arguments);
-    va_end(arguments);
-}
+#define BLANKS " \t\r\n"
 
 int urdf_line(const xmlNode *node)
 {
@@ -34,23 +24,27 @@ const char *urdf_name(const xmlNode *node)
     return colon ? colon + 1 : name;
 }
 
+bool urdf_is(const xmlNode *node, const char *name)
+{
+    return strcmp(urdf_name(node), name) == 0;
+}
+
 const xmlNode *urdf_child(const xmlNode *node, const char *name, const xmlNode *after)
 {
-    const xmlNode *child = after ? after->next : node->children;
-    while (child &&
-           (child->type != XML_ELEMENT_NODE || (name && strcmp(urdf_name(child), name) != 0)))
+    const xmlNode *child = after ? after->next : node ? node->children : NULL;
+    while (child && (child->type != XML_ELEMENT_NODE || (name && !urdf_is(child, name))))
         child = child->next;
     return child;
 }
 
 const char *urdf_text(const xmlNode *node, const char *key)
 {
-    const xmlAttr *a = node->properties;
+    const xmlAttr *a = node ? node->properties : NULL;
     while (a && strcmp((const char *)a->name, key) != 0)
         a = a->next;
-    if (!a)
-        return NULL;
-    return a->children && a->children->content ? (const char *)a->children->content : "";
+    return !a                                    ? NULL
+           : a->children && a->children->content ? (const char *)a->children->content
+                                                 : "";
 }
 
 bool urdf_need(const struct urdf *u, const xmlNode *node, const char *key, const char **text)
@@ -60,46 +54,38 @@ bool urdf_need(const struct urdf *u, const xmlNode *node, const char *key, const
            urdf_refuse(u, node, "<%s> has no %s=\"...\"", (const char *)node->name, key);
 }
 
-/* Blanks of XML, and of those who write it. */
-static const char *past_blanks(const char *at)
+bool urdf_value(const xmlNode *node, const char *key, char text[SPATIAL_NAME])
 {
-    return at + strspn(at, " \t\r\n");
-}
-
-bool urdf_value(const xmlNode *node, char text[SPATIAL_NAME])
-{
-    const char *from = urdf_text(node, "value");
-    const xmlNode *child = node->children;
+    const char *from = urdf_text(node, key);
+    const xmlNode *child = node ? node->children : NULL;
     while (child && child->type != XML_TEXT_NODE)
         child = child->next;
     if (!from)
         from = child ? (const char *)child->content : "";
-    snprintf(text, SPATIAL_NAME, "%s", past_blanks(from));
-    for (size_t end = strlen(text); end > 0 && strchr(" \t\r\n", text[end - 1]); end--)
+    spatial_name(text, from + strspn(from, BLANKS));
+    for (size_t end = strlen(text); end > 0 && strchr(BLANKS, text[end - 1]); end--)
         text[end - 1] = '\0';
     return text[0] != '\0';
 }
 
-/* ---- numbers --------------------------------------------------------------------------------- */
+/* ---- numbers -------------------------------------------------------------------------------- */
 
-/* The next number of a text, and how many digits stand behind its point; false: it is none. */
-static bool next_number(const char **at, double *value, int *digits)
+/* Numbers between blanks, and how many digits stand behind the point of each. */
+static bool read_numbers(const struct urdf *u, const xmlNode *node, const char *key,
+                         const char *text, int count, double *value, int *digits)
 {
-    char *end;
-    *at = past_blanks(*at);
-    *value = strtod(*at, &end);
-    if (end == *at || (*end && !strchr(" \t\r\n", *end)) || !isfinite(*value))
-        return false;
-    const char *const point = memchr(*at, '.', (size_t)(end - *at));
-    *digits = point ? (int)strspn(point + 1, "0123456789") : 0;
-    *at = end;
-    return true;
-}
-
-static bool no_number(const struct urdf *u, const xmlNode *node, const char *key, const char *text,
-                      int count)
-{
-    char buffer[SHOWN_SIZE];
+    const char *at = text;
+    char *end, buffer[SHOWN_SIZE];
+    int read = 0;
+    for (; read < count; read++, at = end) {
+        value[read] = strtod(at += strspn(at, BLANKS), &end);
+        if (end == at || (*end && !strchr(BLANKS, *end)) || !isfinite(value[read]))
+            break;
+        const char *const point = memchr(at, '.', (size_t)(end - at));
+        digits[read] = point ? (int)strspn(point + 1, "0123456789") : 0;
+    }
+    if (read == count && !at[strspn(at, BLANKS)])
+        return true;
     const char *const why =
         strstr(text, "${") || strstr(text, "$(") ? "is for xacro: expand the file with it first"
         : strchr(text, ',') ? "blanks, not commas, stand between numbers, and points in them"
@@ -109,32 +95,31 @@ static bool no_number(const struct urdf *u, const xmlNode *node, const char *key
                        shown(buffer, text), why);
 }
 
-static bool read_numbers(struct urdf *u, const xmlNode *node, const char *key, const char *text,
-                         int count, double *value, int *digits)
-{
-    const char *at = text;
-    for (int i = 0; i < count; i++)
-        if (!next_number(&at, &value[i], &digits[i]))
-            return no_number(u, node, key, text, count);
-    return !*past_blanks(at) || no_number(u, node, key, text, count);
-}
-
-bool urdf_numbers(struct urdf *u, const xmlNode *node, const char *key, int count, double *value)
+bool urdf_numbers(const struct urdf *u, const xmlNode *node, const char *key, int count,
+                  double *value, int must)
 {
     int digits[3];
-    const char *const text = urdf_text(node, key);
-    return !text || read_numbers(u, node, key, text, count, value, digits);
+    const char *text = urdf_text(node, key);
+    if ((must & URDF_NEEDED) && !urdf_need(u, node, key, &text))
+        return false;
+    if (text && !read_numbers(u, node, key, text, count, value, digits))
+        return false;
+    for (int i = 0; (must & URDF_POSITIVE) && i < count; i++)
+        if (value[i] < 0)
+            return urdf_refuse(u, node, "<%s %s=\"%s\">: less than nothing", urdf_name(node), key,
+                               text);
+    return true;
 }
 
-bool urdf_number(struct urdf *u, const xmlNode *node, double *value)
+bool urdf_number(const struct urdf *u, const xmlNode *node, double *value)
 {
     char text[SPATIAL_NAME];
-    int digits[1];
-    urdf_value(node, text);
-    return read_numbers(u, node, "value", text, 1, value, digits);
+    int digits;
+    urdf_value(node, "value", text);
+    return !node || read_numbers(u, node, "value", text, 1, value, &digits);
 }
 
-/* ---- places ---------------------------------------------------------------------------------- */
+/* ---- places --------------------------------------------------------------------------------- */
 
 static double right_angle(struct urdf *u, double angle, int digits)
 {
@@ -147,43 +132,24 @@ static double right_angle(struct urdf *u, double angle, int digits)
     return turn;
 }
 
-/* Of right angles without rounding, which else is seen in every number that follows. */
-static void sine_cosine(double angle, double *sine, double *cosine)
-{
-    static const double of[] = {0, 1, 0, -1};
-    const double quarters = round(angle / M_PI_2);
-    const bool right = angle == quarters * M_PI_2 && fabs(quarters) < 100;
-    const unsigned k = right ? (unsigned)(int)quarters : 0;
-    *sine = right ? of[k % 4] : sin(angle);
-    *cosine = right ? of[(k + 1) % 4] : cos(angle);
-}
-
-/* Rz(yaw) Ry(pitch) Rx(roll). */
-static void rotation_of(const double rpy[3], double r[3][3])
-{
-    double s[3], c[3];
-    for (int i = 0; i < 3; i++)
-        sine_cosine(rpy[i], &s[i], &c[i]);
-    const double of[3][3] = {
-        {c[2] * c[1], c[2] * s[1] * s[0] - s[2] * c[0], c[2] * s[1] * c[0] + s[2] * s[0]},
-        {s[2] * c[1], s[2] * s[1] * s[0] + c[2] * c[0], s[2] * s[1] * c[0] - c[2] * s[0]},
-        {-s[1], c[1] * s[0], c[1] * c[0]}};
-    for (int i = 0; i < 9; i++)
-        r[i / 3][i % 3] = of[i / 3][i % 3] + 0.0; /* no -0 */
-}
-
 bool urdf_origin(struct urdf *u, const xmlNode *of, double at[3], double rotation[3][3])
 {
     const xmlNode *const origin = urdf_child(of, "origin", NULL);
-    const char *const turned = origin ? urdf_text(origin, "rpy") : NULL;
-    double rpy[3] = {0};
+    const char *const turned = urdf_text(origin, "rpy");
+    static const double axes[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    double rpy[3] = {0}, turn[3][3];
     int digits[3] = {0};
     at[0] = at[1] = at[2] = 0;
-    if ((origin && !urdf_numbers(u, origin, "xyz", 3, at)) ||
+    memcpy(rotation, axes, sizeof axes);
+    if (!urdf_numbers(u, origin, "xyz", 3, at, 0) ||
         (turned && !read_numbers(u, origin, "rpy", turned, 3, rpy, digits)))
         return false;
-    for (int i = 0; i < 3; i++)
-        rpy[i] = right_angle(u, rpy[i], digits[i]);
-    rotation_of(rpy, rotation);
+    for (int i = 0; i < 3; i++) { /* Rz(yaw) Ry(pitch) Rx(roll) */
+        space_rotation(axes[i], right_angle(u, rpy[i], digits[i]), turn);
+        space_product(turn, rotation, rotation);
+    }
+    for (int i = 0; i < 9; i++) /* what right angles have left of a zero */
+        if (fabs(rotation[i / 3][i % 3]) < 1e-15)
+            rotation[i / 3][i % 3] = 0;
     return true;
 }
