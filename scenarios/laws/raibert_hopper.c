@@ -15,19 +15,20 @@
  * Angles grow counter-clockwise: a leg at the angle b against the vertical has its foot ahead by
  * its length times sin(b).
  */
-#define PARAMETERS(X) \
-    X(speed, 0, "m/s", -10, 10, "to hop at") \
-    X(height, 1, "m", 0, 10, "of the hip, to hop to") \
-    X(placement, 0.05, "s", -10, 10, "how much further ahead the foot lands for too much speed") \
-    X(swing, 70, "N m", 0, 1e5, "of the leg to its angle in flight") \
-    X(swing_rate, 10, "N m s", 0, 1e5, "brakes it") \
-    X(attitude, 300, "N m/rad", 0, 1e5, "of the body to upright in stance") \
-    X(attitude_rate, 30, "N m s/rad", 0, 1e5, "brakes it") \
-    X(grip, 1000, "N", 0, 1e6, "most of both for each metre that the leg is shortened: it slips less") \
-    X(thrust, 48, "N", 0, 1e5, "of the leg from its shortest on") \
-    X(lift, 400, "N/m", 0, 1e5, "more of it where the last hop was too low") \
-    X(stance, 0.2, "s", 0, 10, "what the first stance is taken to last") \
-    X(travel, 0.3, "m", 0, 10, "how long the sliding part is at most") \
+#define PARAMETERS(X)                                                                              \
+    X(speed, 0, "m/s", -10, 10, "to hop at")                                                       \
+    X(height, 1, "m", 0, 10, "of the hip, to hop to")                                              \
+    X(placement, 0.05, "s", -10, 10, "how much further ahead the foot lands for too much speed")   \
+    X(swing, 70, "N m", 0, 1e5, "of the leg to its angle in flight")                               \
+    X(swing_rate, 10, "N m s", 0, 1e5, "brakes it")                                                \
+    X(attitude, 300, "N m/rad", 0, 1e5, "of the body to upright in stance")                        \
+    X(attitude_rate, 30, "N m s/rad", 0, 1e5, "brakes it")                                         \
+    X(grip, 1000, "N", 0, 1e6,                                                                     \
+      "most of both for each metre that the leg is shortened: it slips less")                      \
+    X(thrust, 48, "N", 0, 1e5, "of the leg from its shortest on")                                  \
+    X(lift, 400, "N/m", 0, 1e5, "more of it where the last hop was too low")                       \
+    X(stance, 0.2, "s", 0, 10, "what the first stance is taken to last")                           \
+    X(travel, 0.3, "m", 0, 10, "how long the sliding part is at most")                             \
     X(socket, 0.4, "m", 0, 10, "from the hip to where the foot begins to slide")
 #define MEMORY(X) X(phase) X(landed) X(lasted) X(apex)
 #include "stance_law.h"

@@ -9,28 +9,29 @@
  *
  *     a = stiffness (goal - q2) - damping q2'.
  *
- * His goal is the arctangent of q1', which a sampled law answers to at once: it pumps by bending the
- * legs where the swing goes. Here it is the momentum about the bar, p = m11 q1' + m12 q2', which
- * gravity alone changes, and there is less to it the nearer the energy E is to that of standing up:
+ * His goal is the arctangent of q1', which a sampled law answers to at once: it pumps by bending
+ * the legs where the swing goes. Here it is the momentum about the bar, p = m11 q1' + m12 q2',
+ * which gravity alone changes, and there is less to it the nearer the energy E is to that of
+ * standing up:
  *
  *     goal = bend tanh(gain (E_up - E) p),
  *
- * so that the robot gets there slowly, with straight legs, to be caught. Upright is at 0, and not at
- * a turn from there: beyond hanging, E_up is taken for `shy` less than it is.
+ * so that the robot gets there slowly, with straight legs, to be caught. Upright is at 0, and not
+ * at a turn from there: beyond hanging, E_up is taken for `shy` less than it is.
  */
-#define PARAMETERS(X) \
-    X(bend, 1.2, "rad", 0, 3, "how far the legs go ahead of the swing") \
-    X(gain, 0.04, "1/(J N m s)", 0, 100, "how soon they go as far as that") \
-    X(stiffness, 80, "1/s^2", 0, 1e5, "of the legs towards their goal") \
-    X(damping, 20, "1/s", 0, 1e4, "of the legs") \
-    X(shy, 0.5, "J", 0, 1e3, "less than upright where the swing leads a turn away from it") \
-    X(arms_mass, 1, "kg", 0, 1e3, "what the law believes of the robot: the first link") \
-    X(arms_length, 1, "m", 0, 1e2, "hands to waist") \
-    X(arms_centre, 0.5, "m", 0, 1e2, "hands to centre of mass") \
-    X(arms_inertia, 0.08333, "kg m^2", 0, 1e3, "about that") \
-    X(legs_mass, 1, "kg", 0, 1e3, "the second link") \
-    X(legs_centre, 0.5, "m", 0, 1e2, "waist to centre of mass") \
-    X(legs_inertia, 0.08333, "kg m^2", 0, 1e3, "about that") \
+#define PARAMETERS(X)                                                                              \
+    X(bend, 1.2, "rad", 0, 3, "how far the legs go ahead of the swing")                            \
+    X(gain, 0.04, "1/(J N m s)", 0, 100, "how soon they go as far as that")                        \
+    X(stiffness, 80, "1/s^2", 0, 1e5, "of the legs towards their goal")                            \
+    X(damping, 20, "1/s", 0, 1e4, "of the legs")                                                   \
+    X(shy, 0.5, "J", 0, 1e3, "less than upright where the swing leads a turn away from it")        \
+    X(arms_mass, 1, "kg", 0, 1e3, "what the law believes of the robot: the first link")            \
+    X(arms_length, 1, "m", 0, 1e2, "hands to waist")                                               \
+    X(arms_centre, 0.5, "m", 0, 1e2, "hands to centre of mass")                                    \
+    X(arms_inertia, 0.08333, "kg m^2", 0, 1e3, "about that")                                       \
+    X(legs_mass, 1, "kg", 0, 1e3, "the second link")                                               \
+    X(legs_centre, 0.5, "m", 0, 1e2, "waist to centre of mass")                                    \
+    X(legs_inertia, 0.08333, "kg m^2", 0, 1e3, "about that")                                       \
     X(gravity, 9.81, "m/s^2", 0, 1e3, "of the world that it believes in")
 #include "stance_law.h"
 
