@@ -105,7 +105,7 @@ assert network.mean() > 0.37 and 0.2 < linear.mean() < 0.26, (network.mean(), li
 END
 expect "a network of two hidden units, made anew" 0 sh -c "cp '$laws'/network.* '$laws'/train_network.py . &&
     '$python' train_network.py '$stance' 1 2"
-grep -q '^from 0\.2' log
+grep -q '^first: 0\.2' log
 result $? "... begins as the linear law"
 expect "weights of another network are none" 1 "$stance" run "$laws/network.yaml" --set 'sweep={}' \
     --set 'controller.data=[2, 1, 2, 1, 1, 0, 0, 0, 0, 0]' -o wrong.h5

@@ -8,7 +8,7 @@ are the two rows of gains that `stance design` prints, over the largest torque t
 take no part yet. Then a separable CMA evolution strategy (Ros and Hansen, PPSN X, 2008, LNCS 5199, 296) varies all
 weights: the networks of a generation stand in one file, and `controller.network`, swept, is which of them acts, so
 that all are simulated by one run, from the same starts, others in each generation. The mean is what is kept, and
-the best of the means on starts of its own is written.
+the best of the means by starts of their own is written.
 """
 import json
 import subprocess
@@ -20,7 +20,7 @@ import h5py
 import numpy as np
 
 STANCE = sys.argv[1] if len(sys.argv) > 1 else "stance"
-GENERATIONS = int(sys.argv[2]) if len(sys.argv) > 2 else 160
+GENERATIONS = int(sys.argv[2]) if len(sys.argv) > 2 else 170
 HIDDEN = int(sys.argv[3]) if len(sys.argv) > 3 else 8
 HERE = Path(__file__).resolve().parent
 UNIT = np.array([0.1, 0.2, 0.2, 0.5, 1, 1])  # rad, rad/s: half the box of the starts
@@ -68,38 +68,33 @@ def first():
     return np.concatenate([hidden.ravel(), out.ravel()])
 
 
-def evolve(mean, sigma, starts, generations):
-    """Separable CMA: the best of the means, each compared with the others by starts that are no generation's."""
-    n, offspring, parents = len(mean), 24, 12
-    weight = np.log(parents + 0.5) - np.log(np.arange(1, parents + 1))
-    weight /= weight.sum()
-    mu = 1 / (weight**2).sum()
-    c_sigma, c_c = (mu + 2) / (n + mu + 5), 4 / (n + 4)
-    d_sigma = 1 + c_sigma + 2 * max(0, np.sqrt((mu - 1) / (n + 1)) - 1)
-    rank_mu = min(1, (2 * mu - 1) / ((n + 2) ** 2 + mu))
-    c_cov = min(1, (n + 2) / 3 * (2 / mu / (n + 2**0.5) ** 2 + (1 - 1 / mu) * rank_mu))
-    variance, path_sigma, path_c = np.ones(n), np.zeros(n), np.zeros(n)
-    expected = np.sqrt(n) * (1 - 1 / (4 * n) + 1 / (21 * n * n))
-    best, best_share = mean, shares([mean], 4096, 0)[0]
-    print(f"from {best_share:.3f} by {starts} starts", flush=True)
-    for generation in range(1, generations + 1):
-        z = random.normal(size=(offspring, n))
-        step = z * np.sqrt(variance)
-        order = np.argsort(-shares(mean + sigma * step, starts, starts + generation), kind="stable")[:parents]
-        z, step = weight @ z[order], weight @ step[order]
-        mean = mean + sigma * step
-        path_sigma = (1 - c_sigma) * path_sigma + np.sqrt(c_sigma * (2 - c_sigma) * mu) * z
-        path_c = (1 - c_c) * path_c + np.sqrt(c_c * (2 - c_c) * mu) * step
-        variance = (1 - c_cov) * variance + c_cov / mu * path_c**2 + c_cov * (1 - 1 / mu) * step**2
-        sigma *= np.exp(c_sigma / d_sigma * (np.linalg.norm(path_sigma) / expected - 1))
-        if generation % 10 == 0:
-            share = shares([mean], 4096, 0)[0]
-            print(f"{generation}: {share:.3f}, sigma {sigma:.3g}", flush=True)
-            if share > best_share:
-                best, best_share = mean, share
-                write(HERE / "network.txt", [best])
-    return best
-
-
-# Coarsely, then by more starts, which tell finer differences.
-evolve(evolve(first(), 0.1, 256, GENERATIONS), 0.03, 1024, GENERATIONS // 4)
+mean = first()
+n, offspring, parents = len(mean), 24, 12
+weight = np.log(parents + 0.5) - np.log(np.arange(1, parents + 1))
+weight /= weight.sum()
+mu = 1 / (weight**2).sum()
+c_sigma, c_c = (mu + 2) / (n + mu + 5), 4 / (n + 4)
+d_sigma = 1 + c_sigma + 2 * max(0, np.sqrt((mu - 1) / (n + 1)) - 1)
+rank_mu = min(1, (2 * mu - 1) / ((n + 2) ** 2 + mu))
+c_cov = min(1, (n + 2) / 3 * (2 / mu / (n + 2**0.5) ** 2 + (1 - 1 / mu) * rank_mu))
+sigma, variance, path_sigma, path_c = 0.1, np.ones(n), np.zeros(n), np.zeros(n)
+expected = np.sqrt(n) * (1 - 1 / (4 * n) + 1 / (21 * n * n))
+best_share = shares([mean], 4096, 0)[0]
+print(f"first: {best_share:.3f}", flush=True)
+for generation in range(1, GENERATIONS + 1):
+    z = random.normal(size=(offspring, n))
+    step = z * np.sqrt(variance)
+    starts = 256 if generation < 160 else 512
+    order = np.argsort(-shares(mean + sigma * step, starts, generation), kind="stable")[:parents]
+    z, step = weight @ z[order], weight @ step[order]
+    mean = mean + sigma * step
+    path_sigma = (1 - c_sigma) * path_sigma + np.sqrt(c_sigma * (2 - c_sigma) * mu) * z
+    path_c = (1 - c_c) * path_c + np.sqrt(c_c * (2 - c_c) * mu) * step
+    variance = (1 - c_cov) * variance + c_cov / mu * path_c**2 + c_cov * (1 - 1 / mu) * step**2
+    sigma *= np.exp(c_sigma / d_sigma * (np.linalg.norm(path_sigma) / expected - 1))
+    if generation % 10 == 0:
+        share = shares([mean], 4096, 0)[0]
+        print(f"{generation}: {share:.3f}, sigma {sigma:.3g}", flush=True)
+        if share > best_share:
+            best_share = share
+            write(HERE / "network.txt", [mean])
