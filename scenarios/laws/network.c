@@ -16,9 +16,12 @@ enum { INPUTS = 6, MOST = 64, HEAD = 3 };
 void law(const struct sample *now, const struct parameters *is, struct memory *mine,
          struct torques *out)
 {
-    const double x[INPUTS] = {
-        now->q.theta - now->target.theta, now->q.q1 - now->target.q1, now->q.q2 - now->target.q2,
-        now->v.theta, now->v.q1, now->v.q2};
+    const double x[INPUTS] = {now->q.theta - now->target.theta,
+                              now->q.q1 - now->target.q1,
+                              now->q.q2 - now->target.q2,
+                              now->v.theta,
+                              now->v.q1,
+                              now->v.q2};
     const int hidden = (int)data[1], outputs = (int)data[2], row = INPUTS + 1;
     const int at = HEAD + INPUTS + (int)is->network * hidden * (row + outputs);
     double value[MOST];
