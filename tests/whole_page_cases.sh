@@ -47,6 +47,12 @@ done
 sets=() && page flight controllers/decoupling_flight
 page log basin_one_foot --set 'sweep.grid=[{path: ground.friction, from: 0.01, to: 1, count: 9, spacing: log}, {path: controller.noise, values: [0, 0.3]}]'
 page single balance_recovers
+# Laws of the user's own, as modules beside the engine.
+export XDG_CONFIG_HOME=$scratch/config
+mkdir -p config
+sets=(--trust) && grid 5 5 && page swing laws/swing_up "${sets[@]}" --set method.name=capturing
+sets=(--trust) && page hopper laws/raibert_hopper "${sets[@]}" --set stop.time=4
+sets=(--trust) && page network laws/network "${sets[@]}" --set sweep.sample.count=32 --set stop.time=4
 # Changes in a page are changes by --set. A designed controller stays what it was while its model does.
 study() { study=$1 && sets=() && grid 6 6 && page "base-$(basename "$study")" "$study" "${sets[@]}" && base=${pages[-1]}; }
 change() { # PATH=VALUE ...

@@ -4,6 +4,7 @@
 
 #include "runner/base/message.h"
 #include "runner/base/sandbox.h"
+#include "runner/plan/asked.h"
 #include "runner/plan/law.h"
 #include "runner/ranks/parallel.h"
 
@@ -206,6 +207,19 @@ static bool find_case(const struct results *r, const struct request *request, si
     return true;
 }
 
+/* A law of the user's own, which is in the file, is to be trusted. */
+static bool check_law(const struct results *r, const struct request *request)
+{
+    struct scenario *const s = calloc(1, sizeof *s);
+    bool good = request->trust || !s || !results_scenario(r, s);
+    if (!good) {
+        good = asked_law(s);
+        scenario_free(s);
+    }
+    free(s);
+    return good;
+}
+
 /* A case has its own values of what is varied: --set would change nothing. */
 static bool check_sets(const struct results *r, const struct request *request)
 {
@@ -338,7 +352,7 @@ static int replay(const struct request *request, struct look *look, const struct
     const char *const where = look_directory(look, request->file, directory, sizeof directory);
     int code = EXIT_DONE;
     snprintf(stem, sizeof stem, "%.200s", r->name);
-    if (!check_sets(r, request))
+    if (!check_sets(r, request) || !check_law(r, request))
         return EXIT_USAGE;
     for (size_t k = 0; k < count; k++) {
         if (!find_case(r, request, k, &replays[k].index))

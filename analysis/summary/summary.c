@@ -14,9 +14,11 @@
 
 enum results_kind summary_judged(const struct scenario *s)
 {
-    return s->base.walk_steps > 0             ? RESULTS_WALKS
-           : scenario_law(&s->base)->designed ? RESULTS_STABILISED
-                                              : RESULTS_RESTED;
+    return s->base.walk_steps > 0 ? RESULTS_WALKS
+           : scenario_law(&s->base)->designed ||
+                   (scenario_law(&s->base)->program && !s->base.state_given)
+               ? RESULTS_STABILISED
+               : RESULTS_RESTED;
 }
 
 double summary_share(const struct summary *summary, const struct statistics_counts *counts)

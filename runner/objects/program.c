@@ -96,8 +96,11 @@ static const double *useless(const struct program *p, const stance_case *c)
 {
     if (!p->said)
         cache_say("the law %s gives torques that are not finite in case %llu, or others: such "
-                  "cases fail",
-                  p->file, (unsigned long long)case_of(p, c));
+                  "cases fail%s",
+                  p->file, (unsigned long long)case_of(p, c),
+                  c->has_target ? ""
+                                : "; now->target and now->rest are NAN, as the scenario begins at "
+                                  "no equilibrium");
     ((struct program *)(uintptr_t)p)->said = true;
     return NULL;
 }
@@ -346,10 +349,11 @@ static bool calls_known(const struct image *image, const Elf64_Shdr *symbols, co
         if (symbol.st_shndx == SHN_UNDEF && strcmp(name, "law") == 0)
             return complain(message, "%.80s: has no function law (stance_law.h says which)", file);
         if (symbol.st_shndx == SHN_UNDEF && !may_call(name))
-            return complain(message,
-                            "%.80s: calls %.40s, which is none of the functions of stance_law.h "
-                            "(sin, cos, exp, tanh, sqrt, fabs, fma, fmin, fmax, floor, copysign)",
-                            file, name);
+            return complain(
+                message,
+                "%.80s: calls %.40s, which is none of the functions of stance_law.h "
+                "(sin, cos, tan, atan2, exp, tanh, sqrt, fabs, fma, fmin, fmax, floor ...)",
+                file, name);
     }
     return true;
 }

@@ -336,7 +336,9 @@ bool schema_build(struct schema *schema, const stance_scene *scene, const struct
             schema->far_laws[schema->far_law_count++] = (*is)->name;
     }
     for (size_t i = 0; i < schema_row_count; i++)
-        if (!add_row(schema, &schema_rows[i]))
+        if (!add_row(schema, &schema_rows[i]) ||
+            (law && strcmp(schema_rows[i].field.path, "controller.data") == 0 &&
+             !law_file_rows(schema, law)))
             return false;
-    return !law || law_file_rows(schema, law);
+    return true;
 }

@@ -223,6 +223,39 @@ static bool holds_maps(const struct tree_node *node)
     return node->kind == TREE_LIST && node->count > 0 && node->item[0]->kind == TREE_MAP;
 }
 
+/* Whether a text of several lines reads back as itself as a block. */
+static bool suits_block(const struct tree_node *node)
+{
+    const char *s = node->kind == TREE_SCALAR && node->quoted ? node->text : "";
+    size_t left = strlen(s);
+    const bool lines = strchr(s, '\n') != NULL;
+    while (left > 0) {
+        uint32_t c = 0;
+        const size_t n = utf8_letter(s, left, &c);
+        if (n == 0 || (c != '\n' && c != '\t' &&
+                       (c < 0x20 || !printable(c) || c == 0x85 || c == 0x2028 || c == 0x2029)))
+            return false;
+        s += n;
+        left -= n;
+    }
+    return lines;
+}
+
+/* Its indentation is said, as it may begin with blanks; "-", "+": it ends in none, or in more than
+ * one line end. */
+static void write_block(struct writer *w, const char *text, int indent)
+{
+    const size_t length = strlen(text);
+    const bool ends = text[length - 1] == '\n',
+               more = ends && length > 1 && text[length - 2] == '\n';
+    fprintf(w->out, "|2%s", !ends ? "-" : more || length == 1 ? "+" : "");
+    for (const char *line = text; *line;) {
+        const size_t n = strcspn(line, "\n");
+        fprintf(w->out, "\n%*s%.*s", n > 0 ? indent : 0, "", (int)n, line);
+        line += n + (line[n] == '\n');
+    }
+}
+
 /* Mappings as blocks, one key a line; mappings inside lists on one line. */
 static void write_map(struct writer *w, const struct tree_node *map, int indent)
 {
@@ -241,6 +274,9 @@ static void write_map(struct writer *w, const struct tree_node *map, int indent)
                 put(w, "- ");
                 write_flow(w, item->item[k], indent + 2);
             }
+        } else if (suits_block(item)) {
+            put(w, " ");
+            write_block(w, item->text, indent + 2);
         } else {
             put(w, " ");
             write_flow(w, item, indent + 2);

@@ -26,8 +26,8 @@
  * are what moves the robot in itself: all but the place of a free root. Angles rad, places m,
  * torques N m, forces of what slides N.
  *
- * sin, cos, exp, tanh, sqrt, fabs, fma, fmin, fmax, floor and copysign compute the same bits on
- * every machine, and there are no others.
+ * sin, cos, tan, asin, acos, atan, atan2, exp, tanh, sqrt, fabs, fma, fmin, fmax, floor and
+ * copysign compute the same bits on every machine, and there are no others.
  */
 #ifndef STANCE_LAW_H
 #define STANCE_LAW_H
@@ -102,6 +102,11 @@ void law(const struct sample *now, const struct parameters *is, struct memory *m
 
 #define sin law_sin
 #define cos law_cos
+#define tan law_tan
+#define asin law_asin
+#define acos law_acos
+#define atan law_atan
+#define atan2 law_atan2
 #define exp law_exp
 #define tanh law_tanh
 #define fma law_fma
@@ -110,6 +115,11 @@ void law(const struct sample *now, const struct parameters *is, struct memory *m
 #define floor law_floor
 double law_sin(double x);
 double law_cos(double x);
+double law_tan(double x);
+double law_asin(double x);
+double law_acos(double x);
+double law_atan(double x);
+double law_atan2(double y, double x);
 double law_exp(double x);
 double law_tanh(double x);
 double law_floor(double x);
