@@ -420,6 +420,16 @@ check('a walker: followed along the ground, its footfalls told; answers of steps
     assert(command.includes('--set ground.slope=0.03'), command);
   }));
 
+check('a law of one\'s own plays; its parameters are changed like others', () =>
+  on('law.html', { motion: false }, async (p) => {
+    await p.until(played);
+    same(await p.evaluate(badges), 'identical to the file', 'badge');
+    await p.until(fields);
+    await p.set(field('controller.stiffness'), '30');
+    await p.until(`document.querySelectorAll('#case-list .badge').length === 2`);
+    same(await p.evaluate(badges), 'parameters changed|identical to the file', 'badges');
+  }));
+
 check('a case that is not what the file says is found out', async () => {
   withHead('single.html', 'other.html', (h) => ({ ...h, wire: h.wire.replace('12:torque_limits2:10', '12:torque_limits1:5') }));
   await on('other.html', { motion: false }, async (p) => {

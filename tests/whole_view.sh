@@ -25,6 +25,22 @@ make_page tiny basin_one_foot.yaml --set 'sweep={grid: [{path: initial.offset.vt
 make_page delays controllers/delay.yaml --set 'sweep={grid: [{path: initial.offset.theta, from: -0.1, to: 0.1, count: 9}, {path: controller.delay, from: 0, to: 2, count: 3}]}'
 make_page pairs basin_one_foot.yaml --set 'sweep={grid: [{paths: [method.name, method.step], values: [[implicit, 0.002], [lagrange, 0.001]]}, {path: initial.offset.q1, from: -0.1, to: 0.1, count: 5}, {path: controller.torque_limit, values: [none, 5]}]}'
 make_page bare basin_one_foot.yaml --set 'sweep.grid[0].count=9' --set 'sweep.grid[1].count=9' --set 'record={answers: [end_time]}'
+# A law of the user's own; a page made where no clang compiles it.
+cat >spring.c <<'END'
+#define PARAMETERS(X) X(stiffness, 20, "N m/rad", 0, 100, "of both legs")
+#define MEMORY(X) X(calls)
+#include "stance_law.h"
+void law(const struct sample *now, const struct parameters *is, struct memory *mine, struct torques *out)
+{
+    mine->calls += 1;
+    out->hip1 = -is->stiffness * sin(now->q.q1 - now->target.q1) - now->v.q1 + now->rest.hip1;
+    out->hip2 = -is->stiffness * tanh(now->q.q2 - now->target.q2) - now->v.q2 + now->rest.hip2;
+}
+END
+grep -v -e design: -e poles: -e kind: "$shipped/balance_recovers.yaml" | sed 's/^controller:/&\n  kind: program\n  file: spring.c/' >law.yaml
+export XDG_CONFIG_HOME=$scratch/config
+mkdir config
+"$stance" run --trust law.yaml -o law.h5 >/dev/null && "$stance" view law.h5 -o law.html >/dev/null
 # The first half by one scenario, the other by another.
 few=(--set 'sweep.grid[0].count=12' --set 'sweep.grid[1].count=12')
 "$stance" run "$shipped/basin_one_foot.yaml" "${few[@]}" -o scenarios.h5 >/dev/null 2>&1
