@@ -315,8 +315,11 @@ static void clean_up(struct replay *replay)
         plot_case_free(&replay->c);
     if (replay->opened)
         results_close(&replay->r);
+    char lock[sizeof replay->file + 8];
+    snprintf(lock, sizeof lock, "%s.lock", replay->file);
     unlink(replay->scenario);
     unlink(replay->file);
+    unlink(lock);
     if (replay->directory[0])
         rmdir(replay->directory);
 }

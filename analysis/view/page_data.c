@@ -145,7 +145,8 @@ static bool put_stored(struct page *p)
 static bool put_law(struct page *p)
 {
     const struct law_file *const law = &p->scenario.law;
-    const struct program_text text = {law->name, law->source, law->data, law->data_count, 1};
+    const struct program_text text = {
+        .file = law->name, .source = law->source, .data = law->data, .count = law->data_count};
     struct image image;
     stance_message why;
     if (!law->source)

@@ -21,6 +21,7 @@
 /* What the object exports: as in stance_law.h. */
 struct law_object {
     unsigned long sample, parameters, memory, torques; /* bytes */
+    const char *names;                                 /* of parameters: "a;b[2];" */
     void (*law)(const double *now, const double *is, double *mine, double *out);
 };
 
@@ -117,7 +118,7 @@ static const double *act(const stance_program *program, const stance_case *c, do
     for (int i = 0; i < p->torques; i++)
         sum += out[i] - out[i];
     if (!guarded(p, sample))
-        crash_law_fault(p->file, " wrote beyond what is its own", case_of(p, c));
+        crash_law_fault(p->file, " wrote beyond what is its own", p->watch->index);
     return sum == 0 ? out : useless(p, c);
 }
 
@@ -129,7 +130,9 @@ static void name_in_c(const char *name, char text[STANCE_NAME + 8])
     static const char words[] =
         " auto break case char const continue default do double else enum extern float for goto if "
         "inline int long register restrict return short signed sizeof static struct switch typedef "
-        "union unsigned void volatile while all asm typeof ";
+        "union unsigned void volatile while all asm typeof sin cos tan asin acos atan atan2 exp "
+        "tanh "
+        "fma fmin fmax floor data NAN INFINITY M_PI M_PI_2 M_PI_4 M_E ";
     char search[STANCE_NAME + 2];
     size_t n = 0;
     for (; n < STANCE_NAME && name[n]; n++) {
@@ -246,7 +249,8 @@ void program_hash(const char *source, char hash[CHECKSUM_SHA256_TEXT])
 static bool name_it(const char *source, const char *names, const struct compiler *compiler,
                     char name[CACHE_NAME], struct image_label *label)
 {
-    const char *const part[] = {source, names, law_flags(compiler), compiler_flags(law_isa())};
+    const char *const part[] = {source, names, LAW_FLAGS_GCC, LAW_FLAGS_CLANG,
+                                compiler_flags(law_isa())};
     char *all = NULL, hash[CHECKSUM_SHA256_TEXT];
     size_t size, embedded;
     const char *const engine = sources(&embedded);
@@ -358,11 +362,22 @@ static bool calls_known(const struct image *image, const Elf64_Shdr *symbols, co
     return true;
 }
 
+/* Nothing runs when it is loaded or given back. */
+static bool begins_quietly(const struct image *image, const Elf64_Shdr *dynamic)
+{
+    for (size_t i = 0; i < dynamic->sh_size / sizeof(Elf64_Dyn); i++) {
+        Elf64_Dyn entry;
+        memcpy(&entry, image->bytes + dynamic->sh_offset + i * sizeof entry, sizeof entry);
+        if (entry.d_tag == DT_INIT || entry.d_tag == DT_FINI)
+            return false;
+    }
+    return true;
+}
+
 /* Nothing outlives a call, and nothing is called that is not there. */
 static bool look_into(const struct image *image, const char *file, stance_message *message)
 {
-    static const char *const lasting[] = {".data", ".bss", ".tdata", ".tbss"};
-    static const char *const early[] = {".init_array", ".fini_array", ".ctors", ".dtors"};
+    static const char *const linkers[] = {".dynamic", ".got", ".got.plt", ".data.rel.ro"};
     Elf64_Ehdr head = {0};
     Elf64_Shdr names, is;
     if (image->size > sizeof head)
@@ -373,18 +388,18 @@ static bool look_into(const struct image *image, const char *file, stance_messag
         if (!section(image, i, &is))
             return complain(message, "%.80s: not compiled to a whole ELF file", file);
         const char *const name = text_at(image, &names, is.sh_name);
-        for (size_t k = 0; k < sizeof lasting / sizeof *lasting; k++)
-            if (is.sh_size > 0 && strcmp(name, lasting[k]) == 0)
-                return complain(message,
-                                "%.80s: has variables that outlive a call of law (static, or "
-                                "outside functions): make them const, or MEMORY",
-                                file);
-        for (size_t k = 0; k < sizeof early / sizeof *early; k++)
-            if (is.sh_size > 0 && strcmp(name, early[k]) == 0)
-                return complain(message,
-                                "%.80s: has constructors or destructors: law alone is "
-                                "called",
-                                file);
+        bool lasts = (is.sh_flags & SHF_WRITE) && is.sh_size > 0;
+        for (size_t k = 0; k < sizeof linkers / sizeof *linkers; k++)
+            lasts = lasts && strncmp(name, linkers[k], strlen(linkers[k])) != 0;
+        if (is.sh_type == SHT_INIT_ARRAY || is.sh_type == SHT_FINI_ARRAY ||
+            (is.sh_type == SHT_DYNAMIC && !begins_quietly(image, &is)))
+            return complain(message, "%.80s: has constructors or destructors: law alone is called",
+                            file);
+        if (lasts)
+            return complain(message,
+                            "%.80s: has variables that outlive a call of law (static, or outside "
+                            "functions): make them const, or MEMORY",
+                            file);
         if (is.sh_type == SHT_DYNSYM && !calls_known(image, &is, file, message))
             return false;
     }
@@ -401,16 +416,18 @@ static bool found(const struct program_text *text, const char *source, const cha
     struct cache cache;
     stance_message unkept;
     char name[CACHE_NAME];
-    if (!compiler_find(&compiler, message)) {
-        const stance_message why = *message;
-        return complain(message, "%.80s: %.140s", text->file, why.text);
-    }
+    const bool compiles = compiler_find(&compiler, message);
+    const stance_message why = *message;
     if (!name_it(source, names, &compiler, name, &label))
         return no_memory(message);
     if (!cache_open(&cache, false, message))
         return false;
-    bool good = cache_find(&cache, name, false, image);
-    if (!good) {
+    if (!compiles) /* any compiler's does */
+        name[strlen("program-") + 32] = '\0';
+    bool good = cache_find(&cache, name, !compiles, image);
+    if (!good && !compiles) {
+        complain(message, "%.80s: %.140s", text->file, why.text);
+    } else if (!good) {
         good = compile(text, source, names, &compiler, law_isa(), law_flags(&compiler), image,
                        message) &&
                look_into(image, text->file, message) &&
@@ -423,7 +440,7 @@ static bool found(const struct program_text *text, const char *source, const cha
 }
 
 /* What the object says of itself against what the scenario knows. */
-static bool take(struct program *p, const stance_scene *scene, size_t numbers,
+static bool take(struct program *p, const stance_scene *scene, size_t numbers, const char *names,
                  stance_message *message)
 {
     p->object = dlsym(p->library, "stance_law_object");
@@ -438,11 +455,12 @@ static bool take(struct program *p, const stance_scene *scene, size_t numbers,
     if (p->object->sample != (size_t)p->sample * sizeof(double) ||
         p->object->torques != (size_t)p->torques * sizeof(double))
         return complain(message, "%.80s: was not compiled for this robot", p->file);
-    if (p->object->parameters != numbers * sizeof(double))
-        return complain(message,
-                        "%.80s: its PARAMETERS are %lu numbers to the compiler and %zu to the "
-                        "scenario: they must not depend on other macros",
-                        p->file, p->object->parameters / (unsigned long)sizeof(double), numbers);
+    if (p->object->parameters != numbers * sizeof(double) || strcmp(p->object->names, names) != 0)
+        return complain(
+            message,
+            "%.60s: its PARAMETERS are %.60s to the compiler and %.60s to the scenario: they "
+            "must not depend on other macros or on #if",
+            p->file, p->object->names[0] ? p->object->names : "none", names[0] ? names : "none");
     return true;
 }
 
@@ -460,7 +478,7 @@ stance_program *program_load(const struct program_text *text, const stance_scene
         snprintf(p->file, sizeof p->file, "%s", text->file);
         good = found(text, source, names, &image, message) &&
                load_library(&image, &p->library, &p->descriptor, message) &&
-               take(p, scene, numbers, message);
+               take(p, scene, numbers, text->parameters, message);
         p->watch = good ? crash_law_watch() : NULL;
     }
     image_free(&image);

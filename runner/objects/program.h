@@ -17,9 +17,10 @@
 #include "runner/base/checksum.h"
 
 struct program_text {
-    const char *file;   /* its name, for messages */
-    const char *source; /* C */
-    const double *data; /* [count] */
+    const char *file;       /* its name, for messages */
+    const char *source;     /* C */
+    const char *parameters; /* names that its scenario knows: "a;b[2];" */
+    const double *data;     /* [count] */
     size_t count;
     uint64_t samples; /* points of sweep.sample, 1 without: names cases */
 };

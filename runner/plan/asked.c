@@ -28,10 +28,9 @@ bool asked_law(const struct scenario *s)
     char hash[CHECKSUM_SHA256_TEXT];
     if (!s->law.source || s->program || law_is_trusted(s, hash))
         return true;
-    fprintf(stderr,
-            "%s: controller.file: %s is C code that you have not run yet (SHA-256 %.12s...): read "
-            "it, and add --trust\n",
-            s->file, s->law.name, hash);
+    stance_message message;
+    law_ask(s, hash, &message);
+    fprintf(stderr, "%s: %s\n", s->file, message.text);
     return false;
 }
 
@@ -45,7 +44,7 @@ struct scenario *asked_again(const char *file, const char *text, const char *con
 {
     stance_message message;
     struct scenario *const s = scenario_new(file, text, sets, count, stderr);
-    if (!s || law_take(s, false, &message) != LAW_BROKEN)
+    if (!s || law_take(s, LAW_ASK, &message) != LAW_BROKEN)
         return s;
     fprintf(stderr, "%s\n", message.text);
     scenario_drop(s);
@@ -60,7 +59,7 @@ int asked_work(const struct asked *asked, int (*work)(const struct scenario *s, 
     if (!s)
         return access(asked->file, R_OK) == 0 ? EXIT_USAGE : EXIT_IO;
     stance_message message;
-    const bool broken = law_take(s, asked->trust, &message) == LAW_BROKEN;
+    const bool broken = law_take(s, asked->trust ? LAW_TRUST : LAW_ASK, &message) == LAW_BROKEN;
     if (broken)
         fprintf(stderr, "%s\n", message.text);
     const int code = broken ? EXIT_USAGE : work(s, request);

@@ -10,7 +10,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
-enum { PATH = 4200, LINE = 1024 };
+enum { PATH = 4200, LINE = 1024, MOST_NAMES = 48 * STANCE_PROGRAM_NUMBERS };
 
 /* $XDG_CONFIG_HOME/stance/trusted; `make`: with its directories. false: there is no such place. */
 static bool trusted_file(char path[PATH], bool make)
@@ -46,37 +46,60 @@ bool law_is_trusted(const struct scenario *s, char *hash)
     return found;
 }
 
+/* Where it stands: a scenario may name a file and hold another text. */
+static const char *place_of(const struct scenario *s, char text[SHOWN_SIZE + 40])
+{
+    char name[SHOWN_SIZE];
+    if (s->law.held)
+        snprintf(text, SHOWN_SIZE + 40, "controller.source: the text in the scenario itself");
+    else
+        snprintf(text, SHOWN_SIZE + 40, "controller.file: %s", shown(name, s->law.name));
+    return text;
+}
+
 /* What cannot be kept is trusted this once. */
 static void keep_trust(const struct scenario *s, const char *hash)
 {
-    char path[PATH], name[SHOWN_SIZE];
-    FILE *const out = trusted_file(path, true) ? fopen(path, "a") : NULL;
+    char path[PATH], name[SHOWN_SIZE + 40];
+    const bool known = trusted_file(path, true);
+    FILE *const out = known ? fopen(path, "a") : NULL;
     if (out)
-        fprintf(out, "%s  %s\n", hash, shown(name, s->law.name));
+        fprintf(out, "%s  %s\n", hash, place_of(s, name));
     if (!out || fclose(out) != 0)
-        fprintf(stderr, "stance: the law is trusted for this time alone: %s: %s\n",
-                trusted_file(path, false) ? path : "no HOME", strerror(errno));
+        fprintf(stderr, "stance: the law is trusted for this time alone: %s%s%s\n",
+                known ? path : "HOME names no folder", known ? ": " : "",
+                known ? strerror(errno) : "");
 }
 
-enum law_state law_take(struct scenario *s, bool trust, stance_message *message)
+void law_ask(const struct scenario *s, const char *hash, stance_message *message)
+{
+    char place[SHOWN_SIZE + 40];
+    complain(message,
+             "%s is C code that you have not run yet (SHA-256 %.12s...): read it, and add --trust",
+             place_of(s, place), hash);
+}
+
+enum law_state law_take(struct scenario *s, enum law_trust trust, stance_message *message)
 {
     char hash[CHECKSUM_SHA256_TEXT];
     if (!s->law.source)
         return LAW_NONE;
-    if (!law_is_trusted(s, hash)) {
-        if (!trust) {
-            complain(
-                message,
-                "controller.file: %.60s is C code that you have not run yet (SHA-256 %.12s...): "
-                "read it, and add --trust",
-                s->law.name, hash);
+    if (trust != LAW_ASKED && !law_is_trusted(s, hash)) {
+        if (trust == LAW_ASK) {
+            law_ask(s, hash, message);
             return LAW_UNTRUSTED;
         }
         keep_trust(s, hash);
     }
+    char names[MOST_NAMES] = "";
+    for (size_t i = 0; i < s->law.parameters; i++) {
+        const struct law_parameter *const p = &s->law.parameter[i];
+        add_text(names, sizeof names, p->count ? "%s[%zu];" : "%s;", p->name, p->count);
+    }
     const struct program_text text = {
         .file = s->law.name,
         .source = s->law.source,
+        .parameters = names,
         .data = s->law.data,
         .count = s->law.data_count,
         .samples = s->sample.given ? s->axis[s->axes - 1].count : 1,

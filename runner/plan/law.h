@@ -18,8 +18,12 @@ enum law_state {
     LAW_BROKEN,    /* the message says why, with its place */
 };
 
-/* Makes the law of a scenario ready, if that is trusted; `trust`: it is from now on. */
-enum law_state law_take(struct scenario *s, bool trust, stance_message *message);
+/* Makes the law of a scenario ready, if that is trusted; or whether it is or not, `trust`: from now
+ * on, or because another rank has asked. */
+enum law_trust { LAW_ASK, LAW_TRUST, LAW_ASKED };
+enum law_state law_take(struct scenario *s, enum law_trust trust, stance_message *message);
+/* "controller.file: law.c is C code that you have not run yet ..." */
+void law_ask(const struct scenario *s, const char *hash, stance_message *message);
 /* Whether the law of a scenario is trusted, and its hash, hash[65]. */
 bool law_is_trusted(const struct scenario *s, char *hash);
 

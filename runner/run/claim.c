@@ -56,10 +56,10 @@ static bool take_law(struct run *run)
     stance_message message;
     enum law_state state = LAW_NONE;
     if (run->parallel.rank == 0)
-        state = law_take(run->scenario, run->options.asked.trust, &message);
+        state = law_take(run->scenario, run->options.asked.trust ? LAW_TRUST : LAW_ASK, &message);
     parallel_broadcast(&run->parallel, &state, sizeof state);
     if (run->parallel.rank > 0 && run->scenario && state == LAW_READY)
-        state = law_take(run->scenario, true, &message);
+        state = law_take(run->scenario, LAW_ASKED, &message);
     if (state == LAW_BROKEN && run->failure.code == EXIT_DONE)
         run_fail(run, EXIT_USAGE, "%s", message.text);
     if (state == LAW_UNTRUSTED && !run->options.dry_run && run->parallel.rank == 0)

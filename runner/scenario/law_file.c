@@ -46,8 +46,16 @@ static void read_numbers(struct reader *r, struct tree_node *node)
     *node = (struct tree_node){.kind = TREE_LIST, .mark = named.mark};
     for (const char *at = text; *at;) {
         const size_t blank = strspn(at, " \t\r,;\n");
-        for (size_t i = 0; i < blank; i++)
+        int between = 0;
+        for (size_t i = 0; i < blank; i++) {
             line += at[i] == '\n';
+            between = at[i] == '\n' ? 0 : between + (at[i] == ',' || at[i] == ';');
+            if (between > 1) {
+                problem_add(&r->problems, named.mark,
+                            "controller.data: %.200s:%d: a number is missing", named.text, line);
+                return;
+            }
+        }
         at += blank;
         if (*at == '#')
             at += strcspn(at, "\n");
@@ -208,21 +216,60 @@ static bool take_row(struct cursor *c, struct law_file *law)
     return true;
 }
 
-/* Behind "# define PARAMETERS" at the beginning of a line. */
+/* Behind the next "# WORD" at the beginning of a line from `at` on, which is no comment; NULL:
+ * there is none. */
+static const char *find_directive(const char *at, const char *is)
+{
+    bool begins = true; /* nothing stands before it on its line */
+    for (; *at; at++) {
+        const char *const end = at[0] == '/' && at[1] == '*' ? strstr(at + 2, "*/") : NULL;
+        if (end) {
+            at = end + 1;
+        } else if (at[0] == '/' && at[1] == '/') {
+            at += strcspn(at, "\n") - 1;
+        } else if (*at == '"') {
+            for (at++; *at && *at != '"' && *at != '\n'; at++)
+                at += *at == '\\' && at[1];
+            begins = false;
+        } else if (*at == '#' && begins) {
+            const char *const name = at + 1 + strspn(at + 1, " \t");
+            if (strncmp(name, is, strlen(is)) == 0)
+                return name + strlen(is);
+            begins = false;
+        } else {
+            begins = *at == '\n' || (begins && strchr(" \t\r", *at));
+        }
+        if (!*at)
+            break;
+    }
+    return NULL;
+}
+
+/* Behind PARAMETERS( of its definition. */
 static const char *find_define(const char *text)
 {
-    for (const char *line = text; line; line = strchr(line, '\n'), line += line ? 1 : 0) {
-        const char *at = line + strspn(line, " \t");
-        if (*at != '#')
-            continue;
-        at += 1 + strspn(at + 1, " \t");
-        if (strncmp(at, "define", 6) != 0)
-            continue;
-        at += 6 + strspn(at + 6, " \t");
-        if (strncmp(at, "PARAMETERS", 10) == 0 && at[10] == '(')
+    while ((text = find_directive(text, "define"))) {
+        const char *const at = text + strspn(text, " \t");
+        if (strncmp(at, "PARAMETERS(", 11) == 0)
             return at + 11;
     }
     return NULL;
+}
+
+/* A law is one file, which results hold; headers of the system are the compiler's. */
+static bool check_includes(struct cursor *c)
+{
+    for (const char *at = c->text; (at = find_directive(at, "include"));) {
+        const char *const name = at + strspn(at, " \t"), *const end = name + strcspn(name, "\n");
+        const bool own = strncmp(name, "\"stance_law.h\"", 14) == 0;
+        const size_t length = strcspn(name, ">\n");
+        if (own || (*name == '<' && name[length] == '>' && !memchr(name, '/', length)))
+            continue;
+        c->at = name;
+        return refuse(c, "includes %.*s: a law is one file, with stance_law.h and headers of C",
+                      (int)(end - name < 60 ? end - name : 60), name);
+    }
+    return true;
 }
 
 static void read_parameters(struct cursor *c, struct law_file *law)
@@ -297,9 +344,16 @@ void law_file_read(struct reader *r)
     const struct tree_node *const file = tree_find(map, "file"), *const own =
                                                                      tree_find(map, "source");
     struct tree_node *const data = tree_find(map, "data");
-    if ((!file && !own) || (file && file->kind != TREE_SCALAR) ||
-        (own && own->kind != TREE_SCALAR)) /* reported with the other keys */
+    if (!file && !own) {
+        problem_add(&r->problems, map->mark, "controller.file is missing (program needs it)");
         return;
+    }
+    if ((file && file->kind != TREE_SCALAR &&
+         !field_mismatch(&r->problems, "controller.file", "text", file)) ||
+        (own && own->kind != TREE_SCALAR &&
+         !field_mismatch(&r->problems, "controller.source", "text", own)))
+        return;
+    law->held = own != NULL;
     snprintf(law->name, sizeof law->name, "%s", file ? file->text : "controller.source");
     const struct mark mark = file ? file->mark : own->mark;
     const char *const text = own ? own->text : reader_file(r, "controller.file", file, MOST_BYTES);
@@ -315,7 +369,8 @@ void law_file_read(struct reader *r)
     if (data && r->problems.count == 0)
         read_data(r, data, law);
     struct cursor c = {.r = r, .mark = mark, .file = law->name, .text = law->source};
-    read_parameters(&c, law);
+    if (check_includes(&c))
+        read_parameters(&c, law);
 }
 
 void law_file_check(struct reader *r)
@@ -356,6 +411,7 @@ bool law_file_rows(struct schema *schema, const struct law_file *law)
             .low = p->low,
             .high = p->high,
             .items = p->count,
+            .fewer = true, /* those that are not given are as by default */
             .path = "controller.*",
         };
         snprintf(row.unit, sizeof row.unit, "%s", p->unit[0] ? p->unit : "1");

@@ -27,6 +27,7 @@ struct law_parameter {
 struct law_file {
     char name[256];     /* as the scenario has it */
     const char *source; /* NULL: there is none; its own, as the others are */
+    bool held;          /* the scenario holds it, whatever a file of that name does */
     double *data;
     size_t data_count;
     struct law_parameter *parameter;

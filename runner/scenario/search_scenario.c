@@ -125,7 +125,7 @@ static bool add_law(struct axis_reader *a)
     for (size_t i = 0; good && i < schema->count; i++) {
         const struct scenario_field *const field = &schema->field[i];
         if (!(own ? field->use == USE_PROGRAM : field->use == USE_LAW && field->law == law) ||
-            !field->sweep || field->type != FIELD_NUMBER)
+            !field->sweep || field->type != FIELD_NUMBER || field->low == field->high)
             continue;
         for (size_t k = 0; good && k < schema_items(field); k++) {
             char path[128];

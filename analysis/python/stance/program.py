@@ -63,11 +63,11 @@ def of_program(command: str, code: int, said: str) -> Exception:
         where = (place[1], int(place[2]), int(place[3])) if place else (None,) * 3
         return ScenarioError("\n".join(lines), *where, code)
     message = "\n".join(re.sub(r"^stance( \w+)*: ", "", line) for line in lines)
-    message = re.sub(r"--(force|resume)\b", r"\1=True", message)  # as it is written in Python
+    message = re.sub(r"--(force|resume|trust)\b", r"\1=True", message)  # as it is written in Python
     message = re.sub(r"(?<![\w-])--([a-z][a-z-]*)\b", lambda option: option[1].replace("-", "_") + "=", message)
     if message.startswith("unknown option "):
         return TypeError(f"stance {command}: {message.replace('option', 'argument', 1)}")
-    kind = ExistsError if " exists; force=True" in message else OptionError if code == 2 else Error
+    kind = ExistsError if " exists; force=True" in message else OptionError if code == 2 and "stance: the law " not in said else Error
     return kind(message or f"stance {command}: {'signal' if code < 0 else 'exit code'} {abs(code)}", code=code)
 
 
@@ -102,7 +102,7 @@ def name_of(file: File, there: bool = True) -> str:
 def as_yaml(value: Any) -> str:
     """A value in one line of JSON, which YAML holds. NumPy's numbers and arrays are taken, too."""
     return json.dumps(value, ensure_ascii=False, allow_nan=False,
-                      default=lambda v: v.tolist() if hasattr(v, "tolist") else json.JSONEncoder().default(v))
+                      default=lambda v: v.tolist() if hasattr(v, "tolist") else os.fspath(v))
 
 
 def options(given: Mapping[str, Any]) -> list[str]:

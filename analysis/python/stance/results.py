@@ -182,7 +182,7 @@ class Results(File_):
         """One case again, drawn (`stance replay -h`), also near={"theta": 0.02}; save("x.gif") makes a film."""
         return Picture(lambda *words: call("replay", self.file, *options({"case": case, **given}), *words))
 
-    def trajectory(self, case: Optional[int] = None) -> xarray.Dataset:
+    def trajectory(self, case: Optional[int] = None, **given: Any) -> xarray.Dataset:
         """One case, by its flat index, until its end, from the file or simulated again, over `time` (s): position and
         velocity (time, coordinate), torque (time, actuator), force (time, contact, component; N), gap (m)."""
         first = int(self.data["case"][0]) if "case" in self.data else 0
@@ -196,7 +196,7 @@ class Results(File_):
         with tempfile.TemporaryDirectory() as folder:
             file = self.file if recorded else folder + "/case.h5"
             if not recorded:
-                scenarios.Scenario(text=texts[number]).run(output=file, only=case, trace=True)
+                scenarios.Scenario(text=texts[number]).run(output=file, only=case, trace=True, **given)
             return read(file, "trajectory").sel(case=case).dropna("time", how="all", subset=["position"])
 
 

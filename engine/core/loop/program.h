@@ -38,6 +38,15 @@ static inline void program_known(const struct bundle *b, int lane, double *sampl
     sample[STANCE_SAMPLE_FOOT] = lane_get(&b->walk.foot, lane);
 }
 
+/* The first contact that a robot is to stand on; -1: there is none. */
+static inline double program_first_foot(const struct bundle *b, int lane)
+{
+    for (int c = 0; c < OWN_CONTACTS; c++)
+        if (lane_get(&b->mine[c], lane) > 0)
+            return c;
+    return -1;
+}
+
 /* ... and what follows behind: coordinates, rates, contacts. */
 static inline void program_sample(const struct program_measured *is, const mask *closed, int lane,
                                   double *sample)

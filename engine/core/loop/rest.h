@@ -227,6 +227,15 @@ COLD bool rest_holds(const struct bundle *b, int lane, const lanes *s, const lan
     r.set = &wider;
     r.of = b->which[lane];
     program_known(b, lane, known);
+    /* A law that reads the clock is asked what it is in the end; the target by what all cases know.
+     */
+    known[STANCE_SAMPLE_SINCE] += lane_get(&b->steps, lane) * h - known[STANCE_SAMPLE_TIME];
+    known[STANCE_SAMPLE_TIME] = lane_get(&b->steps, lane) * h;
+    if (!w) {
+        known[STANCE_SAMPLE_SINCE] = known[STANCE_SAMPLE_TIME];
+        known[STANCE_SAMPLE_FOOTFALLS] = 0;
+        known[STANCE_SAMPLE_FOOT] = program_first_foot(b, lane);
+    }
     r.known = known;
     r.lane = lane;
     r.t = b->steps * b->h;

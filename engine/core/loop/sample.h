@@ -39,7 +39,8 @@ COLD void bundle_shake(const struct bundle *b, mask due, lanes *torque)
         if (!c || c->noise == 0 || !mask_get(due, lane))
             continue;
         bundle_noise(c, lane_get(&b->n, lane) / (double)c->sample_every, 0, SCENE_ACTUATORS, noise);
-        for (int i = 0; i < SCENE_ACTUATORS; i++)
+        SCENE_BEGIN(c);
+        for (int i = 0; i < OWN_ACTUATORS; i++)
             lane_set(&torque[i], lane, lane_get(&torque[i], lane) + c->noise * noise[i]);
     }
 }

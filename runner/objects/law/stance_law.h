@@ -89,6 +89,7 @@ struct sample {
 #define MEMORY(X)
 #endif
 #define LAW_PARAMETER(name, ...) double name;
+#define LAW_NAME(name, ...) #name ";"
 struct parameters {
     PARAMETERS(LAW_PARAMETER)
 };
@@ -172,11 +173,13 @@ void law_call(void)
 /* What the program looks for. */
 struct law_object {
     unsigned long sample, parameters, memory, torques; /* bytes */
+    const char *names;
     void (*law)(const struct sample *now, const struct parameters *is, struct memory *mine,
                 struct torques *out);
 };
 extern __attribute__((visibility("default"))) const struct law_object stance_law_object;
-const struct law_object stance_law_object = {sizeof(struct sample), sizeof(struct parameters),
-                                             sizeof(struct memory), sizeof(struct torques), law};
+const struct law_object stance_law_object = {sizeof(struct sample),   sizeof(struct parameters),
+                                             sizeof(struct memory),   sizeof(struct torques),
+                                             PARAMETERS(LAW_NAME) "", law};
 
 #endif
