@@ -17,7 +17,7 @@ struct robot {
 
 static void begin(struct robot *r, const char *path)
 {
-    stance_message message = {""};
+    spatial_message message = {""};
     const struct plane_wishes wishes = {.plane = NULL};
     memset(r, 0, sizeof *r);
     if (!urdf_read(path, &r->model, &message) ||
@@ -42,7 +42,7 @@ static void end(struct robot *r)
 static double off(struct robot *r)
 {
     struct compare_report report;
-    stance_message message = {""};
+    spatial_message message = {""};
     if (!import_compare(&r->model, "", &r->plane.map, r->scene, &r->c, &report, &message)) {
         if (!strstr(message.text, "libmujoco"))
             fail_msg("%s", message.text);

@@ -66,7 +66,7 @@ imported sideways --weld roll --sole shoe.l=-0.1,-0.02,0.2,-0.02
 has sideways "a joint that is held, a sole" 'joint roll is welded where it begins, at -0.174533' 'actuator side is left out: its joint is welded' \
     'shoe_l_1: {body: shoe_l, from: [-0.1, -0.02], to: [0.2, -0.02]}' 'pelvis: 0.174532925199'
 imported heap
-has heap "more contacts than there is room for" '8 contacts more than there is room for are left out: c4, rib4,' \
+has heap "more contacts than there is room for" ' contacts more than there is room for are left out: c4, rib4,' \
     'rib8: {body: b8, at: [0.1, 0.05], radius: 0.02}'
 
 # Small ones, written here: NAME, then has.
@@ -172,6 +172,9 @@ refused "a ball joint" "bad.xml:7: joint 'ankle' is a ball.*--weld ankle" < <(mo
 refused "a hinge out of the plane" "joint 'ankle' turns about \(1 0 0\), not along the normal.*--weld ankle" < <(model '' "$(toe 'axis="1 0 0"')")
 refused "a slide out of the plane" "joint 'ankle' slides along .*--weld ankle" < <(model '' "$(toe 'type="slide" axis="0 1 1"')")
 refused "hinges out of the plane that is asked for" "joint 'hip' turns about \(0 1 0\)" --plane yz < <(model)
+name=a_joint_whose_name_has_forty_letters_or_more
+refused "all that are out of the plane, by whole names" "--weld $name holds it \(so with ${name}_2, ${name}_3\)" < <(
+    model "$(for i in 2 3; do toe "axis='1 0 $i'" | sed "s/ankle/${name}_$i/;s/'toe'/'t$i'/;s/name='sh'//"; done)" "$(toe 'axis="0 0 1"' | sed "s/ankle/$name/")")
 refused "gravity across the plane" 'gravity \(0 -9.81 0\) is not in the plane.*--plane' < <(model '' '' '' '<option gravity="0 -9.81 0"/>')
 refused "two trees" "bodies 'ball' and 'trunk' both begin a tree" < <(model '' '' '' '' '<body name="ball" pos="2 0 1"><freejoint/><geom size="0.1"/></body>')
 refused "nothing that moves" 'nothing moves' <<<'<mujoco><worldbody><body><geom size="0.1"/></body></worldbody></mujoco>'

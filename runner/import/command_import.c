@@ -41,7 +41,7 @@ static int fail(const char *text)
 }
 
 /* The first element of a file, as far as its beginning tells: what kind of file it is. */
-static bool first_element(const char *path, char name[16], stance_message *message)
+static bool first_element(const char *path, char name[16], spatial_message *message)
 {
     char begin[65536];
     FILE *const in = fopen(path, "rb");
@@ -62,7 +62,7 @@ static bool first_element(const char *path, char name[16], stance_message *messa
     return true;
 }
 
-static bool read_file(struct request *r, stance_message *message)
+static bool read_file(struct request *r, spatial_message *message)
 {
     char name[16];
     if (!first_element(r->file, name, message))
@@ -113,8 +113,8 @@ static int finish(const struct scenario *s, const stance_case *c, void *asked)
 {
     struct request *const r = asked;
     struct compare_report compared;
-    stance_message message;
-    char sentence[400];
+    spatial_message message;
+    char sentence[1000];
     const bool known =
         import_compare(&r->model, r->file, &r->robot.map, s->scene, c, &compared, &message);
     if (known)
@@ -137,7 +137,7 @@ static int import(struct request *r)
                                         .welds = r->weld.count,
                                         .sole = r->sole.text,
                                         .soles = r->sole.count};
-    stance_message message;
+    spatial_message message;
     if (!read_file(r, &message) || !plane_make(&r->model, &wishes, &r->robot, &message))
         return fail(message.text);
     FILE *const out = open_memstream(&r->text, &r->size);

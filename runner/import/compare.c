@@ -55,7 +55,7 @@ static void twin_free(const struct comparison *o, struct twin *t)
 
 /* Without contacts, stops, and a fluid, which is left out of scenarios with a note. */
 static bool twin_load(const struct comparison *o, struct twin *t, const char *path, const char *of,
-                      stance_message *message)
+                      spatial_message *message)
 {
     char why[200] = "";
     t->m = mujoco_load(&o->mj, path, why, sizeof why);
@@ -66,12 +66,12 @@ static bool twin_load(const struct comparison *o, struct twin *t, const char *pa
     t->d = o->mj.mj_makeData(t->m);
     t->mass = spatial_room((size_t)t->m->nv, (size_t)t->m->nv * sizeof *t->mass);
     t->ways = spatial_room((size_t)t->m->nv, N * sizeof *t->ways);
-    return t->d || no_memory(message);
+    return t->d || complain(message, "not enough memory");
 }
 
 /* The same of what has been written to a file without a name, which it closes. */
 static bool twin_read(const struct comparison *o, struct twin *t, FILE *out, const char *of,
-                      stance_message *message)
+                      spatial_message *message)
 {
     char path[64];
     if (!out || fflush(out) != 0 || ferror(out))
@@ -124,7 +124,7 @@ static bool put_inertia(const struct comparison *o, const struct spatial_body *b
     return true;
 }
 
-static bool load_model(struct comparison *o, stance_message *message)
+static bool load_model(struct comparison *o, spatial_message *message)
 {
     FILE *const out = tmpfile();
     if (out)
@@ -146,7 +146,7 @@ static bool load_model(struct comparison *o, stance_message *message)
 
 /* The file itself, less what scenarios leave out with a note: ranges of motors that are not the
  * same both ways, dampers and rotors of a free joint. What is no motor gives nothing. */
-static bool load_file(struct comparison *o, const char *path, stance_message *message)
+static bool load_file(struct comparison *o, const char *path, spatial_message *message)
 {
     if (!twin_load(o, &o->file, path, path, message))
         return false;
@@ -165,7 +165,7 @@ static bool load_file(struct comparison *o, const char *path, stance_message *me
     return true;
 }
 
-static bool load_ours(struct comparison *o, const stance_case *c, stance_message *message)
+static bool load_ours(struct comparison *o, const stance_case *c, spatial_message *message)
 {
     FILE *const out = tmpfile();
     if (out)
@@ -381,7 +381,7 @@ static bool compare_state(struct comparison *o, struct compare_report *report)
 
 bool import_compare(const struct spatial_model *model, const char *path,
                     const struct plane_map *map, const stance_scene *scene, const stance_case *c,
-                    struct compare_report *report, stance_message *message)
+                    struct compare_report *report, spatial_message *message)
 {
     struct comparison o = {.model = model,
                            .map = map,
@@ -409,7 +409,7 @@ bool import_compare(const struct spatial_model *model, const char *path,
 
 bool import_compare(const struct spatial_model *model, const char *path,
                     const struct plane_map *map, const stance_scene *scene, const stance_case *c,
-                    struct compare_report *report, stance_message *message)
+                    struct compare_report *report, spatial_message *message)
 {
     struct mujoco none;
     (void)model, (void)path, (void)map, (void)scene, (void)c, (void)report;

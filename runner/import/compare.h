@@ -24,7 +24,7 @@ struct compare_report {
  * end the process: for runner/base/sandbox.h). */
 bool import_compare(const struct spatial_model *model, const char *path,
                     const struct plane_map *map, const stance_scene *scene, const stance_case *c,
-                    struct compare_report *report, stance_message *message);
+                    struct compare_report *report, spatial_message *message);
 
 /* "100 random states: accelerations agree with the file's to 3.1e-13 (...)", or, beyond what is
  * admitted, that they do not. Returns `text`. */

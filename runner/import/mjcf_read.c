@@ -329,7 +329,7 @@ static void read_model(const struct reading *r)
 
 /* MuJoCo's own, of several lines and with the line of the element where it knows one. */
 static bool refuse_as_mujoco(const struct spatial_model *model, const char *error,
-                             stance_message *message)
+                             spatial_message *message)
 {
     int number = 0;
     for (const char *at = error; number == 0 && (at = strcasestr(at, "line")) != NULL; at++)
@@ -346,7 +346,7 @@ static bool refuse_as_mujoco(const struct spatial_model *model, const char *erro
 }
 
 static bool load(const struct mujoco *library, const char *path, struct spatial_model *model,
-                 stance_message *message)
+                 spatial_message *message)
 {
     char error[1000] = "no memory";
     sandbox_limit(true);
@@ -365,10 +365,10 @@ static bool load(const struct mujoco *library, const char *path, struct spatial_
 
 #endif
 
-bool mjcf_read(const char *path, struct spatial_model *model, stance_message *message)
+bool mjcf_read(const char *path, struct spatial_model *model, spatial_message *message)
 {
     struct mujoco library;
-    stance_message why;
+    spatial_message why;
     bool good = false;
     spatial_begin(model, path, "MJCF");
     if (!mujoco_open(&library, &why))

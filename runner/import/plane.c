@@ -203,18 +203,18 @@ static double limit_of(struct plane_tree *t, const struct spatial_actuator *actu
 
 static bool too_many(const struct plane_tree *t)
 {
-    char list[140] = "";
+    struct spatial_note list = {.length = 0};
     int count = 0;
     for (int k = 0; k < t->links; k++) {
         bool driven = false;
         for (int a = 0; a < t->model->actuators; a++)
             driven = driven || t->model->actuator[a].joint == t->link[k].joint;
         if (driven)
-            add_text(list, sizeof list, "%s%.20s", count++ ? ", " : "",
-                     plane_joint_name(t, t->link[k].joint));
+            spatial_list(&list, plane_joint_name(t, t->link[k].joint));
+        count += driven;
     }
     return plane_refuse(t, 0, "%d joints are driven; at most %d: --weld some of %s", count,
-                        STANCE_MAX_ACTUATORS, list);
+                        STANCE_MAX_ACTUATORS, list.text);
 }
 
 /* The actuator of a link's joint, if it has one: a motor, or a servo of places, of rates, or one of
@@ -317,13 +317,12 @@ static bool take_aliens(struct plane_tree *t)
 static bool check_size(const struct plane_tree *t)
 {
     const int root = t->link[0].kind == STANCE_HINGE ? 0 : 1;
-    char list[140] = "";
+    struct spatial_note list = {.length = 0};
     for (int k = root; k < t->links; k++)
-        add_text(list, sizeof list, "%s%.20s", k > root ? ", " : "",
-                 plane_joint_name(t, t->link[k].joint));
+        spatial_list(&list, plane_joint_name(t, t->link[k].joint));
     return t->links - (t->link[0].kind == STANCE_SLIDE) <= STANCE_MAX_ANGLES ||
            plane_refuse(t, 0, "%d joints move; at most 10 besides the root: --weld some of %s",
-                        t->links - root, list);
+                        t->links - root, list.text);
 }
 
 /* A reader may take nan for a number. */
@@ -359,7 +358,7 @@ static bool take_links(struct plane_tree *t)
 }
 
 bool plane_make(struct spatial_model *model, const struct plane_wishes *wishes,
-                struct plane_robot *robot, stance_message *message)
+                struct plane_robot *robot, spatial_message *message)
 {
     struct plane_tree t = {.model = model, .wishes = wishes, .robot = robot, .message = message};
     *robot = (struct plane_robot){.step = model->step > 0 ? fmin(model->step, 0.1) : 1e-3};

@@ -211,8 +211,7 @@ static bool gather(struct plane_tree *t, struct candidates *c)
 /* As many as there is room for, those of the ends of chains first; the others are told. */
 static void choose(struct plane_tree *t, struct candidates *c)
 {
-    char dropped[120] = "";
-    int room = STANCE_MAX_CONTACTS, elements = STANCE_MAX_ELEMENTS, left = 0;
+    int room = STANCE_MAX_CONTACTS, elements = STANCE_MAX_ELEMENTS;
     for (int k = 0; k < 2 * t->links; k++)
         room -= stance_mechanism_stops(&t->robot->mechanism, k / 2, k % 2);
     for (int n = 0; n < 2 * c->count; n++) {
@@ -224,12 +223,9 @@ static void choose(struct plane_tree *t, struct candidates *c)
         room -= one->taken ? takes : 0;
         elements -= one->taken;
         if (!one->taken)
-            add_text(dropped, sizeof dropped, "%s%.30s", left++ ? ", " : "",
-                     one->name[0] ? one->name : t->robot->mechanism.body[one->link].name);
+            spatial_note_of(t->model, "contacts more than there is room for are left out",
+                            one->name[0] ? one->name : t->robot->mechanism.body[one->link].name);
     }
-    if (left > 0)
-        spatial_note(t->model, "%d contacts more than there is room for are left out: %s", left,
-                     dropped);
 }
 
 /* What most of them have, of as many the first; but not 0, where another has any, as factors are of

@@ -162,29 +162,32 @@ static bool in_plane(const struct plane_tree *t, int j, const double normal[3])
            (has_axis && kind == SPATIAL_SLIDE && fabs(space_dot(t->axis[j], normal)) < PARALLEL);
 }
 
-/* The first joint that is not of the plane, and how many more are not: " (so with a, b)". */
+/* The first joint that is not of the plane, and those that are not, either: " (so with a, b)". */
 static bool refuse_joint(const struct plane_tree *t, int j, const double normal[3])
 {
     const struct spatial_joint *const joint = &t->model->joint[j];
     const bool hinge = joint->kind == SPATIAL_HINGE;
     const char *const name = plane_joint_name(t, j);
-    char axis[64], of[64], others[90] = "";
+    struct spatial_note others = {.text = " (so with ", .length = sizeof " (so with " - 1};
+    char axis[64], of[64];
+    int count = 0;
     for (int k = j + 1; k < t->model->joints; k++)
-        if (!in_plane(t, k, normal))
-            add_text(others, sizeof others - 2, "%s%.20s", others[0] ? ", " : " (so with ",
-                     plane_joint_name(t, k));
-    if (others[0])
-        add_text(others, sizeof others, ")");
+        if (!in_plane(t, k, normal)) {
+            spatial_list(&others, plane_joint_name(t, k));
+            count++;
+        }
+    add_text(others.text, sizeof others.text, ")");
+    const char *const so = count > 0 ? others.text : "";
     if (joint->kind == SPATIAL_BALL)
         return plane_refuse(t, joint->line,
-                            "joint '%.40s' is a ball, which turns out of the plane: --weld %.40s "
+                            "joint '%s' is a ball, which turns out of the plane: --weld %s "
                             "holds it%s",
-                            name, name, others);
+                            name, name, so);
     return plane_refuse(t, joint->line,
-                        "joint '%.25s' %s %s, not %s the normal %s: --weld %.25s "
+                        "joint '%s' %s %s, not %s the normal %s: --weld %s "
                         "holds it%s, --plane chooses another plane",
                         name, hinge ? "turns about" : "slides along", axis_text(t->axis[j], axis),
-                        hinge ? "along" : "across", axis_text(normal, of), name, others);
+                        hinge ? "along" : "across", axis_text(normal, of), name, so);
 }
 
 /* Up is against gravity; without any, along the file's z, else its y. */

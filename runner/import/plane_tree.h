@@ -34,7 +34,7 @@ struct plane_tree {
     struct spatial_model *model;
     const struct plane_wishes *wishes;
     struct plane_robot *robot;
-    stance_message *message;
+    spatial_message *message;
     struct plane_pose base, /* of the file's world */
         *pose, *start;      /* [bodies] joints at `reference` (held ones at `start`); at `start` */
     double (*axis)[3], (*line)[3]; /* [joints] a joint's direction, a place on it; at `reference` */

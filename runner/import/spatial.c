@@ -35,7 +35,7 @@ void spatial_name(char name[SPATIAL_NAME], const char *text)
     snprintf(name, SPATIAL_NAME, "%s", text ? text : "");
 }
 
-void spatial_say(const struct spatial_model *model, stance_message *message, int line,
+void spatial_say(const struct spatial_model *model, spatial_message *message, int line,
                  const char *format, ...)
 {
     char *const text = message->text;
@@ -66,7 +66,7 @@ void spatial_add_alien(struct spatial_model *model, const char *what, const char
 
 void spatial_note(struct spatial_model *model, const char *format, ...)
 {
-    struct spatial_note note;
+    struct spatial_note note = {.length = 0};
     va_list arguments;
     va_start(arguments, format);
     vsnprintf(note.text, sizeof note.text, format, arguments);
@@ -75,6 +75,32 @@ void spatial_note(struct spatial_model *model, const char *format, ...)
         if (strcmp(model->note[i].text, note.text) == 0)
             return;
     *spatial_add(model, note, notes) = note;
+}
+
+void spatial_list(struct spatial_note *list, const char *name)
+{
+    char *const end = list->text + list->length;
+    const size_t room = sizeof list->text - list->length,
+                 taken = strlen(name) + sizeof ", and 1000 more";
+    if (list->more == 0 && taken < room)
+        list->length += (size_t)snprintf(end, room, "%s%s",
+                                         list->length > 0 && end[-1] != ' ' ? ", " : "", name);
+    else
+        snprintf(end, room, " and %d more", ++list->more);
+}
+
+void spatial_note_of(struct spatial_model *model, const char *what, const char *name)
+{
+    const size_t length = strlen(what);
+    int n = 0;
+    while (n < model->notes &&
+           (strncmp(model->note[n].text, what, length) != 0 || model->note[n].text[length] != ':'))
+        n++;
+    struct spatial_note *const note =
+        n < model->notes ? &model->note[n] : spatial_add(model, note, notes);
+    if (note->length == 0)
+        note->length = (size_t)snprintf(note->text, sizeof note->text, "%.300s: ", what);
+    spatial_list(note, name);
 }
 
 void spatial_free(struct spatial_model *model)

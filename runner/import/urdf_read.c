@@ -42,7 +42,7 @@ static const double unturned[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
 
 /* ---- the document --------------------------------------------------------------------------- */
 
-static xmlDoc *parse(const char *path, stance_message *message)
+static xmlDoc *parse(const char *path, spatial_message *message)
 {
     xmlDoc *const document = xmlReadFile(path, NULL,
                                          XML_PARSE_NONET | XML_PARSE_NOERROR | XML_PARSE_NOWARNING |
@@ -662,7 +662,7 @@ static bool read_robot(struct urdf *u, const xmlDoc *document)
     return true;
 }
 
-bool urdf_read(const char *path, struct spatial_model *model, stance_message *message)
+bool urdf_read(const char *path, struct spatial_model *model, spatial_message *message)
 {
     struct urdf u = {.model = model, .message = message};
     xmlDoc *const document = parse(path, message);
