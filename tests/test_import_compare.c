@@ -18,12 +18,13 @@ struct robot {
 static void begin(struct robot *r, const char *path)
 {
     spatial_message message = {""};
+    stance_message fault = {""};
     const struct plane_wishes wishes = {.plane = NULL};
     memset(r, 0, sizeof *r);
     if (!urdf_read(path, &r->model, &message) ||
         !plane_make(&r->model, &wishes, &r->plane, &message) ||
-        stance_mechanism_scene(&r->plane.mechanism, &r->scene, &message) != STANCE_OK)
-        fail_msg("%s", message.text);
+        stance_mechanism_scene(&r->plane.mechanism, &r->scene, &fault) != STANCE_OK)
+        fail_msg("%s%s", message.text, fault.text);
     for (int i = 0; i < r->scene->robot_count; i++)
         r->c.robot[i] = r->scene->robot[i].fallback;
     r->c.robot[STANCE_ROBOT_GRAVITY] = r->plane.gravity;

@@ -108,7 +108,7 @@ END
 has wide "a box that is as wide as ground" 'box hill is the ground, without ends' 'slope: 0.17453292' 'skin: {body: ball, at: [0, 0], radius: 0.1}'
 
 # ---- the command -------------------------------------------------------------------------------------------------
-expect "a file that is there is left alone" 2 "$stance" import "$robots/classes.xml" -o classes.yaml
+expect "a file that is there is left alone" 3 "$stance" import "$robots/classes.xml" -o classes.yaml
 says "... which is said" 'stance import: classes.yaml exists; --force replaces it'
 expect "unless --force" 0 "$stance" import "$robots/classes.xml" -o classes.yaml --force
 "$stance" import "$robots/classes.xml" >out 2>log && cmp -s out classes.yaml && "$stance" import "$robots/classes.xml" -o - | cmp -s - out
@@ -116,6 +116,19 @@ result $? "standard output has the same"
 expect "it runs" 0 "$stance" run classes.yaml -o classes.h5 --set stop.time=0.2
 expect "no such file" 3 "$stance" import none.xml
 says "... is one line" 'stance import: none.xml: No such file or directory'
+ln -s nowhere dangling.yaml
+for place in . dangling.yaml; do expect "... nor $place" 3 "$stance" import "$robots/classes.xml" -o "$place"; done
+[ -L dangling.yaml ] && [ "$(cat log)" = "stance import: dangling.yaml exists; --force replaces it" ]
+result $? "... a link to nothing"
+rm dangling.yaml
+mkfifo pipe
+for file in . pipe; do expect "what is no regular file is refused" 3 "$stance" import "$file"; done
+says "... and not waited for" 'is no regular file'
+for root in mujoco robot; do
+    { echo "<$root>"; head -c 17000000 /dev/zero; } >vast
+    expect "a file of 17 MB is refused" 3 "$stance" import vast
+    says "... in one line" '^stance import: vast is larger than 16 MiB'
+done
 expect "a place that is none" 3 "$stance" import "$robots/classes.xml" -o none/classes.yaml
 "$python" -c 'import sys, yaml
 for name in sys.argv[1:]:

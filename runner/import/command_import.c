@@ -10,6 +10,7 @@
 
 #include <errno.h>
 #include <stdlib.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 extern const struct command command_import; /* below */
@@ -163,6 +164,30 @@ static int work(void *asked)
     return code;
 }
 
+/* Both, before anything waits for them. */
+static bool check_files(const struct request *r)
+{
+    enum { MOST = 16 << 20 };
+    struct stat in, out;
+    const char *wrong = NULL, *of = r->file;
+    if (stat(r->file, &in) != 0 || access(r->file, R_OK) != 0) {
+        fprintf(stderr, "stance import: %s: %s\n", r->file, strerror(errno));
+        return false;
+    }
+    if (!S_ISREG(in.st_mode))
+        wrong = S_ISDIR(in.st_mode) ? "is a directory" : "is no regular file";
+    else if (in.st_size > MOST)
+        wrong = "is larger than 16 MiB, the most a robot may take";
+    else if (r->output && lstat(of = r->output, &out) == 0)
+        wrong = S_ISDIR(out.st_mode)                           ? "is a directory"
+                : !r->force                                    ? "exists; --force replaces it"
+                : S_ISREG(out.st_mode) || S_ISLNK(out.st_mode) ? NULL
+                                                               : "is no regular file";
+    if (wrong)
+        fprintf(stderr, "stance import: %s %s\n", of, wrong);
+    return !wrong;
+}
+
 static int run(int argc, char **argv)
 {
     struct request request = {.plane = PLANES};
@@ -171,14 +196,8 @@ static int run(int argc, char **argv)
         return code;
     if (request.output && strcmp(request.output, "-") == 0)
         request.output = NULL;
-    if (request.output && !request.force && access(request.output, F_OK) == 0) {
-        fprintf(stderr, "stance import: %s exists; --force replaces it\n", request.output);
-        return EXIT_USAGE;
-    }
-    if (access(request.file, R_OK) != 0) {
-        fprintf(stderr, "stance import: %s: %s\n", request.file, strerror(errno));
+    if (!check_files(&request))
         return EXIT_IO;
-    }
     if (!instruction_set_usable(command_import.name)) /* for the first case */
         return EXIT_USAGE;
     return sandbox(work, &request, request.file);

@@ -45,13 +45,12 @@ static double complex corner(const struct plane_tree *t, const struct spatial_ge
 }
 
 /* The lower side of a box as a sole; of one without extent a point. As the robot begins: of all
- * pairs of corners with none below their line that whose middle is lowest, of such in one line the
- * longest. */
+ * pairs of corners with none below their line the one that slopes least, of such the longest. */
 static void of_box(struct plane_tree *t, const struct spatial_geom *geom, const double half[3],
                    struct candidate *c)
 {
     double complex at[CORNERS], world[CORNERS];
-    double least = INFINITY, longest = 0, size = 0;
+    double level = 0, longest = 0, size = 0;
     for (int i = 0; i < CORNERS; i++) {
         at[i] = corner(t, geom, i & 1 ? half[0] : -half[0], i & 2 ? half[1] : -half[1],
                        i & 4 ? half[2] : -half[2]);
@@ -62,13 +61,12 @@ static void of_box(struct plane_tree *t, const struct spatial_geom *geom, const 
     for (int i = 0; i < CORNERS; i++)
         for (int j = 0; j < CORNERS; j++) {
             const double complex side = world[j] - world[i];
-            const double length = cabs(side), middle = cimag(world[i] + world[j]);
+            const double length = cabs(side), way = creal(side) / length;
             bool under = creal(side) > 0 && length > 1e-9 * size;
             for (int k = 0; under && k < CORNERS; k++)
                 under = cimag(conj(side) * (world[k] - world[i])) > -1e-9 * size * length;
-            if (under && (middle < least - 1e-9 * size ||
-                          (middle < least + 1e-9 * size && length > longest))) {
-                least = middle;
+            if (under && (way > level + 1e-9 || (way > level - 1e-9 && length > longest))) {
+                level = way;
                 longest = length;
                 c->at = at[i];
                 c->to = at[j];

@@ -42,9 +42,12 @@ static bool weld(struct plane_tree *t, const char *name)
     if (found < 0)
         return plane_refuse(t, 0, "--weld %.60s: there is no joint of this name%s%.60s%s", name,
                             near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
+    struct spatial_joint *const joint = &t->model->joint[found];
+    if (joint->limited)
+        joint->start = fmin(fmax(joint->start, joint->limits[0]), joint->limits[1]);
     t->held[found] = true;
     spatial_note(t->model, "joint %.60s is welded where it begins, at %.6g", name,
-                 t->model->joint[found].start + 0.0);
+                 joint->start + 0.0);
     return true;
 }
 

@@ -40,7 +40,7 @@ void spatial_say(const struct spatial_model *model, spatial_message *message, in
 {
     char *const text = message->text;
     va_list arguments;
-    snprintf(text, sizeof message->text, line > 0 ? "%.100s:%d: " : "%.100s: ", model->file, line);
+    snprintf(text, sizeof message->text, line > 0 ? "%.300s:%d: " : "%.300s: ", model->path, line);
     const size_t length = strlen(text);
     va_start(arguments, format);
     vsnprintf(text + length, sizeof message->text - length, format, arguments);
@@ -50,7 +50,7 @@ void spatial_say(const struct spatial_model *model, spatial_message *message, in
 void spatial_begin(struct spatial_model *model, const char *path, const char *format)
 {
     const char *const slash = strrchr(path, '/');
-    *model = (struct spatial_model){.format = format};
+    *model = (struct spatial_model){.format = format, .path = path};
     spatial_name(model->file, slash ? slash + 1 : path);
 }
 

@@ -118,6 +118,7 @@ typedef struct spatial_message {
 struct spatial_model {
     char title[SPATIAL_NAME]; /* the robot's */
     char file[SPATIAL_NAME];  /* its file's name, without directories */
+    const char *path;         /* ... as it was asked for; the caller's */
     const char *format;       /* "MJCF", "URDF"; static */
     double gravity[3];        /* m/s^2 */
     double step;              /* s, 0: not given */

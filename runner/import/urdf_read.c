@@ -17,6 +17,7 @@
 #include <libxml/parser.h>
 #include <stdlib.h>
 #include <strings.h>
+#include <sys/stat.h>
 
 /* A <link>; `node` NULL: the world that joints name and no link does. */
 struct urdf_link {
@@ -42,11 +43,44 @@ static const double unturned[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
 
 /* ---- the document --------------------------------------------------------------------------- */
 
+/* All of a file, with a 0 behind; "" where it cannot be read. */
+static char *text_of(const char *path, size_t *size)
+{
+    FILE *const in = fopen(path, "rb");
+    struct stat status;
+    const bool good = in && fstat(fileno(in), &status) == 0;
+    char *const text = spatial_room(good ? (size_t)status.st_size : 0, 1);
+    *size = good ? fread(text, 1, (size_t)status.st_size, in) : 0;
+    if (in)
+        fclose(in);
+    return text;
+}
+
+/* Public files have lines before their <?xml ...?>, or a version of XML that there is none of: all
+ * that is kept of it is the encoding. */
+static void take_declaration(char *text, char encoding[64])
+{
+    char *const at = text + strspn(text, " \t\r\n"), *const end = strstr(at, "?>");
+    if (strncmp(at, "<?xml ", 6) != 0 || !end)
+        return;
+    *end = '\0';
+    const char *const key = strstr(at, "encoding");
+    if (key)
+        sscanf(key, "encoding%*[ =\t\r\n\"']%63[a-zA-Z0-9._-]", encoding);
+    for (char *c = at; c < end + 2; c++)
+        *c = *c == '\n' ? '\n' : ' ';
+}
+
 static xmlDoc *parse(const char *path, spatial_message *message)
 {
-    xmlDoc *const document = xmlReadFile(path, NULL,
-                                         XML_PARSE_NONET | XML_PARSE_NOERROR | XML_PARSE_NOWARNING |
-                                             XML_PARSE_BIG_LINES);
+    char encoding[64] = "";
+    size_t size;
+    char *const text = text_of(path, &size);
+    take_declaration(text, encoding);
+    xmlDoc *const document = xmlReadMemory(text, (int)size, path, encoding[0] ? encoding : NULL,
+                                           XML_PARSE_NONET | XML_PARSE_NOERROR |
+                                               XML_PARSE_NOWARNING | XML_PARSE_BIG_LINES);
+    free(text);
     const xmlError *const why = document ? NULL : xmlGetLastError();
     if (why)
         complain(message, "%s:%d: not XML: %.*s", path, why->line,
@@ -287,8 +321,8 @@ static bool axis_of(struct urdf *u, const struct urdf_joint *j, double axis[3])
            urdf_refuse(u, at, "joint %.60s: its axis has no direction", j->name);
 }
 
-/* Exporters write lower = upper = 0 where a designer gave nothing, and others leave them out. URDF
- * begins where all coordinates are 0, or at the stop that is nearest to that. */
+/* Exporters write lower = upper = 0 where a designer gave nothing, others lower > upper, and others
+ * leave them out. */
 static bool limits_of(struct urdf *u, const struct urdf_joint *j, struct spatial_joint *joint)
 {
     const xmlNode *const at = urdf_child(j->node, "limit", NULL);
@@ -299,24 +333,18 @@ static bool limits_of(struct urdf *u, const struct urdf_joint *j, struct spatial
         !urdf_numbers(u, at, "upper", 1, &limits[1], 0) ||
         !urdf_numbers(u, at, "effort", 1, &joint->effort, 0))
         return false;
-    if (limits[0] > limits[1])
-        return urdf_refuse(u, at, "joint %.60s: its lower limit %g is above its upper one, %g",
-                           j->name, limits[0], limits[1]);
-    joint->limited = limits[0] != 0 || limits[1] != 0;
-    if (joint->limited)
-        joint->start = fmin(fmax(0, limits[0]), limits[1]);
+    const bool crossed = limits[0] > limits[1];
+    joint->limited = !crossed && (limits[0] != 0 || limits[1] != 0);
     if (continuous && joint->limited)
         spatial_note(u->model, "joint %s is continuous, and its limits are kept", j->name);
     if (!continuous && !joint->limited)
         spatial_note(u->model,
                      "joint %s: %s: it has no stops here (if it is not to move: --weld %s)",
                      j->name,
-                     given ? "lower = upper = 0 is what exporters write without limits"
-                           : "no limits are given",
+                     crossed ? "lower > upper is what Bullet's files write without limits"
+                     : given ? "lower = upper = 0 is what exporters write without limits"
+                             : "no limits are given",
                      j->name);
-    if (joint->start != 0)
-        spatial_note(u->model, "joint %s begins at its stop, %g: 0 is beyond it", joint->name,
-                     joint->start);
     return true;
 }
 
