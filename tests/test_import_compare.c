@@ -139,7 +139,8 @@ static void tensors(void **state)
 static void sentences(void **state)
 {
     char text[400];
-    struct compare_report report = {.states = 100, .worst = 3.1e-13, .state = 17, .coordinate = 2};
+    struct compare_report report = {
+        .itself = true, .states = 100, .worst = 3.1e-13, .state = 17, .coordinate = 2};
     const stance_scene *const biped = stance_scene_find("biped");
     (void)state;
     assert_non_null(strstr(compare_sentence(&report, biped, text, sizeof text),

@@ -36,7 +36,7 @@ for name in turned_leg hanging exported spring_hopper box_feet sideways post; do
 done
 noted turned_leg 'rpy such as 1.57 .*: 3'
 noted turned_leg 'dry friction in joint knee'
-noted hanging 'bob has no <inertia>: it is a point mass'
+noted hanging 'point masses, as they have no <inertia>: bob'
 noted exported 'joint hip: lower = upper = 0 .* no stops here'
 noted exported 'knee is continuous, and its limits are kept'
 noted exported 'left out.*: plugin'
@@ -153,6 +153,11 @@ changed "a box that is tilted stands on its lower face" '8i <origin rpy="0 0.4 0
 9s/<sphere radius="0.1"/<box size="0.2 0.1 0.04"/;s/xyz="0 0 -0.1" rpy="0 0 0"/xyz="0 0 0"/;13,14s/<child/<origin rpy="0 0.4 0"\/>&/' 'lower side touches'
 grep -q 'from: \[-0.1, -0.02\], to: \[0.1, -0.02\]' changed.yaml
 result $? "... its sole"
+changed "a motor of a joint that is fixed is left out" '11s/revolute/fixed/;17i <transmission><joint name="j"/></transmission>' 'motors left out, as their joints are fixed or floating: j'
+says "what was read is compared with" 'agree with those of what was read of the file\|not compared'
+sed -e '/collision/d;7s/i\(..\)="1"/i\1="0"/g;5s/-0.1/0/;2s/.*/<link name="world"\/>/;12s/"a"/"world"/' good.urdf >turns.urdf
+expect "what nothing resists is refused" 2 "$stance" import turns.urdf -o bad.yaml
+says "... by its joint" '^stance import: turns.urdf: as a scenario: robot.bodies.b: nothing resists its turning.* or hold it: --weld j$'
 refused() { # name, line, pattern, sed's command
     sed -e "$4" good.urdf >bad.urdf
     expect "$1 is refused" 2 "$stance" import bad.urdf -o bad.yaml

@@ -28,6 +28,7 @@ struct request {
 };
 
 enum { PLANES = 3 };
+#define NO_FILE "scenario"
 
 static const char *plane_word(size_t k)
 {
@@ -101,12 +102,14 @@ static void report(const struct request *r, const char *agreement)
     const stance_mechanism *const m = &r->robot.mechanism;
     const int root = r->robot.map.free_root;
     const int count[] = {m->bodies - root, m->elements, m->actuators};
-    printf("%s: %d bod%s in the plane%s, %d joint%s, %d contact%s, %d actuator%s\n", r->output,
-           m->bodies, m->bodies == 1 ? "y" : "ies", root ? ", free" : "", count[0],
-           &"s"[count[0] == 1], count[1], &"s"[count[1] == 1], count[2], &"s"[count[2] == 1]);
+    FILE *const out = r->output ? stdout : stderr;
+    fprintf(out, "%s: %d bod%s in the plane%s, %d joint%s, %d contact%s, %d actuator%s\n",
+            r->output ? r->output : r->file, m->bodies, m->bodies == 1 ? "y" : "ies",
+            root ? ", free" : "", count[0], &"s"[count[0] == 1], count[1], &"s"[count[1] == 1],
+            count[2], &"s"[count[2] == 1]);
     for (int n = 0; n < r->model.notes; n++)
-        printf("  - %s\n", r->model.note[n].text);
-    printf("%s\n", agreement);
+        fprintf(out, "  - %s\n", r->model.note[n].text);
+    fprintf(out, "%s\n", agreement);
 }
 
 /* With the scenario as a reader has it: does it move as the file's robot? */
@@ -123,12 +126,37 @@ static int finish(const struct scenario *s, const stance_case *c, void *asked)
     else
         snprintf(sentence, sizeof sentence, "not compared with the file: %s", message.text);
     const int code = put(r);
-    if (code == EXIT_DONE && r->output)
+    if (code == EXIT_DONE)
         report(r, sentence);
     if (code != EXIT_DONE || !known || compared.worst <= COMPARE_ADMITTED)
         return code;
     fail(sentence);
     return EXIT_CASES_FAILED;
+}
+
+/* What is written is what a reader takes. What it does not take is told of the robot, as nobody has
+ * a scenario that has the line. */
+static int refuse_scenario(const struct request *r, const char *problems)
+{
+    const struct plane_map *const map = &r->robot.map;
+    char name[STANCE_NAME] = "";
+    const char *hold = NULL;
+    int place = 0, still = 0;
+    if (!problems)
+        return EXIT_USAGE;
+    sscanf(problems, NO_FILE ":%*d:%*d: %n", &place);
+    const char *const text = problems + place;
+    sscanf(text, "robot.bodies.%63[a-zA-Z0-9_]: nothing resists%n", name, &still);
+    for (int k = 0; still > 0 && k < r->robot.mechanism.bodies; k++) {
+        const int own = map->coordinate[k + 2 * map->free_root].joint;
+        const struct spatial_joint *const joint =
+            &r->model.joint[own < 0 ? map->root_joint[0] : own];
+        if (strcmp(name, r->robot.mechanism.body[k].name) == 0)
+            hold = joint->name[0] ? joint->name : r->model.body[joint->body].name;
+    }
+    fprintf(stderr, "stance import: %s: as a scenario: %.*s%s%s\n", r->file,
+            (int)strcspn(text, "\n"), text, hold ? ", or hold it: --weld " : "", hold ? hold : "");
+    return EXIT_USAGE;
 }
 
 static int import(struct request *r)
@@ -146,10 +174,13 @@ static int import(struct request *r)
         import_write(out, &r->model, &r->robot);
     if (!out || fclose(out) != 0)
         return fail(strerror(ENOMEM));
-    /* What is written is what a reader takes: an error is said with the line of the result. */
-    struct scenario *const s =
-        scenario_new(r->output ? r->output : "scenario", r->text, NULL, 0, stderr);
-    const int code = s ? asked_first(&command_import, s, finish, r) : EXIT_USAGE;
+    char *problems = NULL;
+    FILE *const said = open_memstream(&problems, &(size_t){0});
+    struct scenario *const s = scenario_new(NO_FILE, r->text, NULL, 0, said ? said : stderr);
+    if (said)
+        fclose(said);
+    const int code = s ? asked_first(&command_import, s, finish, r) : refuse_scenario(r, problems);
+    free(problems);
     scenario_drop(s);
     return code;
 }
@@ -229,6 +260,6 @@ const struct command command_import = {
     "contacts, motors, the ground, the initial state (of MJCF the first keyframe). Comments at its "
     "head say what is otherwise than in the file, and why. What has no counterpart is refused by "
     "its "
-    "name. Where libmujoco is installed accelerations in random states are compared with the "
-    "file's.\n",
+    "name. Where libmujoco is installed accelerations in random states are compared with those of "
+    "an MJCF file, or of what was read of a URDF; exit code 1: they differ.\n",
     NULL};

@@ -131,7 +131,6 @@ static bool load_model(struct comparison *o, spatial_message *message)
         write_tree(out, o->model);
     if (!twin_read(o, &o->file, out, "what was read of the file", message))
         return false;
-    memcpy(o->file.m->opt.gravity, o->model->gravity, sizeof o->model->gravity);
     for (int j = 0; j < o->model->joints; j++)
         mujoco_joint(o->file.m, j, &o->model->joint[j], true);
     for (int b = 0; b < o->model->bodies; b++) {
@@ -145,7 +144,8 @@ static bool load_model(struct comparison *o, spatial_message *message)
 }
 
 /* The file itself, less what scenarios leave out with a note: ranges of motors that are not the
- * same both ways, dampers and rotors of a free joint. What is no motor gives nothing. */
+ * same both ways, dampers and rotors of a free joint; motors drive. What is no motor gives nothing.
+ */
 static bool load_file(struct comparison *o, const char *path, spatial_message *message)
 {
     if (!twin_load(o, &o->file, path, path, message))
@@ -153,7 +153,7 @@ static bool load_file(struct comparison *o, const char *path, spatial_message *m
     mjModel *const m = o->file.m;
     if (m->njnt != o->model->joints || m->nu != o->model->actuators)
         return complain(message, "not compared: %s has other joints than when it was read", path);
-    m->opt.disableflags |= mjDSBL_CLAMPCTRL;
+    m->opt.disableflags = (m->opt.disableflags | mjDSBL_CLAMPCTRL) & ~mjDSBL_ACTUATION;
     for (int a = 0; a < m->nu; a++) {
         m->actuator_forcelimited[a] = 0;
         for (int k = 0; k < 6; k++)
@@ -388,13 +388,15 @@ bool import_compare(const struct spatial_model *model, const char *path,
                            .scene = scene,
                            .itself = strcmp(model->format, "MJCF") == 0,
                            .random = 1};
-    *report = (struct compare_report){.state = 1};
+    *report = (struct compare_report){.state = 1, .itself = o.itself};
     if (!mujoco_open(&o.mj, message))
         return false;
     bool good = (o.itself ? load_file(&o, path, message) : load_model(&o, message)) &&
                 load_ours(&o, c, message);
-    if (good)
+    if (good) {
+        memcpy(o.file.m->opt.gravity, model->gravity, sizeof model->gravity); /* as it was taken */
         make_ways(&o);
+    }
     while (good && report->states < STATES)
         good = compare_state(&o, report) ||
                complain(message, "not compared: the mass matrix is singular at state %d",
@@ -422,11 +424,13 @@ const char *compare_sentence(const struct compare_report *report, const stance_s
                              char *text, size_t size)
 {
     const bool agree = report->worst <= COMPARE_ADMITTED;
-    snprintf(text, size,
-             "%d random states: accelerations %s %.2g (relative, %sat state %d, coordinate %s)%s",
-             report->states, agree ? "agree with the file's to" : "DIFFER from the file's by up to",
-             report->worst, agree ? "largest " : "", report->state,
-             scene->coordinate[report->coordinate].name,
-             agree ? "" : ", more than rounding does unless masses differ by many orders");
+    snprintf(
+        text, size,
+        "%d random states: accelerations %s %s %s %.2g (relative, %sat state %d, coordinate %s)%s",
+        report->states, agree ? "agree with" : "DIFFER from",
+        report->itself ? "the file's" : "those of what was read of the file",
+        agree ? "to" : "by up to", report->worst, agree ? "largest " : "", report->state,
+        scene->coordinate[report->coordinate].name,
+        agree ? "" : ", more than rounding does unless masses differ by many orders");
     return text;
 }

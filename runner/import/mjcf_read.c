@@ -306,6 +306,23 @@ static void read_aliens(const struct reading *r)
                      "the medium (density, viscosity) is left out: it has no counterpart");
 }
 
+/* What the file turns off as a whole; contacts are told where they are read. */
+static void read_flags(const struct reading *r)
+{
+    static const struct {
+        int flag;
+        const char *what;
+    } flags[] = {{mjDSBL_CONSTRAINT, "constraints"},
+                 {mjDSBL_LIMIT, "limits of joints"},
+                 {mjDSBL_PASSIVE, "springs and dampers"},
+                 {mjDSBL_GRAVITY, "gravity"}};
+    for (size_t i = 0; i < sizeof flags / sizeof *flags; i++)
+        if (r->m->opt.disableflags & flags[i].flag)
+            spatial_note_of(r->model, "disabled in the file, and left out", flags[i].what);
+    if (r->m->opt.disableflags & mjDSBL_ACTUATION)
+        spatial_note(r->model, "actuation is disabled in the file: here its motors drive");
+}
+
 /* ---- the file ------------------------------------------------------------------------------- */
 
 static void read_model(const struct reading *r)
@@ -325,6 +342,7 @@ static void read_model(const struct reading *r)
         read_actuator(r, a);
     read_geoms(r);
     read_aliens(r);
+    read_flags(r);
 }
 
 /* MuJoCo's own, of several lines and with the line of the element where it knows one. */

@@ -71,10 +71,10 @@ static double moment_of(struct plane_tree *t, int b)
     for (int i = 0; i < 3; i++)
         by[i] -= moment * normal[i];
     if (space_length(by) > 1e-3 * moment && space_length(by) > 1e-12)
-        spatial_note(t->model,
-                     "products of inertia of %.60s with the plane's normal are left out: "
-                     "they have no effect in the plane",
-                     body->name);
+        spatial_note_of(t->model,
+                        "products of inertia with the plane's normal are left out, as they have no "
+                        "effect in the plane",
+                        body->name);
     return moment;
 }
 

@@ -4,7 +4,7 @@
 
 #include <stdlib.h>
 
-enum { CORNERS = 8 };
+enum { CORNERS = 8, TEXT = 2 * SPATIAL_NAME + 60 };
 
 /* What a shape becomes. */
 struct candidate {
@@ -124,6 +124,8 @@ static bool add_sole(struct plane_tree *t, const char *text, struct candidates *
     if (body < 0 || t->link_of[body] < 0)
         return plane_refuse(t, 0, "--sole %.60s: %s", text,
                             body < 0 ? "there is no link of this name" : "it does not move");
+    if (given[0] == given[2] && given[1] == given[3])
+        return plane_refuse(t, 0, "--sole %.60s: its two ends are one place", text);
     /* Which of its axes are across the plane: z (then x and y are in it), x, else y. */
     const double *const across = t->pose[body].rotation[2];
     const int first = fabs(across[0]) > 0.7 ? 1 : 0, second = fabs(across[2]) > 0.7 ? 1 : 2;
@@ -143,11 +145,23 @@ static bool add_sole(struct plane_tree *t, const char *text, struct candidates *
 
 /* ---- all of them ---------------------------------------------------------------------------- */
 
+/* "sphere heel of foot", as far as there are names. */
+static const char *geom_text(const struct plane_tree *t, const struct spatial_geom *geom,
+                             char text[TEXT])
+{
+    const char *const body = t->model->body[geom->body].name;
+    const bool own = strcmp(geom->name, body) != 0 && geom->name[0];
+    snprintf(text, TEXT, "%s%s%s of %s", geom->of, own ? " " : "", own ? geom->name : "",
+             body[0] ? body : "a body without name");
+    return text;
+}
+
 /* A mesh at the end of a chain is a foot, unless a simple shape is that. */
 static bool refuse_shape(struct plane_tree *t, const struct spatial_geom *geom)
 {
     const char *const body = t->model->body[geom->body].name;
     const int link = t->link_of[geom->body];
+    char text[TEXT];
     bool foot = t->link[link].children == 0;
     for (int g = 0; g < t->model->geoms; g++) {
         const struct spatial_geom *const other = &t->model->geom[g];
@@ -156,10 +170,10 @@ static bool refuse_shape(struct plane_tree *t, const struct spatial_geom *geom)
     }
     if (foot)
         return plane_refuse(t, geom->line,
-                            "%s %.50s of %.50s may touch the ground: give it a sole, "
-                            "--sole %.50s=X,Z,X,Z, or a simple shape",
-                            geom->of, geom->name, body, body);
-    spatial_note(t->model, "%s %.50s of %.50s touches nothing here", geom->of, geom->name, body);
+                            "%s may touch the ground: give it a sole, "
+                            "--sole %s=X,Z,X,Z, or a simple shape",
+                            geom_text(t, geom, text), body);
+    spatial_note_of(t->model, "touch nothing here", geom_text(t, geom, text));
     return true;
 }
 
@@ -168,6 +182,7 @@ static bool add_geom(struct plane_tree *t, const struct spatial_geom *geom, int 
                      struct candidates *c)
 {
     const int link = t->link_of[geom->body];
+    char text[TEXT];
     struct candidate *const next = &c->list[c->count];
     if (link == 0 && t->link[0].kind == STANCE_SLIDE) {
         spatial_note(t->model, "%.60s touches no ground: its rail holds it",
@@ -176,8 +191,8 @@ static bool add_geom(struct plane_tree *t, const struct spatial_geom *geom, int 
     }
     for (int k = 0; k < soles; k++)
         if (c->list[k].link == link) {
-            spatial_note(t->model, "%s %.60s is left out: --sole stands for it", geom->of,
-                         geom->name);
+            spatial_note_of(t->model, "left out, as --sole stands for them",
+                            geom_text(t, geom, text));
             return true;
         }
     *next = (struct candidate){
@@ -304,6 +319,8 @@ static bool has_ground(struct plane_tree *t)
     bool touches = t->wishes->soles > 0;
     for (int k = 0; k < t->links; k++)
         touches = touches || t->link[k].touches;
+    if (!touches && !t->along_floor && (falls || t->has_floor))
+        spatial_note(t->model, "no shape may touch the ground; --sole LINK=X,Z,X,Z gives one");
     if (!touches || t->along_floor || t->has_floor)
         return touches && t->has_floor;
     if (falls)
@@ -320,8 +337,11 @@ bool plane_contacts(struct plane_tree *t)
     for (int g = 0; g < t->model->geoms; g++)
         if (t->model->geom[g].meets_robot)
             spatial_note(t->model, "the robot's bodies do not touch each other here");
-    if (!has_ground(t))
+    if (!has_ground(t)) {
+        if (t->wishes->soles > 0)
+            spatial_note(t->model, "there is no ground here: --sole is left out");
         return true;
+    }
     c.list = spatial_room((size_t)t->model->geoms + t->wishes->soles, sizeof *c.list);
     const bool good = gather(t, &c);
     if (good) {

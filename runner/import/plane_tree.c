@@ -193,6 +193,22 @@ static bool refuse_joint(const struct plane_tree *t, int j, const double normal[
                         hinge ? "along" : "across", axis_text(normal, of), name, so);
 }
 
+/* Gravity that is off an axis of the file by rounding, or to make a posture fall, is along it. */
+static void straighten(struct plane_tree *t)
+{
+    double *const gravity = t->model->gravity;
+    const double size = space_length(gravity);
+    for (int k = 0; k < 3; k++) {
+        const double off = hypot(gravity[(k + 1) % 3], gravity[(k + 2) % 3]) / size;
+        if (!(off > 0 && off < 1e-5))
+            continue;
+        spatial_note(t->model, "gravity is off the file's %c by %.2g rad: taken as along it",
+                     "xyz"[k], off);
+        for (int i = 0; i < 3; i++)
+            gravity[i] = i == k ? copysign(size, gravity[k]) : 0;
+    }
+}
+
 /* Up is against gravity; without any, along the file's z, else its y. */
 static bool choose_axes(struct plane_tree *t, const double normal[3])
 {
@@ -238,6 +254,7 @@ static bool choose_plane(struct plane_tree *t)
 {
     const struct plane_map *const map = &t->robot->map;
     double normal[3] = {0};
+    straighten(t);
     choose_normal(t, normal);
     for (int j = 0; j < t->model->joints; j++)
         if (!in_plane(t, j, normal))
@@ -381,6 +398,23 @@ static void merge_root(struct plane_tree *t)
         link[k].parent -= 2;
 }
 
+/* Of the first tree's root, and of the body that begins another one: joints of all others. */
+static bool refuse_trees(const struct plane_tree *t, int first, const struct spatial_body *body)
+{
+    struct spatial_note joints = {.length = 0};
+    for (int k = 0; k < t->links; k++) {
+        int root = k;
+        while (t->link[root].parent >= 0)
+            root = t->link[root].parent;
+        if (root != first)
+            spatial_list(&joints, plane_joint_name(t, t->link[k].joint));
+    }
+    return plane_refuse(t, body->line,
+                        "bodies '%s' and '%s' both begin a tree: a robot is one tree. Take the "
+                        "other out of the file, or hold its joints with --weld: %s",
+                        t->model->body[t->link[first].body].name, body->name, joints.text);
+}
+
 static bool check_roots(const struct plane_tree *t)
 {
     int first = -1;
@@ -392,10 +426,7 @@ static bool check_roots(const struct plane_tree *t)
                                 "body '%.60s' is free, but hangs from another: only a root is free",
                                 body->name);
         if (link->parent < 0 && first >= 0)
-            return plane_refuse(t, body->line,
-                                "bodies '%.50s' and '%.50s' both begin a tree: a robot is one "
-                                "tree, take the other out of the file",
-                                t->model->body[t->link[first].body].name, body->name);
+            return refuse_trees(t, first, body);
         first = link->parent < 0 ? k : first;
     }
     return first >= 0 || plane_refuse(t, 0, "nothing moves: all bodies are fixed to the world");
@@ -465,14 +496,15 @@ static double complex floor_face(const struct plane_tree *t, const struct spatia
 /* What stands still beside the floor. */
 static void note_others(struct plane_tree *t, int floor)
 {
+    char text[2 * SPATIAL_NAME];
     for (int g = 0; g < t->model->geoms; g++) {
         const struct spatial_geom *const geom = &t->model->geom[g];
         const char *const of =
             geom->name[0] || geom->body < 0 ? geom->name : t->model->body[geom->body].name;
-        if (g != floor && geom->meets_floor && is_fixed(t, geom->body))
-            spatial_note(t->model,
-                         "%s%s%.60s stands still and is left out: the ground is one half plane",
-                         geom->of, of[0] ? " " : "", of);
+        if (g != floor && geom->meets_floor && is_fixed(t, geom->body)) {
+            snprintf(text, sizeof text, "%s%s%s", geom->of, of[0] ? " " : "", of);
+            spatial_note_of(t->model, "left out, as the ground is one half plane", text);
+        }
     }
 }
 

@@ -100,6 +100,9 @@ void spatial_note_of(struct spatial_model *model, const char *what, const char *
         n < model->notes ? &model->note[n] : spatial_add(model, note, notes);
     if (note->length == 0)
         note->length = (size_t)snprintf(note->text, sizeof note->text, "%.300s: ", what);
+    for (const char *at = note->text; (at = strstr(at, name)) != NULL; at++)
+        if (at > note->text && at[-1] == ' ' && strchr(",", at[strlen(name)]))
+            return;
     spatial_list(note, name);
 }
 

@@ -152,7 +152,7 @@ void spatial_begin(struct spatial_model *model, const char *path, const char *fo
 /* A line of what was left out or changed, and why, once; they become comments of the scenario. */
 void spatial_note(struct spatial_model *model, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
-/* The same of several: "WHAT: a, b, c". */
+/* The same of several, each once: "WHAT: a, b, c". */
 void spatial_note_of(struct spatial_model *model, const char *what, const char *name);
 /* One more name of a list, which begins cleared. */
 void spatial_list(struct spatial_note *list, const char *name);

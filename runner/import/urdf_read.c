@@ -243,7 +243,7 @@ static bool inertia_of(struct urdf *u, const struct urdf_link *link, struct spat
         return false;
     space_turn_moments(rotation, moment, body->inertia);
     if (!at && body->mass > 0)
-        spatial_note(u->model, "link %s has no <inertia>: it is a point mass", body->name);
+        spatial_note_of(u->model, "point masses, as they have no <inertia>", body->name);
     return true;
 }
 
@@ -491,8 +491,13 @@ static bool take_tree(struct urdf *u)
 static void add_motor(struct urdf *u, const xmlNode *at, const char *name, int joint, double gear)
 {
     const struct urdf_joint *const j = &u->joint[joint];
-    const double effort = j->joint >= 0 ? fabs(u->model->joint[j->joint].effort) : 0;
+    if (j->joint < 0) {
+        spatial_note_of(u->model, "motors left out, as their joints are fixed or floating",
+                        j->name);
+        return;
+    }
     struct spatial_actuator *const motor = spatial_add(u->model, actuator, actuators);
+    const double effort = fabs(u->model->joint[j->joint].effort);
     spatial_name(motor->name, name && *name ? name : j->name);
     spatial_name(motor->target, j->name);
     motor->line = urdf_line(at);
@@ -586,8 +591,7 @@ static bool drives(struct urdf *u)
 /* Notes are kept once each. */
 static void leave_out(struct urdf *u, const xmlNode *node)
 {
-    spatial_note(u->model, "left out, as it does not move the robot by itself: %.60s",
-                 urdf_name(node));
+    spatial_note_of(u->model, "left out, as it does not move the robot by itself", urdf_name(node));
 }
 
 static bool of_link(struct urdf *u, const xmlNode *at, struct urdf_link *link)
