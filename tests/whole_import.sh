@@ -223,6 +223,8 @@ refused "a floor that is a wall" "floor 'floor' stands upright" < <(model '' '' 
 refused "a class that there is none of" 'bad.xml:5: MuJoCo cannot read it: .*unknown default class' < <(model | sed 's/axis="0 1 0"/& class="none"/')
 refused "a moving body without mass" 'MuJoCo cannot read it: .*mass and inertia' < <(model '' '<body name="toe"><joint axis="0 1 0"/></body>')
 refused "a plug-in" "unrecognized element .*plugin" < <(model '<plugin plugin="x"/>')
+echo '<mujoco><worldbody><body><joint actuatorfrcrange="-1 1"/></body></worldbody></mujoco>' >newer.xml
+refused "what is newer, in an include" "actuatorfrcrange.*, in a file that it includes: this is MuJoCo 2.2; take out what is newer" <<<'<mujoco><include file="newer.xml"/></mujoco>'
 refused "an include that is not there" 'Include error.*missing.xml' <<<'<mujoco><include file="missing.xml"/></mujoco>'
 refused "an include of itself" 'already included' <<<'<mujoco><include file="bad.xml"/></mujoco>'
 refused "half a file" 'MuJoCo cannot read it' < <(model | head -c 300)

@@ -142,8 +142,6 @@ static int refuse_scenario(const struct request *r, const char *problems)
     char name[STANCE_NAME] = "";
     const char *hold = NULL;
     int place = 0, still = 0;
-    if (!problems)
-        return EXIT_USAGE;
     sscanf(problems, NO_FILE ":%*d:%*d: %n", &place);
     const char *const text = problems + place;
     sscanf(text, "robot.bodies.%63[a-zA-Z0-9_]: nothing resists%n", name, &still);
@@ -169,16 +167,15 @@ static int import(struct request *r)
     spatial_message message;
     if (!read_file(r, &message) || !plane_make(&r->model, &wishes, &r->robot, &message))
         return fail(message.text);
-    FILE *const out = open_memstream(&r->text, &r->size);
+    char *problems = NULL;
+    FILE *const out = open_memstream(&r->text, &r->size), *const said = open_memstream(
+                                                              &problems, &(size_t){0});
     if (out)
         import_write(out, &r->model, &r->robot);
-    if (!out || fclose(out) != 0)
+    if (!out || fclose(out) != 0 || !said)
         return fail(strerror(ENOMEM));
-    char *problems = NULL;
-    FILE *const said = open_memstream(&problems, &(size_t){0});
-    struct scenario *const s = scenario_new(NO_FILE, r->text, NULL, 0, said ? said : stderr);
-    if (said)
-        fclose(said);
+    struct scenario *const s = scenario_new(NO_FILE, r->text, NULL, 0, said);
+    fclose(said);
     const int code = s ? asked_first(&command_import, s, finish, r) : refuse_scenario(r, problems);
     free(problems);
     scenario_drop(s);

@@ -202,11 +202,9 @@ static void read_geoms(const struct reading *r)
     for (int h = 0; h < m->ngeom; h++)
         floor = floor || (is_static(m, h) && m->geom_type[h] == mjGEOM_PLANE &&
                           (m->geom_contype[h] || m->geom_conaffinity[h]));
-    if (m->opt.disableflags & (mjDSBL_CONTACT | mjDSBL_CONSTRAINT))
-        spatial_note(r->model, "contacts are disabled in the file: nothing touches the ground");
-    else
-        for (int g = 0; g < m->ngeom; g++)
-            read_geom(r, g, floor);
+    for (int g = 0; g < m->ngeom && !(m->opt.disableflags & (mjDSBL_CONTACT | mjDSBL_CONSTRAINT));
+         g++)
+        read_geom(r, g, floor);
 }
 
 /* ---- what drives ---------------------------------------------------------------------------- */
@@ -306,13 +304,14 @@ static void read_aliens(const struct reading *r)
                      "the medium (density, viscosity) is left out: it has no counterpart");
 }
 
-/* What the file turns off as a whole; contacts are told where they are read. */
+/* What the file turns off as a whole. */
 static void read_flags(const struct reading *r)
 {
     static const struct {
         int flag;
         const char *what;
     } flags[] = {{mjDSBL_CONSTRAINT, "constraints"},
+                 {mjDSBL_CONTACT, "contacts"},
                  {mjDSBL_LIMIT, "limits of joints"},
                  {mjDSBL_PASSIVE, "springs and dampers"},
                  {mjDSBL_GRAVITY, "gravity"}};
@@ -360,6 +359,13 @@ static bool refuse_as_mujoco(const struct spatial_model *model, const char *erro
         else if (s > error && s[1] && message->text[n - 1] != ' ')
             message->text[n++] = ' ';
     message->text[n] = 0;
+    char *const nowhere = strstr(message->text, ", line 0");
+    if (nowhere &&
+        !isdigit((unsigned char)nowhere[8])) /* it counts lines of the file itself only */
+        snprintf(nowhere, 40, ", in a file that it includes");
+    if (strstr(error, "unrecognized"))
+        add_text(message->text, sizeof message->text,
+                 ": this is MuJoCo 2.2; take out what is newer");
     return false;
 }
 

@@ -172,15 +172,13 @@ static bool refuse_joint(const struct plane_tree *t, int j, const double normal[
     const bool hinge = joint->kind == SPATIAL_HINGE;
     const char *const name = plane_joint_name(t, j);
     struct spatial_note others = {.text = " (so with ", .length = sizeof " (so with " - 1};
+    const size_t none = others.length;
     char axis[64], of[64];
-    int count = 0;
     for (int k = j + 1; k < t->model->joints; k++)
-        if (!in_plane(t, k, normal)) {
+        if (!in_plane(t, k, normal))
             spatial_list(&others, plane_joint_name(t, k));
-            count++;
-        }
     add_text(others.text, sizeof others.text, ")");
-    const char *const so = count > 0 ? others.text : "";
+    const char *const so = others.length > none ? others.text : "";
     if (joint->kind == SPATIAL_BALL)
         return plane_refuse(t, joint->line,
                             "joint '%s' is a ball, which turns out of the plane: --weld %s "

@@ -93,6 +93,8 @@ void spatial_note_of(struct spatial_model *model, const char *what, const char *
 {
     const size_t length = strlen(what);
     int n = 0;
+    if (!name[0])
+        name = "one without a name";
     while (n < model->notes &&
            (strncmp(model->note[n].text, what, length) != 0 || model->note[n].text[length] != ':'))
         n++;

@@ -17,7 +17,6 @@
 #include <libxml/parser.h>
 #include <stdlib.h>
 #include <strings.h>
-#include <sys/stat.h>
 
 /* A <link>; `node` NULL: the world that joints name and no link does. */
 struct urdf_link {
@@ -43,19 +42,6 @@ static const double unturned[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
 
 /* ---- the document --------------------------------------------------------------------------- */
 
-/* All of a file, with a 0 behind; "" where it cannot be read. */
-static char *text_of(const char *path, size_t *size)
-{
-    FILE *const in = fopen(path, "rb");
-    struct stat status;
-    const bool good = in && fstat(fileno(in), &status) == 0;
-    char *const text = spatial_room(good ? (size_t)status.st_size : 0, 1);
-    *size = good ? fread(text, 1, (size_t)status.st_size, in) : 0;
-    if (in)
-        fclose(in);
-    return text;
-}
-
 /* Public files have lines before their <?xml ...?>, or a version of XML that there is none of: all
  * that is kept of it is the encoding. */
 static void take_declaration(char *text, char encoding[64])
@@ -73,13 +59,17 @@ static void take_declaration(char *text, char encoding[64])
 
 static xmlDoc *parse(const char *path, spatial_message *message)
 {
-    char encoding[64] = "";
-    size_t size;
-    char *const text = text_of(path, &size);
-    take_declaration(text, encoding);
-    xmlDoc *const document = xmlReadMemory(text, (int)size, path, encoding[0] ? encoding : NULL,
-                                           XML_PARSE_NONET | XML_PARSE_NOERROR |
-                                               XML_PARSE_NOWARNING | XML_PARSE_BIG_LINES);
+    char encoding[64] = "", *text = NULL;
+    size_t room = 0;
+    FILE *const in = fopen(path, "rb");
+    const ssize_t size = in ? getdelim(&text, &room, '\0', in) : -1; /* all of a text */
+    if (in)
+        fclose(in);
+    if (size > 0)
+        take_declaration(text, encoding);
+    xmlDoc *const document = xmlReadMemory(
+        text, size > 0 ? (int)size : 0, path, encoding[0] ? encoding : NULL,
+        XML_PARSE_NONET | XML_PARSE_NOERROR | XML_PARSE_NOWARNING | XML_PARSE_BIG_LINES);
     free(text);
     const xmlError *const why = document ? NULL : xmlGetLastError();
     if (why)
