@@ -253,10 +253,9 @@ const struct command command_import = {
     run,
     options,
     "Writes a scenario of a planar robot: bodies, joints with springs, dampers, armature and "
-    "limits, "
-    "contacts, motors, the ground, the initial state (of MJCF the first keyframe). Comments at its "
-    "head say what is otherwise than in the file, and why. What has no counterpart is refused by "
-    "its "
-    "name. Where libmujoco is installed accelerations in random states are compared with those of "
-    "an MJCF file, or of what was read of a URDF; exit code 1: they differ.\n",
+    "limits, contacts, motors, the ground, the initial state (of MJCF the first keyframe). "
+    "Comments at its head say what is otherwise than in the file, and why. What has no "
+    "counterpart is refused by its name. Where libmujoco is installed accelerations in random "
+    "states are compared with those of an MJCF file, or of what was read of a URDF; exit code 1: "
+    "they differ.\n",
     NULL};

@@ -4,7 +4,7 @@
 
 #include <stdlib.h>
 
-enum { CORNERS = 8, TEXT = 2 * SPATIAL_NAME + 60 };
+enum { CORNERS = 8 };
 
 /* What a shape becomes. */
 struct candidate {
@@ -145,23 +145,12 @@ static bool add_sole(struct plane_tree *t, const char *text, struct candidates *
 
 /* ---- all of them ---------------------------------------------------------------------------- */
 
-/* "sphere heel of foot", as far as there are names. */
-static const char *geom_text(const struct plane_tree *t, const struct spatial_geom *geom,
-                             char text[TEXT])
-{
-    const char *const body = t->model->body[geom->body].name;
-    const bool own = strcmp(geom->name, body) != 0 && geom->name[0];
-    snprintf(text, TEXT, "%s%s%s of %s", geom->of, own ? " " : "", own ? geom->name : "",
-             body[0] ? body : "a body without name");
-    return text;
-}
-
 /* A mesh at the end of a chain is a foot, unless a simple shape is that. */
 static bool refuse_shape(struct plane_tree *t, const struct spatial_geom *geom)
 {
     const char *const body = t->model->body[geom->body].name;
     const int link = t->link_of[geom->body];
-    char text[TEXT];
+    char text[PLANE_TEXT];
     bool foot = t->link[link].children == 0;
     for (int g = 0; g < t->model->geoms; g++) {
         const struct spatial_geom *const other = &t->model->geom[g];
@@ -172,8 +161,8 @@ static bool refuse_shape(struct plane_tree *t, const struct spatial_geom *geom)
         return plane_refuse(t, geom->line,
                             "%s may touch the ground: give it a sole, "
                             "--sole %s=X,Z,X,Z, or a simple shape",
-                            geom_text(t, geom, text), body);
-    spatial_note_of(t->model, "touch nothing here", geom_text(t, geom, text));
+                            plane_geom_text(t, geom, text), body);
+    spatial_note_of(t->model, "touch nothing here", plane_geom_text(t, geom, text));
     return true;
 }
 
@@ -182,7 +171,7 @@ static bool add_geom(struct plane_tree *t, const struct spatial_geom *geom, int 
                      struct candidates *c)
 {
     const int link = t->link_of[geom->body];
-    char text[TEXT];
+    char text[PLANE_TEXT];
     struct candidate *const next = &c->list[c->count];
     if (link == 0 && t->link[0].kind == STANCE_SLIDE) {
         spatial_note(t->model, "%.60s touches no ground: its rail holds it",
@@ -192,7 +181,7 @@ static bool add_geom(struct plane_tree *t, const struct spatial_geom *geom, int 
     for (int k = 0; k < soles; k++)
         if (c->list[k].link == link) {
             spatial_note_of(t->model, "left out, as --sole stands for them",
-                            geom_text(t, geom, text));
+                            plane_geom_text(t, geom, text));
             return true;
         }
     *next = (struct candidate){

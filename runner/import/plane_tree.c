@@ -494,15 +494,12 @@ static double complex floor_face(const struct plane_tree *t, const struct spatia
 /* What stands still beside the floor. */
 static void note_others(struct plane_tree *t, int floor)
 {
-    char text[2 * SPATIAL_NAME];
+    char text[PLANE_TEXT];
     for (int g = 0; g < t->model->geoms; g++) {
         const struct spatial_geom *const geom = &t->model->geom[g];
-        const char *const of =
-            geom->name[0] || geom->body < 0 ? geom->name : t->model->body[geom->body].name;
-        if (g != floor && geom->meets_floor && is_fixed(t, geom->body)) {
-            snprintf(text, sizeof text, "%s%s%s", geom->of, of[0] ? " " : "", of);
-            spatial_note_of(t->model, "left out, as the ground is one half plane", text);
-        }
+        if (g != floor && geom->meets_floor && is_fixed(t, geom->body))
+            spatial_note_of(t->model, "left out, as the ground is one half plane",
+                            plane_geom_text(t, geom, text));
     }
 }
 

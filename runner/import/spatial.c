@@ -91,17 +91,16 @@ void spatial_list(struct spatial_note *list, const char *name)
 
 void spatial_note_of(struct spatial_model *model, const char *what, const char *name)
 {
-    const size_t length = strlen(what);
+    char begin[300];
+    const int length = snprintf(begin, sizeof begin, "%.280s: ", what);
     int n = 0;
-    if (!name[0])
-        name = "one without a name";
-    while (n < model->notes &&
-           (strncmp(model->note[n].text, what, length) != 0 || model->note[n].text[length] != ':'))
+    while (n < model->notes && strncmp(model->note[n].text, begin, (size_t)length) != 0)
         n++;
-    struct spatial_note *const note =
-        n < model->notes ? &model->note[n] : spatial_add(model, note, notes);
-    if (note->length == 0)
-        note->length = (size_t)snprintf(note->text, sizeof note->text, "%.300s: ", what);
+    if (n == model->notes)
+        spatial_note(model, "%s", begin);
+    struct spatial_note *const note = &model->note[n];
+    note->length = note->length > 0 ? note->length : (size_t)length;
+    name = name[0] ? name : "one without a name";
     for (const char *at = note->text; (at = strstr(at, name)) != NULL; at++)
         if (at > note->text && at[-1] == ' ' && strchr(",", at[strlen(name)]))
             return;
