@@ -197,12 +197,10 @@ static bool check_files(const struct request *r)
 {
     enum { MOST = 16 << 20 };
     struct stat in, out;
-    const char *wrong = NULL, *of = r->file;
-    if (stat(r->file, &in) != 0 || access(r->file, R_OK) != 0) {
-        fprintf(stderr, "stance import: %s: %s\n", r->file, strerror(errno));
-        return false;
-    }
-    if (!S_ISREG(in.st_mode))
+    const char *wrong = NULL, *of = r->file, *mark = "";
+    if (stat(r->file, &in) != 0 || access(r->file, R_OK) != 0)
+        mark = ":", wrong = strerror(errno);
+    else if (!S_ISREG(in.st_mode))
         wrong = S_ISDIR(in.st_mode) ? "is a directory" : "is no regular file";
     else if (in.st_size > MOST)
         wrong = "is larger than 16 MiB, the most a robot may take";
@@ -212,7 +210,7 @@ static bool check_files(const struct request *r)
                 : S_ISREG(out.st_mode) || S_ISLNK(out.st_mode) ? NULL
                                                                : "is no regular file";
     if (wrong)
-        fprintf(stderr, "stance import: %s %s\n", of, wrong);
+        fprintf(stderr, "stance import: %s%s %s\n", of, mark, wrong);
     return !wrong;
 }
 

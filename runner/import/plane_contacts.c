@@ -312,10 +312,8 @@ static bool has_ground(struct plane_tree *t)
         spatial_note(t->model, "no shape may touch the ground; --sole LINK=X,Z,X,Z gives one");
     if (!touches || t->along_floor || t->has_floor)
         return touches && t->has_floor;
-    if (falls)
-        spatial_note(t->model, "the file has no floor: level ground at its height 0");
-    else
-        spatial_note(t->model, "the file has no floor: nothing touches the ground");
+    spatial_note(t->model, "the file has no floor: %s",
+                 falls ? "level ground at its height 0" : "nothing touches the ground");
     return falls;
 }
 

@@ -180,13 +180,13 @@ static bool refuse_joint(const struct plane_tree *t, int j, const double normal[
     add_text(others.text, sizeof others.text, ")");
     const char *const so = others.length > none ? others.text : "";
     if (joint->kind == SPATIAL_BALL)
-        return plane_refuse(t, joint->line,
-                            "joint '%s' is a ball, which turns out of the plane: --weld %s "
-                            "holds it%s",
-                            name, name, so);
+        return plane_refuse(
+            t, joint->line,
+            "joint '%s' is a ball, which turns out of the plane: --weld %s holds it%s", name, name,
+            so);
     return plane_refuse(t, joint->line,
-                        "joint '%s' %s %s, not %s the normal %s: --weld %s "
-                        "holds it%s, --plane chooses another plane",
+                        "joint '%s' %s %s, not %s the normal %s: --weld %s holds it%s, --plane "
+                        "chooses another plane",
                         name, hinge ? "turns about" : "slides along", axis_text(t->axis[j], axis),
                         hinge ? "along" : "across", axis_text(normal, of), name, so);
 }
