@@ -38,8 +38,9 @@ static void print_usage(FILE *out)
         "\nstance COMMAND -h, or stance help COMMAND, explains a command; stance --version says "
         "what was built;\nstance help --options lists all options, a line of fields between tabs "
         "each.\n"
-        "Exit codes: 0 done, 1 some cases failed numerically (compare: files differ),\n"
-        "2 bad use or bad scenario, 3 input or output failed, 4 interrupted and resumable.\n"
+        "Exit codes: 0 done, 1 some cases failed numerically (compare: files differ; import: the\n"
+        "robot moves otherwise than the file's), 2 bad use or bad scenario, 3 input or output "
+        "failed, 4 interrupted and resumable.\n"
         "The environment variable STANCE_ISA, if set, names the instruction set to compute with;\n"
         "results do not depend on it.\n",
         out);

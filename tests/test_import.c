@@ -23,7 +23,7 @@ struct pair {
 static void pair_open(struct pair *p, const char *file)
 {
     char path[100], error[300];
-    stance_message message;
+    spatial_message message;
     assert_true(mujoco_open(&p->mj, &message));
     snprintf(path, sizeof path, "tests/robots/mjcf/%s.xml", file);
     if (!mjcf_read(path, &p->model, &message))
@@ -163,7 +163,7 @@ static void contacts(void **state)
         const int floor = p.mj.mj_name2id(p.m, mjOBJ_GEOM, "floor");
         assert_true(floor >= 0);
         for (int n = 0; n < POSTURES; n++) {
-            stance_message message;
+            spatial_message message;
             place(&p, &seed);
             plane_free(&p.robot);
             if (!plane_make(&p.model, &p.wishes, &p.robot, &message))
@@ -238,7 +238,7 @@ static void ramp(void **state)
 int main(void)
 {
     struct mujoco mj;
-    stance_message message;
+    spatial_message message;
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(contacts),
         cmocka_unit_test(by_hand),

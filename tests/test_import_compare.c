@@ -17,13 +17,14 @@ struct robot {
 
 static void begin(struct robot *r, const char *path)
 {
-    stance_message message = {""};
+    spatial_message message = {""};
+    stance_message fault = {""};
     const struct plane_wishes wishes = {.plane = NULL};
     memset(r, 0, sizeof *r);
     if (!urdf_read(path, &r->model, &message) ||
         !plane_make(&r->model, &wishes, &r->plane, &message) ||
-        stance_mechanism_scene(&r->plane.mechanism, &r->scene, &message) != STANCE_OK)
-        fail_msg("%s", message.text);
+        stance_mechanism_scene(&r->plane.mechanism, &r->scene, &fault) != STANCE_OK)
+        fail_msg("%s%s", message.text, fault.text);
     for (int i = 0; i < r->scene->robot_count; i++)
         r->c.robot[i] = r->scene->robot[i].fallback;
     r->c.robot[STANCE_ROBOT_GRAVITY] = r->plane.gravity;
@@ -42,7 +43,7 @@ static void end(struct robot *r)
 static double off(struct robot *r)
 {
     struct compare_report report;
-    stance_message message = {""};
+    spatial_message message = {""};
     if (!import_compare(&r->model, "", &r->plane.map, r->scene, &r->c, &report, &message)) {
         if (!strstr(message.text, "libmujoco"))
             fail_msg("%s", message.text);
@@ -138,7 +139,8 @@ static void tensors(void **state)
 static void sentences(void **state)
 {
     char text[400];
-    struct compare_report report = {.states = 100, .worst = 3.1e-13, .state = 17, .coordinate = 2};
+    struct compare_report report = {
+        .itself = true, .states = 100, .worst = 3.1e-13, .state = 17, .coordinate = 2};
     const stance_scene *const biped = stance_scene_find("biped");
     (void)state;
     assert_non_null(strstr(compare_sentence(&report, biped, text, sizeof text),

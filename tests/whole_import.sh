@@ -48,7 +48,7 @@ has classes "the posture of the file" 'initial: state: {z: 1.2}' 'method: {step:
 imported turned
 has turned "hinges about +y" 'trunk: {joint: free, angle: -0.1,' 'angle: 0.55,' 'rest: -0.4' 'limits: [-0.5, 1]'
 has turned "what is otherwise is told" 'actuator shoe gives -300 to 600 in the file, -300 to 300 here' \
-    'products of inertia of trunk' 'motors are called as their joints are'
+    'effect in the plane: trunk' 'motors are called as their joints are'
 imported lying
 has lying "two hinges of one body, across a plane of y and z" 'x is the file'"'"'s (0 1 0), z its (0 0 1)' \
     'shoulder: {joint: hinge, at: [0.1, 2]}' 'arm: {joint: hinge, parent: shoulder, at: [0.5, 0], mass: 3.5,'
@@ -66,7 +66,7 @@ imported sideways --weld roll --sole shoe.l=-0.1,-0.02,0.2,-0.02
 has sideways "a joint that is held, a sole" 'joint roll is welded where it begins, at -0.174533' 'actuator side is left out: its joint is welded' \
     'shoe_l_1: {body: shoe_l, from: [-0.1, -0.02], to: [0.2, -0.02]}' 'pelvis: 0.174532925199'
 imported heap
-has heap "more contacts than there is room for" '8 contacts more than there is room for are left out: c4, rib4,' \
+has heap "more contacts than there is room for" ' contacts more than there is room for are left out: c4, rib4,' \
     'rib8: {body: b8, at: [0.1, 0.05], radius: 0.02}'
 
 # Small ones, written here: NAME, then has.
@@ -85,7 +85,7 @@ small rail <<END
 <geom type="box" size="0.1 0.1 0.1" pos="3 0 0.1"/></worldbody><actuator><motor joint="rail" gear="-3" ctrllimited="true" ctrlrange="0 2"/></actuator></mujoco>
 END
 has rail "what is on a rail touches nothing" 'cart touches no ground: its rail holds it' 'pole_1: {body: pole, from: [0, 0], to: [0, 1], radius: 0.02}' \
-    'box stands still and is left out' 'dry friction in joint pin, 0.2, is left out' 'gives -6 to 0 in the file, -6 to 6 here' "title: 'rail.xml'"
+    'left out, as the ground is one half plane: box' 'dry friction in joint pin, 0.2, is left out' 'gives -6 to 0 in the file, -6 to 6 here' "title: 'rail.xml'"
 small boom <<END
 <mujoco model="a boom's hopper"><worldbody>$floor<body name="hip" pos="0 0 1"><joint name="along" type="slide" axis="1 0 0" damping="2"/>
 <joint name="height" type="slide" axis="0 0 1"/><joint name="tilt" axis="0 1 0"/><geom size="0.1"/></body></worldbody></mujoco>
@@ -106,16 +106,48 @@ small wide <<END
 <body name="ball" pos="0 0 1"><freejoint/><geom name="skin" size="0.1"/></body></worldbody></mujoco>
 END
 has wide "a box that is as wide as ground" 'box hill is the ground, without ends' 'slope: 0.17453292' 'skin: {body: ball, at: [0, 0], radius: 0.1}'
+small adrift <<END
+<mujoco><option><flag gravity="disable" limit="disable" passive="disable" actuation="disable"/></option><worldbody>$floor
+<body name="hull" pos="0 0 1"><freejoint/><geom contype="0" conaffinity="0" size="0.1"/><body name="fin" pos="0.3 0 0">
+<joint name="rudder" axis="0 1 0" limited="true" range="-9 9" damping="2"/><geom contype="0" conaffinity="0" size="0.1"/></body></body></worldbody>
+<actuator><motor joint="rudder" gear="3"/></actuator></mujoco>
+END
+has adrift "what the file turns off" 'disabled in the file, and left out: limits of joints, springs and dampers, gravity' 'gravity: 0}' \
+    'its motors drive' 'no shape may touch the ground; --sole LINK=X,Z,X,Z gives one'
+small nearly --sole leg=0,0,1,0 <<END
+<mujoco><option gravity="1e-5 0 -9.81"/><worldbody><body name="leg"><joint name="pin" axis="0 1 0"/><geom contype="0" conaffinity="0" size="0.1" pos="0 0 1"/></body></worldbody></mujoco>
+END
+has nearly "rounding is no slope" "off the file's z by 1e-06 rad: taken as along it" 'leg: {joint: hinge, mass' 'there is no ground here: --sole is left out'
+small pair --weld aim <<END
+<mujoco><worldbody>$floor<body name="arm" pos="0 0 1"><joint name="pin" axis="0 1 0"/><geom name="a" size="0.1"/><geom size="0.1 0.2 0.1" type="ellipsoid" pos="0 0 -.2"/></body>
+<body name="goal" pos="0 0 1"><joint name="aim" type="slide" axis="1 0 0"/><geom size="0.01" contype="0" conaffinity="0"/></body></worldbody></mujoco>
+END
+has pair "shapes without names" 'touch nothing here: ellipsoid of arm'
 
 # ---- the command -------------------------------------------------------------------------------------------------
-expect "a file that is there is left alone" 2 "$stance" import "$robots/classes.xml" -o classes.yaml
+expect "a file that is there is left alone" 3 "$stance" import "$robots/classes.xml" -o classes.yaml
 says "... which is said" 'stance import: classes.yaml exists; --force replaces it'
 expect "unless --force" 0 "$stance" import "$robots/classes.xml" -o classes.yaml --force
 "$stance" import "$robots/classes.xml" >out 2>log && cmp -s out classes.yaml && "$stance" import "$robots/classes.xml" -o - | cmp -s - out
 result $? "standard output has the same"
+grep -q '2 joints, 3 contacts' log && grep -q 'accelerations agree with the file' log
+result $? "... and what is told goes to standard error"
 expect "it runs" 0 "$stance" run classes.yaml -o classes.h5 --set stop.time=0.2
 expect "no such file" 3 "$stance" import none.xml
 says "... is one line" 'stance import: none.xml: No such file or directory'
+ln -s nowhere dangling.yaml
+for place in . dangling.yaml; do expect "... nor $place" 3 "$stance" import "$robots/classes.xml" -o "$place"; done
+[ -L dangling.yaml ] && [ "$(cat log)" = "stance import: dangling.yaml exists; --force replaces it" ]
+result $? "... a link to nothing"
+rm dangling.yaml
+mkfifo pipe
+for file in . pipe; do expect "what is no regular file is refused" 3 "$stance" import "$file"; done
+says "... and not waited for" 'is no regular file'
+for root in mujoco robot; do
+    { echo "<$root>"; head -c 17000000 /dev/zero; } >vast
+    expect "a file of 17 MB is refused" 3 "$stance" import vast
+    says "... in one line" '^stance import: vast is larger than 16 MiB'
+done
 expect "a place that is none" 3 "$stance" import "$robots/classes.xml" -o none/classes.yaml
 "$python" -c 'import sys, yaml
 for name in sys.argv[1:]:
@@ -172,8 +204,11 @@ refused "a ball joint" "bad.xml:7: joint 'ankle' is a ball.*--weld ankle" < <(mo
 refused "a hinge out of the plane" "joint 'ankle' turns about \(1 0 0\), not along the normal.*--weld ankle" < <(model '' "$(toe 'axis="1 0 0"')")
 refused "a slide out of the plane" "joint 'ankle' slides along .*--weld ankle" < <(model '' "$(toe 'type="slide" axis="0 1 1"')")
 refused "hinges out of the plane that is asked for" "joint 'hip' turns about \(0 1 0\)" --plane yz < <(model)
+name=a_joint_whose_name_has_forty_letters_or_more
+refused "all that are out of the plane, by whole names" "--weld $name holds it \(so with ${name}_2, ${name}_3\)" < <(
+    model "$(for i in 2 3; do toe "axis='1 0 $i'" | sed "s/ankle/${name}_$i/;s/'toe'/'t$i'/;s/name='sh'//"; done)" "$(toe 'axis="0 0 1"' | sed "s/ankle/$name/")")
 refused "gravity across the plane" 'gravity \(0 -9.81 0\) is not in the plane.*--plane' < <(model '' '' '' '<option gravity="0 -9.81 0"/>')
-refused "two trees" "bodies 'ball' and 'trunk' both begin a tree" < <(model '' '' '' '' '<body name="ball" pos="2 0 1"><freejoint/><geom size="0.1"/></body>')
+refused "two trees" "bodies 'ball' and 'trunk' both begin a tree.*hold its joints with --weld: root, hip$" < <(model '' '' '' '' '<body name="ball" pos="2 0 1"><freejoint/><geom size="0.1"/></body>')
 refused "nothing that moves" 'nothing moves' <<<'<mujoco><worldbody><body><geom size="0.1"/></body></worldbody></mujoco>'
 refused "an actuator with a bias" "bad.xml:9: actuator 'odd' is neither" < <(model '' '' '<actuator><general name="odd" joint="hip" biastype="affine" biasprm="2 0 0"/></actuator>')
 refused "an actuator with a state" "actuator 'slow' is neither" < <(model '' '' '<actuator><general name="slow" joint="hip" dyntype="filter" dynprm="0.1"/></actuator>')
@@ -188,6 +223,8 @@ refused "a floor that is a wall" "floor 'floor' stands upright" < <(model '' '' 
 refused "a class that there is none of" 'bad.xml:5: MuJoCo cannot read it: .*unknown default class' < <(model | sed 's/axis="0 1 0"/& class="none"/')
 refused "a moving body without mass" 'MuJoCo cannot read it: .*mass and inertia' < <(model '' '<body name="toe"><joint axis="0 1 0"/></body>')
 refused "a plug-in" "unrecognized element .*plugin" < <(model '<plugin plugin="x"/>')
+echo '<mujoco><worldbody><body><joint actuatorfrcrange="-1 1"/></body></worldbody></mujoco>' >newer.xml
+refused "what is newer, in an include" "actuatorfrcrange.*, in a file that it includes: this is MuJoCo 2.2; take out what is newer" <<<'<mujoco><include file="newer.xml"/></mujoco>'
 refused "an include that is not there" 'Include error.*missing.xml' <<<'<mujoco><include file="missing.xml"/></mujoco>'
 refused "an include of itself" 'already included' <<<'<mujoco><include file="bad.xml"/></mujoco>'
 refused "half a file" 'MuJoCo cannot read it' < <(model | head -c 300)
@@ -200,10 +237,11 @@ refused "elements without end" 'MuJoCo cannot read it' < <(
 )
 refused "a joint that is not there, to weld" "weld hips: there is no joint .*'hip'" --weld hips < <(model)
 refused "a sole of no link" 'sole toe=0,0,1,0: there is no link' --sole toe=0,0,1,0 < <(model)
+refused "a sole without length" 'its two ends are one place' --sole leg=0.1,0,0.1,0 < <(model)
 refused "a sole of three numbers" 'write LINK=X,Z,X,Z' --sole leg=0,0,1 < <(model)
 model | sed 's/mass="5"/mass="1e20"/' >bad.xml
 "$stance" import bad.xml -o bad.yaml >log 2>&1
-[ $? = 2 ] && grep -q 'bad.yaml:[0-9]*:[0-9]*: robot.bodies.trunk.mass: 1.0e+20 is out of range' log && [ ! -e bad.yaml ]
+[ $? = 2 ] && grep -q '^stance import: bad.xml: as a scenario: robot.bodies.trunk.mass: 1.0e+20 is out of range' log && [ ! -e bad.yaml ]
 result $? "what the scenario's reader does not take is said, and not written"
 ls | grep -q MUJOCO
 result $((!$?)) "MuJoCo's errors leave no file behind"

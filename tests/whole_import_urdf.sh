@@ -36,7 +36,7 @@ for name in turned_leg hanging exported spring_hopper box_feet sideways post; do
 done
 noted turned_leg 'rpy such as 1.57 .*: 3'
 noted turned_leg 'dry friction in joint knee'
-noted hanging 'bob has no <inertia>: it is a point mass'
+noted hanging 'point masses, as they have no <inertia>: bob'
 noted exported 'joint hip: lower = upper = 0 .* no stops here'
 noted exported 'knee is continuous, and its limits are kept'
 noted exported 'left out.*: plugin'
@@ -139,6 +139,25 @@ cat >good.urdf <<'END'
 </robot>
 END
 expect "a good one" 0 "$stance" import good.urdf -o good.yaml
+changed() { # name, sed's command, pattern of a note: is imported, and says so
+    sed -e "$2" good.urdf >changed.urdf
+    expect "$1" 0 "$stance" import changed.urdf -o changed.yaml --force
+    says "... which is said: $3" "$3"
+}
+changed "lower above upper is no limit" '15s/-1" upper="1/1" upper="-1/' 'lower > upper is what Bullet.s files write without limits: it has no stops'
+grep -q "limits: \[" changed.yaml
+result $((!$?)) "... nor has the scenario"
+changed "it begins at its stop, as it counts" '15s/-1" upper="1/-0.7" upper="-0.3/' 'b begins at its limit, 0.3, not at 0'
+changed "blanks, and a version that there is none of" '1s/^/\n \n<?xml version="0.0" encoding="ISO-8859-1"?>\n/;2s/"a"/"\xe4"/;12s/"a"/"\xe4"/' 'root ä is free'
+changed "a box that is tilted stands on its lower face" '8i <origin rpy="0 0.4 0"/>
+9s/<sphere radius="0.1"/<box size="0.2 0.1 0.04"/;s/xyz="0 0 -0.1" rpy="0 0 0"/xyz="0 0 0"/;13,14s/<child/<origin rpy="0 0.4 0"\/>&/' 'lower side touches'
+grep -q 'from: \[-0.1, -0.02\], to: \[0.1, -0.02\]' changed.yaml
+result $? "... its sole"
+changed "a motor of a joint that is fixed is left out" '11s/revolute/fixed/;17i <transmission><joint name="j"/></transmission>' 'motors left out, as their joints are fixed or floating: j'
+says "what was read is compared with" 'agree with those of what was read of the file\|not compared'
+sed -e '/collision/d;7s/i\(..\)="1"/i\1="0"/g;5s/-0.1/0/;2s/.*/<link name="world"\/>/;12s/"a"/"world"/' good.urdf >turns.urdf
+expect "what nothing resists is refused" 2 "$stance" import turns.urdf -o bad.yaml
+says "... by its joint" '^stance import: turns.urdf: as a scenario: robot.bodies.b: nothing resists its turning.* or hold it: --weld j$'
 refused() { # name, line, pattern, sed's command
     sed -e "$4" good.urdf >bad.urdf
     expect "$1 is refused" 2 "$stance" import bad.urdf -o bad.yaml
@@ -159,7 +178,6 @@ refused "a link that is missing" 13 'joint j: there is no link called c' '13s/"b
 refused "a joint without a parent" 11 'joint j has no <parent' '12d'
 refused "a type that is unknown" 11 'type "ball" is none of fixed, revolute' '11s/revolute/ball/'
 refused "an axis without direction" 14 'no direction' '14s/0 1 0/0 0 0/'
-refused "limits that are exchanged" 15 'lower limit 1 is above its upper one, -1' '15s/-1" upper="1/1" upper="-1/'
 refused "a size that is missing" 9 '<sphere> has no radius' '9s/radius="0.1"//'
 refused "a size less than nothing" 9 'less than nothing' '9s/0.1/-0.1/'
 refused "a shape that is missing" 9 'no <geometry>' '9s/<sphere[^>]*>//'
@@ -186,7 +204,7 @@ refused "a spring between links" 17 'linear_bushing_rpy' '17i <drake:linear_bush
 printf '<sdf version="1.6"><model/></sdf>\n' >other.urdf
 expect "SDF is refused" 2 "$stance" import other.urdf -o bad.yaml
 says "... as what it is" 'SDF'
-expect "a folder is refused" 2 "$stance" import . -o bad.yaml
+expect "a folder is refused" 3 "$stance" import . -o bad.yaml
 : >empty.urdf
 expect "an empty file is refused" 2 "$stance" import empty.urdf -o bad.yaml
 says "... in a line" 'empty.urdf'

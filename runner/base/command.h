@@ -8,7 +8,7 @@
 
 enum exit_code {
     EXIT_DONE = 0,
-    EXIT_CASES_FAILED = 1, /* some cases failed numerically; for `compare`: the files differ */
+    EXIT_CASES_FAILED = 1, /* some cases failed numerically; of `compare`, `import`: they differ */
     EXIT_USAGE = 2,        /* bad use or bad scenario */
     EXIT_IO = 3,
     EXIT_INTERRUPTED = 4, /* resumable */

@@ -10,6 +10,7 @@
 
 #include <errno.h>
 #include <stdlib.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 extern const struct command command_import; /* below */
@@ -27,6 +28,7 @@ struct request {
 };
 
 enum { PLANES = 3 };
+#define NO_FILE "scenario"
 
 static const char *plane_word(size_t k)
 {
@@ -41,7 +43,7 @@ static int fail(const char *text)
 }
 
 /* The first element of a file, as far as its beginning tells: what kind of file it is. */
-static bool first_element(const char *path, char name[16], stance_message *message)
+static bool first_element(const char *path, char name[16], spatial_message *message)
 {
     char begin[65536];
     FILE *const in = fopen(path, "rb");
@@ -62,7 +64,7 @@ static bool first_element(const char *path, char name[16], stance_message *messa
     return true;
 }
 
-static bool read_file(struct request *r, stance_message *message)
+static bool read_file(struct request *r, spatial_message *message)
 {
     char name[16];
     if (!first_element(r->file, name, message))
@@ -100,12 +102,14 @@ static void report(const struct request *r, const char *agreement)
     const stance_mechanism *const m = &r->robot.mechanism;
     const int root = r->robot.map.free_root;
     const int count[] = {m->bodies - root, m->elements, m->actuators};
-    printf("%s: %d bod%s in the plane%s, %d joint%s, %d contact%s, %d actuator%s\n", r->output,
-           m->bodies, m->bodies == 1 ? "y" : "ies", root ? ", free" : "", count[0],
-           &"s"[count[0] == 1], count[1], &"s"[count[1] == 1], count[2], &"s"[count[2] == 1]);
+    FILE *const out = r->output ? stdout : stderr;
+    fprintf(out, "%s: %d bod%s in the plane%s, %d joint%s, %d contact%s, %d actuator%s\n",
+            r->output ? r->output : r->file, m->bodies, m->bodies == 1 ? "y" : "ies",
+            root ? ", free" : "", count[0], &"s"[count[0] == 1], count[1], &"s"[count[1] == 1],
+            count[2], &"s"[count[2] == 1]);
     for (int n = 0; n < r->model.notes; n++)
-        printf("  - %s\n", r->model.note[n].text);
-    printf("%s\n", agreement);
+        fprintf(out, "  - %s\n", r->model.note[n].text);
+    fprintf(out, "%s\n", agreement);
 }
 
 /* With the scenario as a reader has it: does it move as the file's robot? */
@@ -113,8 +117,8 @@ static int finish(const struct scenario *s, const stance_case *c, void *asked)
 {
     struct request *const r = asked;
     struct compare_report compared;
-    stance_message message;
-    char sentence[400];
+    spatial_message message;
+    char sentence[1000];
     const bool known =
         import_compare(&r->model, r->file, &r->robot.map, s->scene, c, &compared, &message);
     if (known)
@@ -122,12 +126,35 @@ static int finish(const struct scenario *s, const stance_case *c, void *asked)
     else
         snprintf(sentence, sizeof sentence, "not compared with the file: %s", message.text);
     const int code = put(r);
-    if (code == EXIT_DONE && r->output)
+    if (code == EXIT_DONE)
         report(r, sentence);
     if (code != EXIT_DONE || !known || compared.worst <= COMPARE_ADMITTED)
         return code;
     fail(sentence);
     return EXIT_CASES_FAILED;
+}
+
+/* What is written is what a reader takes. What it does not take is told of the robot, as nobody has
+ * a scenario that has the line. */
+static int refuse_scenario(const struct request *r, const char *problems)
+{
+    const struct plane_map *const map = &r->robot.map;
+    char name[STANCE_NAME] = "";
+    const char *hold = NULL;
+    int place = 0, still = 0;
+    sscanf(problems, NO_FILE ":%*d:%*d: %n", &place);
+    const char *const text = problems + place;
+    sscanf(text, "robot.bodies.%63[a-zA-Z0-9_]: nothing resists%n", name, &still);
+    for (int k = 0; still > 0 && k < r->robot.mechanism.bodies; k++) {
+        const int own = map->coordinate[k + 2 * map->free_root].joint;
+        const struct spatial_joint *const joint =
+            &r->model.joint[own < 0 ? map->root_joint[0] : own];
+        if (strcmp(name, r->robot.mechanism.body[k].name) == 0)
+            hold = joint->name[0] ? joint->name : r->model.body[joint->body].name;
+    }
+    fprintf(stderr, "stance import: %s: as a scenario: %.*s%s%s\n", r->file,
+            (int)strcspn(text, "\n"), text, hold ? ", or hold it: --weld " : "", hold ? hold : "");
+    return EXIT_USAGE;
 }
 
 static int import(struct request *r)
@@ -137,18 +164,20 @@ static int import(struct request *r)
                                         .welds = r->weld.count,
                                         .sole = r->sole.text,
                                         .soles = r->sole.count};
-    stance_message message;
+    spatial_message message;
     if (!read_file(r, &message) || !plane_make(&r->model, &wishes, &r->robot, &message))
         return fail(message.text);
-    FILE *const out = open_memstream(&r->text, &r->size);
+    char *problems = NULL;
+    FILE *const out = open_memstream(&r->text, &r->size), *const said = open_memstream(
+                                                              &problems, &(size_t){0});
     if (out)
         import_write(out, &r->model, &r->robot);
-    if (!out || fclose(out) != 0)
+    if (!out || fclose(out) != 0 || !said)
         return fail(strerror(ENOMEM));
-    /* What is written is what a reader takes: an error is said with the line of the result. */
-    struct scenario *const s =
-        scenario_new(r->output ? r->output : "scenario", r->text, NULL, 0, stderr);
-    const int code = s ? asked_first(&command_import, s, finish, r) : EXIT_USAGE;
+    struct scenario *const s = scenario_new(NO_FILE, r->text, NULL, 0, said);
+    fclose(said);
+    const int code = s ? asked_first(&command_import, s, finish, r) : refuse_scenario(r, problems);
+    free(problems);
     scenario_drop(s);
     return code;
 }
@@ -163,6 +192,28 @@ static int work(void *asked)
     return code;
 }
 
+/* Both, before anything waits for them. */
+static bool check_files(const struct request *r)
+{
+    enum { MOST = 16 << 20 };
+    struct stat in, out;
+    const char *wrong = NULL, *of = r->file, *mark = "";
+    if (stat(r->file, &in) != 0 || access(r->file, R_OK) != 0)
+        mark = ":", wrong = strerror(errno);
+    else if (!S_ISREG(in.st_mode))
+        wrong = S_ISDIR(in.st_mode) ? "is a directory" : "is no regular file";
+    else if (in.st_size > MOST)
+        wrong = "is larger than 16 MiB, the most a robot may take";
+    else if (r->output && lstat(of = r->output, &out) == 0)
+        wrong = S_ISDIR(out.st_mode)                           ? "is a directory"
+                : !r->force                                    ? "exists; --force replaces it"
+                : S_ISREG(out.st_mode) || S_ISLNK(out.st_mode) ? NULL
+                                                               : "is no regular file";
+    if (wrong)
+        fprintf(stderr, "stance import: %s%s %s\n", of, mark, wrong);
+    return !wrong;
+}
+
 static int run(int argc, char **argv)
 {
     struct request request = {.plane = PLANES};
@@ -171,14 +222,8 @@ static int run(int argc, char **argv)
         return code;
     if (request.output && strcmp(request.output, "-") == 0)
         request.output = NULL;
-    if (request.output && !request.force && access(request.output, F_OK) == 0) {
-        fprintf(stderr, "stance import: %s exists; --force replaces it\n", request.output);
-        return EXIT_USAGE;
-    }
-    if (access(request.file, R_OK) != 0) {
-        fprintf(stderr, "stance import: %s: %s\n", request.file, strerror(errno));
+    if (!check_files(&request))
         return EXIT_IO;
-    }
     if (!instruction_set_usable(command_import.name)) /* for the first case */
         return EXIT_USAGE;
     return sandbox(work, &request, request.file);
@@ -206,10 +251,9 @@ const struct command command_import = {
     run,
     options,
     "Writes a scenario of a planar robot: bodies, joints with springs, dampers, armature and "
-    "limits, "
-    "contacts, motors, the ground, the initial state (of MJCF the first keyframe). Comments at its "
-    "head say what is otherwise than in the file, and why. What has no counterpart is refused by "
-    "its "
-    "name. Where libmujoco is installed accelerations in random states are compared with the "
-    "file's.\n",
+    "limits, contacts, motors, the ground, the initial state (of MJCF the first keyframe). "
+    "Comments at its head say what is otherwise than in the file, and why. What has no "
+    "counterpart is refused by its name. Where libmujoco is installed accelerations in random "
+    "states are compared with those of an MJCF file, or of what was read of a URDF; exit code 1: "
+    "they differ.\n",
     NULL};

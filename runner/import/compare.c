@@ -55,7 +55,7 @@ static void twin_free(const struct comparison *o, struct twin *t)
 
 /* Without contacts, stops, and a fluid, which is left out of scenarios with a note. */
 static bool twin_load(const struct comparison *o, struct twin *t, const char *path, const char *of,
-                      stance_message *message)
+                      spatial_message *message)
 {
     char why[200] = "";
     t->m = mujoco_load(&o->mj, path, why, sizeof why);
@@ -66,12 +66,12 @@ static bool twin_load(const struct comparison *o, struct twin *t, const char *pa
     t->d = o->mj.mj_makeData(t->m);
     t->mass = spatial_room((size_t)t->m->nv, (size_t)t->m->nv * sizeof *t->mass);
     t->ways = spatial_room((size_t)t->m->nv, N * sizeof *t->ways);
-    return t->d || no_memory(message);
+    return t->d || complain(message, "not enough memory");
 }
 
 /* The same of what has been written to a file without a name, which it closes. */
 static bool twin_read(const struct comparison *o, struct twin *t, FILE *out, const char *of,
-                      stance_message *message)
+                      spatial_message *message)
 {
     char path[64];
     if (!out || fflush(out) != 0 || ferror(out))
@@ -124,14 +124,13 @@ static bool put_inertia(const struct comparison *o, const struct spatial_body *b
     return true;
 }
 
-static bool load_model(struct comparison *o, stance_message *message)
+static bool load_model(struct comparison *o, spatial_message *message)
 {
     FILE *const out = tmpfile();
     if (out)
         write_tree(out, o->model);
     if (!twin_read(o, &o->file, out, "what was read of the file", message))
         return false;
-    memcpy(o->file.m->opt.gravity, o->model->gravity, sizeof o->model->gravity);
     for (int j = 0; j < o->model->joints; j++)
         mujoco_joint(o->file.m, j, &o->model->joint[j], true);
     for (int b = 0; b < o->model->bodies; b++) {
@@ -145,15 +144,16 @@ static bool load_model(struct comparison *o, stance_message *message)
 }
 
 /* The file itself, less what scenarios leave out with a note: ranges of motors that are not the
- * same both ways, dampers and rotors of a free joint. What is no motor gives nothing. */
-static bool load_file(struct comparison *o, const char *path, stance_message *message)
+ * same both ways, dampers and rotors of a free joint; motors drive. What is no motor gives nothing.
+ */
+static bool load_file(struct comparison *o, const char *path, spatial_message *message)
 {
     if (!twin_load(o, &o->file, path, path, message))
         return false;
     mjModel *const m = o->file.m;
     if (m->njnt != o->model->joints || m->nu != o->model->actuators)
         return complain(message, "not compared: %s has other joints than when it was read", path);
-    m->opt.disableflags |= mjDSBL_CLAMPCTRL;
+    m->opt.disableflags = (m->opt.disableflags | mjDSBL_CLAMPCTRL) & ~mjDSBL_ACTUATION;
     for (int a = 0; a < m->nu; a++) {
         m->actuator_forcelimited[a] = 0;
         for (int k = 0; k < 6; k++)
@@ -165,7 +165,7 @@ static bool load_file(struct comparison *o, const char *path, stance_message *me
     return true;
 }
 
-static bool load_ours(struct comparison *o, const stance_case *c, stance_message *message)
+static bool load_ours(struct comparison *o, const stance_case *c, spatial_message *message)
 {
     FILE *const out = tmpfile();
     if (out)
@@ -381,20 +381,22 @@ static bool compare_state(struct comparison *o, struct compare_report *report)
 
 bool import_compare(const struct spatial_model *model, const char *path,
                     const struct plane_map *map, const stance_scene *scene, const stance_case *c,
-                    struct compare_report *report, stance_message *message)
+                    struct compare_report *report, spatial_message *message)
 {
     struct comparison o = {.model = model,
                            .map = map,
                            .scene = scene,
                            .itself = strcmp(model->format, "MJCF") == 0,
                            .random = 1};
-    *report = (struct compare_report){.state = 1};
+    *report = (struct compare_report){.state = 1, .itself = o.itself};
     if (!mujoco_open(&o.mj, message))
         return false;
     bool good = (o.itself ? load_file(&o, path, message) : load_model(&o, message)) &&
                 load_ours(&o, c, message);
-    if (good)
+    if (good) {
+        memcpy(o.file.m->opt.gravity, model->gravity, sizeof model->gravity); /* as it was taken */
         make_ways(&o);
+    }
     while (good && report->states < STATES)
         good = compare_state(&o, report) ||
                complain(message, "not compared: the mass matrix is singular at state %d",
@@ -409,7 +411,7 @@ bool import_compare(const struct spatial_model *model, const char *path,
 
 bool import_compare(const struct spatial_model *model, const char *path,
                     const struct plane_map *map, const stance_scene *scene, const stance_case *c,
-                    struct compare_report *report, stance_message *message)
+                    struct compare_report *report, spatial_message *message)
 {
     struct mujoco none;
     (void)model, (void)path, (void)map, (void)scene, (void)c, (void)report;
@@ -422,11 +424,13 @@ const char *compare_sentence(const struct compare_report *report, const stance_s
                              char *text, size_t size)
 {
     const bool agree = report->worst <= COMPARE_ADMITTED;
-    snprintf(text, size,
-             "%d random states: accelerations %s %.2g (relative, %sat state %d, coordinate %s)%s",
-             report->states, agree ? "agree with the file's to" : "DIFFER from the file's by up to",
-             report->worst, agree ? "largest " : "", report->state,
-             scene->coordinate[report->coordinate].name,
-             agree ? "" : ", more than rounding does unless masses differ by many orders");
+    snprintf(
+        text, size,
+        "%d random states: accelerations %s %s %s %.2g (relative, %sat state %d, coordinate %s)%s",
+        report->states, agree ? "agree with" : "DIFFER from",
+        report->itself ? "the file's" : "those of what was read of the file",
+        agree ? "to" : "by up to", report->worst, agree ? "largest " : "", report->state,
+        scene->coordinate[report->coordinate].name,
+        agree ? "" : ", more than rounding does unless masses differ by many orders");
     return text;
 }

@@ -14,6 +14,7 @@
 
 struct compare_report {
     int states;
+    bool itself;           /* with the file itself, not with what was read of it */
     double worst;          /* largest difference, by the largest acceleration of its state */
     int state, coordinate; /* where: from 1; of the scene */
 };
@@ -24,10 +25,10 @@ struct compare_report {
  * end the process: for runner/base/sandbox.h). */
 bool import_compare(const struct spatial_model *model, const char *path,
                     const struct plane_map *map, const stance_scene *scene, const stance_case *c,
-                    struct compare_report *report, stance_message *message);
+                    struct compare_report *report, spatial_message *message);
 
-/* "100 random states: accelerations agree with the file's to 3.1e-13 (...)", or, beyond what is
- * admitted, that they do not. Returns `text`. */
+/* "100 random states: accelerations agree with the file's to 3.1e-13 (...)" (or "those of what was
+ * read of it"), or, beyond what is admitted, that they do not. Returns `text`. */
 const char *compare_sentence(const struct compare_report *report, const stance_scene *scene,
                              char *text, size_t size);
 

@@ -202,11 +202,9 @@ static void read_geoms(const struct reading *r)
     for (int h = 0; h < m->ngeom; h++)
         floor = floor || (is_static(m, h) && m->geom_type[h] == mjGEOM_PLANE &&
                           (m->geom_contype[h] || m->geom_conaffinity[h]));
-    if (m->opt.disableflags & (mjDSBL_CONTACT | mjDSBL_CONSTRAINT))
-        spatial_note(r->model, "contacts are disabled in the file: nothing touches the ground");
-    else
-        for (int g = 0; g < m->ngeom; g++)
-            read_geom(r, g, floor);
+    for (int g = 0; g < m->ngeom && !(m->opt.disableflags & (mjDSBL_CONTACT | mjDSBL_CONSTRAINT));
+         g++)
+        read_geom(r, g, floor);
 }
 
 /* ---- what drives ---------------------------------------------------------------------------- */
@@ -306,6 +304,24 @@ static void read_aliens(const struct reading *r)
                      "the medium (density, viscosity) is left out: it has no counterpart");
 }
 
+/* What the file turns off as a whole. */
+static void read_flags(const struct reading *r)
+{
+    static const struct {
+        int flag;
+        const char *what;
+    } flags[] = {{mjDSBL_CONSTRAINT, "constraints"},
+                 {mjDSBL_CONTACT, "contacts"},
+                 {mjDSBL_LIMIT, "limits of joints"},
+                 {mjDSBL_PASSIVE, "springs and dampers"},
+                 {mjDSBL_GRAVITY, "gravity"}};
+    for (size_t i = 0; i < sizeof flags / sizeof *flags; i++)
+        if (r->m->opt.disableflags & flags[i].flag)
+            spatial_note_of(r->model, "disabled in the file, and left out", flags[i].what);
+    if (r->m->opt.disableflags & mjDSBL_ACTUATION)
+        spatial_note(r->model, "actuation is disabled in the file: here its motors drive");
+}
+
 /* ---- the file ------------------------------------------------------------------------------- */
 
 static void read_model(const struct reading *r)
@@ -325,11 +341,12 @@ static void read_model(const struct reading *r)
         read_actuator(r, a);
     read_geoms(r);
     read_aliens(r);
+    read_flags(r);
 }
 
 /* MuJoCo's own, of several lines and with the line of the element where it knows one. */
 static bool refuse_as_mujoco(const struct spatial_model *model, const char *error,
-                             stance_message *message)
+                             spatial_message *message)
 {
     int number = 0;
     for (const char *at = error; number == 0 && (at = strcasestr(at, "line")) != NULL; at++)
@@ -342,11 +359,18 @@ static bool refuse_as_mujoco(const struct spatial_model *model, const char *erro
         else if (s > error && s[1] && message->text[n - 1] != ' ')
             message->text[n++] = ' ';
     message->text[n] = 0;
+    char *const nowhere = strstr(message->text, ", line 0");
+    if (nowhere &&
+        !isdigit((unsigned char)nowhere[8])) /* it counts lines of the file itself only */
+        snprintf(nowhere, 40, ", in a file that it includes");
+    if (strstr(error, "unrecognized"))
+        add_text(message->text, sizeof message->text,
+                 ": this is MuJoCo 2.2; take out what is newer");
     return false;
 }
 
 static bool load(const struct mujoco *library, const char *path, struct spatial_model *model,
-                 stance_message *message)
+                 spatial_message *message)
 {
     char error[1000] = "no memory";
     sandbox_limit(true);
@@ -365,10 +389,10 @@ static bool load(const struct mujoco *library, const char *path, struct spatial_
 
 #endif
 
-bool mjcf_read(const char *path, struct spatial_model *model, stance_message *message)
+bool mjcf_read(const char *path, struct spatial_model *model, spatial_message *message)
 {
     struct mujoco library;
-    stance_message why;
+    spatial_message why;
     bool good = false;
     spatial_begin(model, path, "MJCF");
     if (!mujoco_open(&library, &why))

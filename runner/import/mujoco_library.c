@@ -72,7 +72,7 @@ static bool find_all(struct mujoco *m)
     return all;
 }
 
-bool mujoco_open(struct mujoco *m, stance_message *message)
+bool mujoco_open(struct mujoco *m, spatial_message *message)
 {
     char exact[32];
     snprintf(exact, sizeof exact, "libmujoco.so.%d.%d.%d", mjVERSION_HEADER / 100,
@@ -134,7 +134,7 @@ void mujoco_close(struct mujoco *m)
 
 #else
 
-bool mujoco_open(struct mujoco *m, stance_message *message)
+bool mujoco_open(struct mujoco *m, spatial_message *message)
 {
     (void)m;
     return complain(message, "this program was built without libmujoco 2.2 (Debian: apt install "

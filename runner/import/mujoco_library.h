@@ -51,6 +51,6 @@ struct mujoco {
 
 /* False: it is not there, or this program was built without its header; `message` says how to get
  * it. */
-bool mujoco_open(struct mujoco *m, stance_message *message);
+bool mujoco_open(struct mujoco *m, spatial_message *message);
 
 #endif

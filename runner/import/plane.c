@@ -71,10 +71,10 @@ static double moment_of(struct plane_tree *t, int b)
     for (int i = 0; i < 3; i++)
         by[i] -= moment * normal[i];
     if (space_length(by) > 1e-3 * moment && space_length(by) > 1e-12)
-        spatial_note(t->model,
-                     "products of inertia of %.60s with the plane's normal are left out: "
-                     "they have no effect in the plane",
-                     body->name);
+        spatial_note_of(t->model,
+                        "products of inertia with the plane's normal are left out, as they have no "
+                        "effect in the plane",
+                        body->name);
     return moment;
 }
 
@@ -201,20 +201,20 @@ static double limit_of(struct plane_tree *t, const struct spatial_actuator *actu
     return limit;
 }
 
-static bool too_many(const struct plane_tree *t)
+/* Of joints from a link on, or of those that are driven. */
+static bool too_many(const struct plane_tree *t, int from, bool driven, const char *what)
 {
-    char list[140] = "";
+    struct spatial_note list = {.length = 0};
     int count = 0;
-    for (int k = 0; k < t->links; k++) {
-        bool driven = false;
+    for (int k = from; k < t->links; k++) {
+        bool counts = !driven;
         for (int a = 0; a < t->model->actuators; a++)
-            driven = driven || t->model->actuator[a].joint == t->link[k].joint;
-        if (driven)
-            add_text(list, sizeof list, "%s%.20s", count++ ? ", " : "",
-                     plane_joint_name(t, t->link[k].joint));
+            counts = counts || t->model->actuator[a].joint == t->link[k].joint;
+        if (counts)
+            spatial_list(&list, plane_joint_name(t, t->link[k].joint));
+        count += counts;
     }
-    return plane_refuse(t, 0, "%d joints are driven; at most %d: --weld some of %s", count,
-                        STANCE_MAX_ACTUATORS, list);
+    return plane_refuse(t, 0, "%d joints %s: --weld some of %s", count, what, list.text);
 }
 
 /* The actuator of a link's joint, if it has one: a motor, or a servo of places, of rates, or one of
@@ -238,7 +238,7 @@ static bool take(struct plane_tree *t, int k, double gain[2])
     if (!first)
         return true;
     if (n == STANCE_MAX_ACTUATORS)
-        return too_many(t);
+        return too_many(t, 0, true, "are driven; at most 8");
     m->actuator[n].body = k;
     m->value.limit[n] = limit_of(t, first) + (second ? limit_of(t, second) : 0);
     gain[0] = first->kp + (second ? second->kp : 0);
@@ -297,33 +297,28 @@ static bool take_drives(struct plane_tree *t)
 /* A joint that follows another one is as good as any where it is held. */
 static bool take_aliens(struct plane_tree *t)
 {
+    char text[2 * SPATIAL_NAME];
     for (int a = 0; a < t->model->aliens; a++) {
         const struct spatial_alien *const alien = &t->model->alien[a];
         const bool mimic = strcmp(alien->what, SPATIAL_MIMIC) == 0;
         bool held = false;
         for (size_t w = 0; mimic && w < t->wishes->welds; w++)
             held = held || strcmp(alien->name, t->wishes->weld[w]) == 0;
+        snprintf(text, sizeof text, "%s%s%s", alien->what, alien->name[0] ? " " : "", alien->name);
         if (!held && !alien->harmless)
-            return plane_refuse(
-                t, alien->line, "%s%s%.60s has no counterpart here: take it out of the file%s",
-                alien->what, alien->name[0] ? " " : "", alien->name, mimic ? ", or --weld it" : "");
+            return plane_refuse(t, alien->line,
+                                "%s has no counterpart here: take it out of the file%s", text,
+                                mimic ? ", or --weld it" : "");
         if (!held)
-            spatial_note(t->model, "%s%s%.60s is left out", alien->what, alien->name[0] ? " " : "",
-                         alien->name);
+            spatial_note_of(t->model, "left out", text);
     }
     return true;
 }
 
 static bool check_size(const struct plane_tree *t)
 {
-    const int root = t->link[0].kind == STANCE_HINGE ? 0 : 1;
-    char list[140] = "";
-    for (int k = root; k < t->links; k++)
-        add_text(list, sizeof list, "%s%.20s", k > root ? ", " : "",
-                 plane_joint_name(t, t->link[k].joint));
     return t->links - (t->link[0].kind == STANCE_SLIDE) <= STANCE_MAX_ANGLES ||
-           plane_refuse(t, 0, "%d joints move; at most 10 besides the root: --weld some of %s",
-                        t->links - root, list);
+           too_many(t, t->link[0].kind != STANCE_HINGE, false, "move; at most 10 besides the root");
 }
 
 /* A reader may take nan for a number. */
@@ -359,7 +354,7 @@ static bool take_links(struct plane_tree *t)
 }
 
 bool plane_make(struct spatial_model *model, const struct plane_wishes *wishes,
-                struct plane_robot *robot, stance_message *message)
+                struct plane_robot *robot, spatial_message *message)
 {
     struct plane_tree t = {.model = model, .wishes = wishes, .robot = robot, .message = message};
     *robot = (struct plane_robot){.step = model->step > 0 ? fmin(model->step, 0.1) : 1e-3};

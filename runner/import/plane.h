@@ -54,7 +54,7 @@ struct plane_robot {
 /* False: `message` says file, line and what to do. Notes are added to the model's, and its joints
  * begin where they do in the scene. `robot` is to be freed either way. */
 bool plane_make(struct spatial_model *model, const struct plane_wishes *wishes,
-                struct plane_robot *robot, stance_message *message);
+                struct plane_robot *robot, spatial_message *message);
 void plane_free(struct plane_robot *robot);
 
 #endif

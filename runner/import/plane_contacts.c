@@ -45,13 +45,12 @@ static double complex corner(const struct plane_tree *t, const struct spatial_ge
 }
 
 /* The lower side of a box as a sole; of one without extent a point. As the robot begins: of all
- * pairs of corners with none below their line that whose middle is lowest, of such in one line the
- * longest. */
+ * pairs of corners with none below their line the one that slopes least, of such the longest. */
 static void of_box(struct plane_tree *t, const struct spatial_geom *geom, const double half[3],
                    struct candidate *c)
 {
     double complex at[CORNERS], world[CORNERS];
-    double least = INFINITY, longest = 0, size = 0;
+    double level = 0, longest = 0, size = 0;
     for (int i = 0; i < CORNERS; i++) {
         at[i] = corner(t, geom, i & 1 ? half[0] : -half[0], i & 2 ? half[1] : -half[1],
                        i & 4 ? half[2] : -half[2]);
@@ -62,13 +61,12 @@ static void of_box(struct plane_tree *t, const struct spatial_geom *geom, const 
     for (int i = 0; i < CORNERS; i++)
         for (int j = 0; j < CORNERS; j++) {
             const double complex side = world[j] - world[i];
-            const double length = cabs(side), middle = cimag(world[i] + world[j]);
+            const double length = cabs(side), way = creal(side) / length;
             bool under = creal(side) > 0 && length > 1e-9 * size;
             for (int k = 0; under && k < CORNERS; k++)
                 under = cimag(conj(side) * (world[k] - world[i])) > -1e-9 * size * length;
-            if (under && (middle < least - 1e-9 * size ||
-                          (middle < least + 1e-9 * size && length > longest))) {
-                least = middle;
+            if (under && (way > level + 1e-9 || (way > level - 1e-9 && length > longest))) {
+                level = way;
                 longest = length;
                 c->at = at[i];
                 c->to = at[j];
@@ -126,6 +124,8 @@ static bool add_sole(struct plane_tree *t, const char *text, struct candidates *
     if (body < 0 || t->link_of[body] < 0)
         return plane_refuse(t, 0, "--sole %.60s: %s", text,
                             body < 0 ? "there is no link of this name" : "it does not move");
+    if (given[0] == given[2] && given[1] == given[3])
+        return plane_refuse(t, 0, "--sole %.60s: its two ends are one place", text);
     /* Which of its axes are across the plane: z (then x and y are in it), x, else y. */
     const double *const across = t->pose[body].rotation[2];
     const int first = fabs(across[0]) > 0.7 ? 1 : 0, second = fabs(across[2]) > 0.7 ? 1 : 2;
@@ -150,6 +150,7 @@ static bool refuse_shape(struct plane_tree *t, const struct spatial_geom *geom)
 {
     const char *const body = t->model->body[geom->body].name;
     const int link = t->link_of[geom->body];
+    char text[PLANE_TEXT];
     bool foot = t->link[link].children == 0;
     for (int g = 0; g < t->model->geoms; g++) {
         const struct spatial_geom *const other = &t->model->geom[g];
@@ -158,10 +159,10 @@ static bool refuse_shape(struct plane_tree *t, const struct spatial_geom *geom)
     }
     if (foot)
         return plane_refuse(t, geom->line,
-                            "%s %.50s of %.50s may touch the ground: give it a sole, "
-                            "--sole %.50s=X,Z,X,Z, or a simple shape",
-                            geom->of, geom->name, body, body);
-    spatial_note(t->model, "%s %.50s of %.50s touches nothing here", geom->of, geom->name, body);
+                            "%s may touch the ground: give it a sole, "
+                            "--sole %s=X,Z,X,Z, or a simple shape",
+                            plane_geom_text(t, geom, text), body);
+    spatial_note_of(t->model, "touch nothing here", plane_geom_text(t, geom, text));
     return true;
 }
 
@@ -170,6 +171,7 @@ static bool add_geom(struct plane_tree *t, const struct spatial_geom *geom, int 
                      struct candidates *c)
 {
     const int link = t->link_of[geom->body];
+    char text[PLANE_TEXT];
     struct candidate *const next = &c->list[c->count];
     if (link == 0 && t->link[0].kind == STANCE_SLIDE) {
         spatial_note(t->model, "%.60s touches no ground: its rail holds it",
@@ -178,8 +180,8 @@ static bool add_geom(struct plane_tree *t, const struct spatial_geom *geom, int 
     }
     for (int k = 0; k < soles; k++)
         if (c->list[k].link == link) {
-            spatial_note(t->model, "%s %.60s is left out: --sole stands for it", geom->of,
-                         geom->name);
+            spatial_note_of(t->model, "left out, as --sole stands for them",
+                            plane_geom_text(t, geom, text));
             return true;
         }
     *next = (struct candidate){
@@ -211,8 +213,7 @@ static bool gather(struct plane_tree *t, struct candidates *c)
 /* As many as there is room for, those of the ends of chains first; the others are told. */
 static void choose(struct plane_tree *t, struct candidates *c)
 {
-    char dropped[120] = "";
-    int room = STANCE_MAX_CONTACTS, elements = STANCE_MAX_ELEMENTS, left = 0;
+    int room = STANCE_MAX_CONTACTS, elements = STANCE_MAX_ELEMENTS;
     for (int k = 0; k < 2 * t->links; k++)
         room -= stance_mechanism_stops(&t->robot->mechanism, k / 2, k % 2);
     for (int n = 0; n < 2 * c->count; n++) {
@@ -224,12 +225,9 @@ static void choose(struct plane_tree *t, struct candidates *c)
         room -= one->taken ? takes : 0;
         elements -= one->taken;
         if (!one->taken)
-            add_text(dropped, sizeof dropped, "%s%.30s", left++ ? ", " : "",
-                     one->name[0] ? one->name : t->robot->mechanism.body[one->link].name);
+            spatial_note_of(t->model, "contacts more than there is room for are left out",
+                            one->name[0] ? one->name : t->robot->mechanism.body[one->link].name);
     }
-    if (left > 0)
-        spatial_note(t->model, "%d contacts more than there is room for are left out: %s", left,
-                     dropped);
 }
 
 /* What most of them have, of as many the first; but not 0, where another has any, as factors are of
@@ -310,12 +308,12 @@ static bool has_ground(struct plane_tree *t)
     bool touches = t->wishes->soles > 0;
     for (int k = 0; k < t->links; k++)
         touches = touches || t->link[k].touches;
+    if (!touches && !t->along_floor && (falls || t->has_floor))
+        spatial_note(t->model, "no shape may touch the ground; --sole LINK=X,Z,X,Z gives one");
     if (!touches || t->along_floor || t->has_floor)
         return touches && t->has_floor;
-    if (falls)
-        spatial_note(t->model, "the file has no floor: level ground at its height 0");
-    else
-        spatial_note(t->model, "the file has no floor: nothing touches the ground");
+    spatial_note(t->model, "the file has no floor: %s",
+                 falls ? "level ground at its height 0" : "nothing touches the ground");
     return falls;
 }
 
@@ -326,8 +324,11 @@ bool plane_contacts(struct plane_tree *t)
     for (int g = 0; g < t->model->geoms; g++)
         if (t->model->geom[g].meets_robot)
             spatial_note(t->model, "the robot's bodies do not touch each other here");
-    if (!has_ground(t))
+    if (!has_ground(t)) {
+        if (t->wishes->soles > 0)
+            spatial_note(t->model, "there is no ground here: --sole is left out");
         return true;
+    }
     c.list = spatial_room((size_t)t->model->geoms + t->wishes->soles, sizeof *c.list);
     const bool good = gather(t, &c);
     if (good) {

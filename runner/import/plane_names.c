@@ -71,6 +71,16 @@ static void tell(struct plane_tree *t, const char *what, const char *from, const
         spatial_note(t->model, "%s %.80s is called %s", what, from, to);
 }
 
+const char *plane_geom_text(const struct plane_tree *t, const struct spatial_geom *geom,
+                            char text[PLANE_TEXT])
+{
+    const char *const body = geom->body < 0 ? "" : t->model->body[geom->body].name;
+    const bool own = strcmp(geom->name, body) != 0 && geom->name[0];
+    snprintf(text, PLANE_TEXT, "%s%s%s%s%s", geom->of, own ? " " : "", own ? geom->name : "",
+             body[0] ? " of " : "", body);
+    return text;
+}
+
 void plane_name_bodies(struct plane_tree *t)
 {
     stance_mechanism *const m = &t->robot->mechanism;

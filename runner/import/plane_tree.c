@@ -42,9 +42,12 @@ static bool weld(struct plane_tree *t, const char *name)
     if (found < 0)
         return plane_refuse(t, 0, "--weld %.60s: there is no joint of this name%s%.60s%s", name,
                             near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
+    struct spatial_joint *const joint = &t->model->joint[found];
+    if (joint->limited)
+        joint->start = fmin(fmax(joint->start, joint->limits[0]), joint->limits[1]);
     t->held[found] = true;
     spatial_note(t->model, "joint %.60s is welded where it begins, at %.6g", name,
-                 t->model->joint[found].start + 0.0);
+                 joint->start + 0.0);
     return true;
 }
 
@@ -162,29 +165,46 @@ static bool in_plane(const struct plane_tree *t, int j, const double normal[3])
            (has_axis && kind == SPATIAL_SLIDE && fabs(space_dot(t->axis[j], normal)) < PARALLEL);
 }
 
-/* The first joint that is not of the plane, and how many more are not: " (so with a, b)". */
+/* The first joint that is not of the plane, and those that are not, either: " (so with a, b)". */
 static bool refuse_joint(const struct plane_tree *t, int j, const double normal[3])
 {
     const struct spatial_joint *const joint = &t->model->joint[j];
     const bool hinge = joint->kind == SPATIAL_HINGE;
     const char *const name = plane_joint_name(t, j);
-    char axis[64], of[64], others[90] = "";
+    struct spatial_note others = {.text = " (so with ", .length = sizeof " (so with " - 1};
+    const size_t none = others.length;
+    char axis[64], of[64];
     for (int k = j + 1; k < t->model->joints; k++)
         if (!in_plane(t, k, normal))
-            add_text(others, sizeof others - 2, "%s%.20s", others[0] ? ", " : " (so with ",
-                     plane_joint_name(t, k));
-    if (others[0])
-        add_text(others, sizeof others, ")");
+            spatial_list(&others, plane_joint_name(t, k));
+    add_text(others.text, sizeof others.text, ")");
+    const char *const so = others.length > none ? others.text : "";
     if (joint->kind == SPATIAL_BALL)
-        return plane_refuse(t, joint->line,
-                            "joint '%.40s' is a ball, which turns out of the plane: --weld %.40s "
-                            "holds it%s",
-                            name, name, others);
+        return plane_refuse(
+            t, joint->line,
+            "joint '%s' is a ball, which turns out of the plane: --weld %s holds it%s", name, name,
+            so);
     return plane_refuse(t, joint->line,
-                        "joint '%.25s' %s %s, not %s the normal %s: --weld %.25s "
-                        "holds it%s, --plane chooses another plane",
+                        "joint '%s' %s %s, not %s the normal %s: --weld %s holds it%s, --plane "
+                        "chooses another plane",
                         name, hinge ? "turns about" : "slides along", axis_text(t->axis[j], axis),
-                        hinge ? "along" : "across", axis_text(normal, of), name, others);
+                        hinge ? "along" : "across", axis_text(normal, of), name, so);
+}
+
+/* Gravity that is off an axis of the file by rounding, or to make a posture fall, is along it. */
+static void straighten(struct plane_tree *t)
+{
+    double *const gravity = t->model->gravity;
+    const double size = space_length(gravity);
+    for (int k = 0; k < 3; k++) {
+        const double off = hypot(gravity[(k + 1) % 3], gravity[(k + 2) % 3]) / size;
+        if (!(off > 0 && off < 1e-5))
+            continue;
+        spatial_note(t->model, "gravity is off the file's %c by %.2g rad: taken as along it",
+                     "xyz"[k], off);
+        for (int i = 0; i < 3; i++)
+            gravity[i] = i == k ? copysign(size, gravity[k]) : 0;
+    }
 }
 
 /* Up is against gravity; without any, along the file's z, else its y. */
@@ -232,6 +252,7 @@ static bool choose_plane(struct plane_tree *t)
 {
     const struct plane_map *const map = &t->robot->map;
     double normal[3] = {0};
+    straighten(t);
     choose_normal(t, normal);
     for (int j = 0; j < t->model->joints; j++)
         if (!in_plane(t, j, normal))
@@ -375,6 +396,23 @@ static void merge_root(struct plane_tree *t)
         link[k].parent -= 2;
 }
 
+/* Of the first tree's root, and of the body that begins another one: joints of all others. */
+static bool refuse_trees(const struct plane_tree *t, int first, const struct spatial_body *body)
+{
+    struct spatial_note joints = {.length = 0};
+    for (int k = 0; k < t->links; k++) {
+        int root = k;
+        while (t->link[root].parent >= 0)
+            root = t->link[root].parent;
+        if (root != first)
+            spatial_list(&joints, plane_joint_name(t, t->link[k].joint));
+    }
+    return plane_refuse(t, body->line,
+                        "bodies '%s' and '%s' both begin a tree: a robot is one tree. Take the "
+                        "other out of the file, or hold its joints with --weld: %s",
+                        t->model->body[t->link[first].body].name, body->name, joints.text);
+}
+
 static bool check_roots(const struct plane_tree *t)
 {
     int first = -1;
@@ -386,10 +424,7 @@ static bool check_roots(const struct plane_tree *t)
                                 "body '%.60s' is free, but hangs from another: only a root is free",
                                 body->name);
         if (link->parent < 0 && first >= 0)
-            return plane_refuse(t, body->line,
-                                "bodies '%.50s' and '%.50s' both begin a tree: a robot is one "
-                                "tree, take the other out of the file",
-                                t->model->body[t->link[first].body].name, body->name);
+            return refuse_trees(t, first, body);
         first = link->parent < 0 ? k : first;
     }
     return first >= 0 || plane_refuse(t, 0, "nothing moves: all bodies are fixed to the world");
@@ -459,14 +494,12 @@ static double complex floor_face(const struct plane_tree *t, const struct spatia
 /* What stands still beside the floor. */
 static void note_others(struct plane_tree *t, int floor)
 {
+    char text[PLANE_TEXT];
     for (int g = 0; g < t->model->geoms; g++) {
         const struct spatial_geom *const geom = &t->model->geom[g];
-        const char *const of =
-            geom->name[0] || geom->body < 0 ? geom->name : t->model->body[geom->body].name;
         if (g != floor && geom->meets_floor && is_fixed(t, geom->body))
-            spatial_note(t->model,
-                         "%s%s%.60s stands still and is left out: the ground is one half plane",
-                         geom->of, of[0] ? " " : "", of);
+            spatial_note_of(t->model, "left out, as the ground is one half plane",
+                            plane_geom_text(t, geom, text));
     }
 }
 

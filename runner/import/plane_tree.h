@@ -34,7 +34,7 @@ struct plane_tree {
     struct spatial_model *model;
     const struct plane_wishes *wishes;
     struct plane_robot *robot;
-    stance_message *message;
+    spatial_message *message;
     struct plane_pose base, /* of the file's world */
         *pose, *start;      /* [bodies] joints at `reference` (held ones at `start`); at `start` */
     double (*axis)[3], (*line)[3]; /* [joints] a joint's direction, a place on it; at `reference` */
@@ -77,6 +77,10 @@ static inline void plane_put(double complex place, double out[2])
 /* plane_contacts.c: what may touch, into the mechanism, with ground.friction; what begins inside
  * the ground is raised. */
 bool plane_contacts(struct plane_tree *t);
+/* "sphere heel of foot", as far as there are names. */
+enum { PLANE_TEXT = 2 * SPATIAL_NAME + 60 };
+const char *plane_geom_text(const struct plane_tree *t, const struct spatial_geom *geom,
+                            char text[PLANE_TEXT]);
 /* plane_names.c: of links; of contacts and motors by what they are called in the file. */
 void plane_name_bodies(struct plane_tree *t);
 void plane_name_contact(struct plane_tree *t, int element, const char *geom);

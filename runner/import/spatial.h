@@ -103,14 +103,22 @@ struct spatial_alien {
     bool harmless; /* left out with a note; else refused */
 };
 
-/* A line of what was left out or changed, and why; they become comments of the scenario. */
+/* A line that may end in a list of names, each whole; of those without room it is said how many. */
 struct spatial_note {
-    char text[240];
+    char text[560];
+    size_t length; /* of text that names may stand behind */
+    int more;      /* names without room */
 };
+
+/* Why something failed, as stance_message, with room for a list of names. */
+typedef struct spatial_message {
+    char text[900];
+} spatial_message;
 
 struct spatial_model {
     char title[SPATIAL_NAME]; /* the robot's */
     char file[SPATIAL_NAME];  /* its file's name, without directories */
+    const char *path;         /* ... as it was asked for; the caller's */
     const char *format;       /* "MJCF", "URDF"; static */
     double gravity[3];        /* m/s^2 */
     double step;              /* s, 0: not given */
@@ -135,20 +143,24 @@ void *spatial_room(size_t count, size_t size);
 /* spatial_refuse(model, message, line, format, ...): "FILE:LINE: ...", line 0: not known. Is false.
  */
 #define spatial_refuse(...) (spatial_say(__VA_ARGS__), as_false())
-void spatial_say(const struct spatial_model *model, stance_message *message, int line,
+void spatial_say(const struct spatial_model *model, spatial_message *message, int line,
                  const char *format, ...) __attribute__((format(printf, 4, 5)));
 /* NULL: "". */
 void spatial_name(char name[SPATIAL_NAME], const char *text);
 /* An empty model of a file. */
 void spatial_begin(struct spatial_model *model, const char *path, const char *format);
-/* A line of a comment, once; more than fits is cut. */
+/* A line of what was left out or changed, and why, once; they become comments of the scenario. */
 void spatial_note(struct spatial_model *model, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
+/* The same of several, each once: "WHAT: a, b, c". */
+void spatial_note_of(struct spatial_model *model, const char *what, const char *name);
+/* One more name of a list, which begins cleared. */
+void spatial_list(struct spatial_note *list, const char *name);
 void spatial_free(struct spatial_model *model);
 
 /* Readers: false: `message` says file, line and what to do. *model is to be freed either way.
  * MJCF: by libmujoco, loaded when it is there. URDF: by libxml2. */
-bool mjcf_read(const char *path, struct spatial_model *model, stance_message *message);
-bool urdf_read(const char *path, struct spatial_model *model, stance_message *message);
+bool mjcf_read(const char *path, struct spatial_model *model, spatial_message *message);
+bool urdf_read(const char *path, struct spatial_model *model, spatial_message *message);
 
 #endif

@@ -11,7 +11,7 @@
 /* A file while it is read. */
 struct urdf {
     struct spatial_model *model;
-    stance_message *message;
+    spatial_message *message;
     const xmlNode *root;
     struct urdf_link *link;
     struct urdf_joint *joint;

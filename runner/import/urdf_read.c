@@ -42,11 +42,35 @@ static const double unturned[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
 
 /* ---- the document --------------------------------------------------------------------------- */
 
-static xmlDoc *parse(const char *path, stance_message *message)
+/* Public files have lines before their <?xml ...?>, or a version of XML that there is none of: all
+ * that is kept of it is the encoding. */
+static void take_declaration(char *text, char encoding[64])
 {
-    xmlDoc *const document = xmlReadFile(path, NULL,
-                                         XML_PARSE_NONET | XML_PARSE_NOERROR | XML_PARSE_NOWARNING |
-                                             XML_PARSE_BIG_LINES);
+    char *const at = text + strspn(text, " \t\r\n"), *const end = strstr(at, "?>");
+    if (strncmp(at, "<?xml ", 6) != 0 || !end)
+        return;
+    *end = '\0';
+    const char *const key = strstr(at, "encoding");
+    if (key)
+        sscanf(key, "encoding%*[ =\t\r\n\"']%63[a-zA-Z0-9._-]", encoding);
+    for (char *c = at; c < end + 2; c++)
+        *c = *c == '\n' ? '\n' : ' ';
+}
+
+static xmlDoc *parse(const char *path, spatial_message *message)
+{
+    char encoding[64] = "", *text = NULL;
+    size_t room = 0;
+    FILE *const in = fopen(path, "rb");
+    const ssize_t size = in ? getdelim(&text, &room, '\0', in) : -1; /* all of a text */
+    if (in)
+        fclose(in);
+    if (size > 0)
+        take_declaration(text, encoding);
+    xmlDoc *const document = xmlReadMemory(
+        text, size > 0 ? (int)size : 0, path, encoding[0] ? encoding : NULL,
+        XML_PARSE_NONET | XML_PARSE_NOERROR | XML_PARSE_NOWARNING | XML_PARSE_BIG_LINES);
+    free(text);
     const xmlError *const why = document ? NULL : xmlGetLastError();
     if (why)
         complain(message, "%s:%d: not XML: %.*s", path, why->line,
@@ -209,7 +233,7 @@ static bool inertia_of(struct urdf *u, const struct urdf_link *link, struct spat
         return false;
     space_turn_moments(rotation, moment, body->inertia);
     if (!at && body->mass > 0)
-        spatial_note(u->model, "link %s has no <inertia>: it is a point mass", body->name);
+        spatial_note_of(u->model, "point masses, as they have no <inertia>", body->name);
     return true;
 }
 
@@ -287,8 +311,8 @@ static bool axis_of(struct urdf *u, const struct urdf_joint *j, double axis[3])
            urdf_refuse(u, at, "joint %.60s: its axis has no direction", j->name);
 }
 
-/* Exporters write lower = upper = 0 where a designer gave nothing, and others leave them out. URDF
- * begins where all coordinates are 0, or at the stop that is nearest to that. */
+/* Exporters write lower = upper = 0 where a designer gave nothing, others lower > upper, and others
+ * leave them out. */
 static bool limits_of(struct urdf *u, const struct urdf_joint *j, struct spatial_joint *joint)
 {
     const xmlNode *const at = urdf_child(j->node, "limit", NULL);
@@ -299,24 +323,18 @@ static bool limits_of(struct urdf *u, const struct urdf_joint *j, struct spatial
         !urdf_numbers(u, at, "upper", 1, &limits[1], 0) ||
         !urdf_numbers(u, at, "effort", 1, &joint->effort, 0))
         return false;
-    if (limits[0] > limits[1])
-        return urdf_refuse(u, at, "joint %.60s: its lower limit %g is above its upper one, %g",
-                           j->name, limits[0], limits[1]);
-    joint->limited = limits[0] != 0 || limits[1] != 0;
-    if (joint->limited)
-        joint->start = fmin(fmax(0, limits[0]), limits[1]);
+    const bool crossed = limits[0] > limits[1];
+    joint->limited = !crossed && (limits[0] != 0 || limits[1] != 0);
     if (continuous && joint->limited)
         spatial_note(u->model, "joint %s is continuous, and its limits are kept", j->name);
     if (!continuous && !joint->limited)
         spatial_note(u->model,
                      "joint %s: %s: it has no stops here (if it is not to move: --weld %s)",
                      j->name,
-                     given ? "lower = upper = 0 is what exporters write without limits"
-                           : "no limits are given",
+                     crossed ? "lower > upper is what Bullet's files write without limits"
+                     : given ? "lower = upper = 0 is what exporters write without limits"
+                             : "no limits are given",
                      j->name);
-    if (joint->start != 0)
-        spatial_note(u->model, "joint %s begins at its stop, %g: 0 is beyond it", joint->name,
-                     joint->start);
     return true;
 }
 
@@ -463,8 +481,13 @@ static bool take_tree(struct urdf *u)
 static void add_motor(struct urdf *u, const xmlNode *at, const char *name, int joint, double gear)
 {
     const struct urdf_joint *const j = &u->joint[joint];
-    const double effort = j->joint >= 0 ? fabs(u->model->joint[j->joint].effort) : 0;
+    if (j->joint < 0) {
+        spatial_note_of(u->model, "motors left out, as their joints are fixed or floating",
+                        j->name);
+        return;
+    }
     struct spatial_actuator *const motor = spatial_add(u->model, actuator, actuators);
+    const double effort = fabs(u->model->joint[j->joint].effort);
     spatial_name(motor->name, name && *name ? name : j->name);
     spatial_name(motor->target, j->name);
     motor->line = urdf_line(at);
@@ -558,8 +581,7 @@ static bool drives(struct urdf *u)
 /* Notes are kept once each. */
 static void leave_out(struct urdf *u, const xmlNode *node)
 {
-    spatial_note(u->model, "left out, as it does not move the robot by itself: %.60s",
-                 urdf_name(node));
+    spatial_note_of(u->model, "left out, as it does not move the robot by itself", urdf_name(node));
 }
 
 static bool of_link(struct urdf *u, const xmlNode *at, struct urdf_link *link)
@@ -662,7 +684,7 @@ static bool read_robot(struct urdf *u, const xmlDoc *document)
     return true;
 }
 
-bool urdf_read(const char *path, struct spatial_model *model, stance_message *message)
+bool urdf_read(const char *path, struct spatial_model *model, spatial_message *message)
 {
     struct urdf u = {.model = model, .message = message};
     xmlDoc *const document = parse(path, message);
