@@ -199,6 +199,40 @@ $head {}"
 wrong macro 2 'macro.c:2: a: a number is missing' <<<"#define N 3
 #define PARAMETERS(X) X(a[N], 0, \"1\", 0, 1, \"a\")
 $head {}"
+wrong swapped 2 'swapped.c: its PARAMETERS are b; to the compiler and a; to the scenario' <<<"#if 0
+#define PARAMETERS(X) X(a, 1, \"1\", 0, 9, \"a\")
+#else
+#define PARAMETERS(X) X(b, 2, \"1\", 0, 9, \"b\")
+#endif
+$head {}"
+wrong other 2 'other.c:1: includes "k.h": a law is one file' <<<"#include \"k.h\"
+$head {}"
+wrong section 2 'section.c: has variables that outlive a call' <<<"static double last __attribute__((section(\"mine\"))) = 1;
+$head { last += 1; out->hip1 = last; }"
+wrong loads 2 'loads.c: has constructors' <<<"void _init(void) { __asm__ volatile(\"nop\"); }
+$head {}"
+write commented <<<"/* #define PARAMETERS(X) X(b, 1, \"1\", 0, 9, \"old\") */
+#define PARAMETERS(X) X(a, 1, \"1\", 0, 9, \"a // b\")
+$head { out->hip1 = sin(asin(0.5)) + atan2(1, 1) + tan(0) + acos(1) - is->a; }"
+expect "PARAMETERS in a comment are none" 0 "$stance" run --trust commented.yaml --set controller.a=2 -o commented.h5
+expect "no file is a mistake" 2 "$stance" check commented.yaml --set 'controller={kind: program, sample_time: 0.001}'
+expect "a list is no file" 2 "$stance" check commented.yaml --set 'controller.file=[a]'
+printf '1,,2\n' >numbers.txt
+expect "nor is nothing a number" 2 "$stance" check knows.yaml
+# A law that reads the clock is judged by what it is in the end: by any ranks the same.
+write clock <<<"$head
+{
+    const double k = now->time < 0.5 ? 300 : -50;
+    for (int i = 0; i < 2; i++)
+        out->all[i] = now->rest.all[i] - k * (now->q.all[3 + i] - now->target.all[3 + i]) - 30 * now->v.all[3 + i];
+}"
+for n in 1 3; do
+    timeout "$patience" mpirun -n $n "$stance" run --trust clock.yaml -o "clock$n.h5" --quiet \
+        --set 'sweep.grid=[{path: initial.offset.theta, from: -0.03, to: 0.03, count: 31}]' --set stop.time=3 >log 2>&1
+done
+"$stance" compare clock1.h5 clock3.h5 >log 2>&1
+grep -q '^identical' log
+result $? "a law that reads the clock is the same by any ranks"
 head -c 300000 /dev/zero | tr '\0' ' ' >large.c
 write larger <<<"$head {}"
 expect "a source that is too large" 2 "$stance" check larger.yaml --set controller.file=large.c

@@ -458,8 +458,8 @@ static bool take(struct program *p, const stance_scene *scene, size_t numbers, c
     if (p->object->parameters != numbers * sizeof(double) || strcmp(p->object->names, names) != 0)
         return complain(
             message,
-            "%.60s: its PARAMETERS are %.60s to the compiler and %.60s to the scenario: they "
-            "must not depend on other macros or on #if",
+            "%.40s: its PARAMETERS are %.50s to the compiler and %.50s to the scenario: "
+            "they must not depend on #if",
             p->file, p->object->names[0] ? p->object->names : "none", names[0] ? names : "none");
     return true;
 }

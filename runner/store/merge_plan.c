@@ -109,7 +109,15 @@ static bool misfit(struct merge *m, const struct differences *found, size_t part
 /* A value that stands in every part and may become an axis. */
 static bool is_value(struct merge *m, const struct tree *trees, const char *path)
 {
-    static const char *const fixed[] = {"stance", "title", "scene", "seed", "sweep", "record"};
+    static const char *const fixed[] = {"stance",
+                                        "title",
+                                        "scene",
+                                        "seed",
+                                        "sweep",
+                                        "record",
+                                        "controller.source",
+                                        "controller.file",
+                                        "controller.data"};
     for (size_t i = 0; i < sizeof fixed / sizeof fixed[0]; i++) {
         const size_t length = strlen(fixed[i]);
         if (strncmp(path, fixed[i], length) == 0 && (!path[length] || strchr(".[", path[length])))
