@@ -704,7 +704,7 @@ static void every_field_can_be_set_and_swept(void **state)
     int fields = 0;
     (void)state;
     assert_non_null(schema);
-    assert_true(schema_build(schema, stance_scene_find("biped")));
+    assert_true(schema_build(schema, stance_scene_find("biped"), NULL));
     for (int round = 0; round < 20; round++) {
         for (size_t i = 0; i < schema->count; i++) {
             const struct scenario_field *field = &schema->field[i];

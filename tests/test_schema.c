@@ -34,7 +34,7 @@ static struct schema *built_schema(const stance_scene *scene)
 {
     struct schema *schema = malloc(sizeof *schema);
     assert_non_null(schema);
-    assert_true(schema_build(schema, scene));
+    assert_true(schema_build(schema, scene, NULL));
     return schema;
 }
 
