@@ -341,10 +341,10 @@ void law_file_read(struct reader *r)
     struct tree_node *const map = tree_find(r->tree.root, "controller");
     if (!map || map->kind != TREE_MAP || !(is_word(map, "kind") || is_word(map, "far")))
         return;
-    const struct tree_node *const file = tree_find(map, "file"), *const own =
-                                                                     tree_find(map, "source");
+    const struct tree_node *const file = tree_find(map, "file");
+    const struct tree_node *const own = tree_find(map, "source"), *const named = file ? file : own;
     struct tree_node *const data = tree_find(map, "data");
-    if (!file && !own) {
+    if (!named) {
         problem_add(&r->problems, map->mark, "controller.file is missing (program needs it)");
         return;
     }
@@ -355,8 +355,8 @@ void law_file_read(struct reader *r)
         return;
     law->held = own != NULL;
     snprintf(law->name, sizeof law->name, "%s", file ? file->text : "controller.source");
-    const struct mark mark = file ? file->mark : own->mark;
-    const char *const text = own ? own->text : reader_file(r, "controller.file", file, MOST_BYTES);
+    const struct mark mark = named->mark;
+    const char *const text = own ? own->text : reader_file(r, "controller.file", named, MOST_BYTES);
     if (!text || (!own && !put(r, map, "source", text, true, mark)))
         return;
     if (data && data->kind == TREE_SCALAR)
