@@ -298,6 +298,7 @@ def stopped_and_resumed(ranks):
         assert numpy.isnan(part.settle_time.values[waits]).all() and numpy.isnan(part.steps.values[waits]).all()
         assert part.summary()["cases"]["pending"] == waits.sum()
         return waits.sum()
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # whoever began this may ignore it
     fails(KeyboardInterrupt, lambda: study.run(output=name, ranks=ranks, progress=interrupt))
     first = pending()
     assert 0 < first <= 401**2 - last[0], (first, last)

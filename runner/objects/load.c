@@ -32,7 +32,7 @@ bool load_library(const struct image *image, void **library, int *descriptor,
     }
     snprintf(path, sizeof path, "/proc/self/fd/%d", *descriptor);
     *library = dlopen(path, RTLD_NOW | RTLD_LOCAL);
-    return *library || complain(message, "a compiled object cannot be loaded: %.180s", dlerror());
+    return *library || complain(message, "a compiled kernel cannot be loaded: %.180s", dlerror());
 }
 
 bool load_object(const struct image *image, struct object *object, stance_message *message)

@@ -355,8 +355,8 @@ static bool calls_known(const struct image *image, const Elf64_Shdr *symbols, co
         if (symbol.st_shndx == SHN_UNDEF && !may_call(name))
             return complain(
                 message,
-                "%.80s: calls %.40s, which is none of the functions of stance_law.h "
-                "(sin, cos, tan, atan2, exp, tanh, sqrt, fabs, fma, fmin, fmax, floor ...)",
+                "%.60s: calls %.40s, which is none of the functions of stance_law.h (sin, cos, "
+                "tan, atan2, exp, tanh, sqrt, fabs, fma, fmax, floor ...)",
                 file, name);
     }
     return true;
