@@ -19,7 +19,7 @@ STRICT   = -std=c17 -D_GNU_SOURCE -ffp-contract=off -fno-tree-slp-vectorize -fno
 PKG_CONFIG ?= pkg-config
 PACKAGES_RUN  = libopenmpi-dev openmpi-bin libhdf5-openmpi-dev libyaml-dev liblapacke-dev \
                 libslicot-dev libsundials-dev libgsl-dev librandom123-dev libjansson-dev libssl-dev zlib1g-dev libxml2-dev \
-                gnuplot-nox fonts-dejavu-core
+                gnuplot-nox fonts-dejavu-core libmujoco-dev
 PACKAGES_TEST = libcmocka-dev python3-yaml python3-jsonschema man-db python3-h5py python3-xarray python3-netcdf4 python3-scipy netcdf-bin \
                 poppler-utils
 PACKAGES_LINT = clang-format clang-tidy cppcheck
@@ -29,7 +29,7 @@ CLANG_VERSION = $(shell clang -dumpversion 2>/dev/null | cut -d. -f1)
 PACKAGES_WEB  = clang lld llvm wasi-libc libclang-rt-$(CLANG_VERSION:%=%-)dev-wasm32 $(if $(shell command -v node),,nodejs) $(if $(shell command -v npm),,npm)
 PACKAGES_SLURM = munge slurmctld slurmd slurm-client
 PACKAGES_HOSTS = iproute2
-PACKAGES_BENCH = libmujoco-dev libsiconos-kernel-dev libsiconos-numerics-dev valgrind linux-perf
+PACKAGES_BENCH = libsiconos-kernel-dev libsiconos-numerics-dev valgrind linux-perf
 BUILD_TOOLS   = gcc make pkg-config
 
 ifeq ($(MPI),1)

@@ -17,7 +17,8 @@ SPACK = {"libopenmpi-dev": "openmpi", "libhdf5-openmpi-dev": "hdf5", "libyaml-de
          "libgsl-dev": "gsl", "librandom123-dev": "random123", "libjansson-dev": "jansson",
          "libssl-dev": "openssl", "zlib1g-dev": "zlib-api", "libxml2-dev": "libxml2",
          "gnuplot-nox": "gnuplot"}
-WITH_OTHERS = {"openmpi-bin", "fonts-dejavu-core"}  # Spack has them in others, or leaves them to the system
+# Spack has them in others, or leaves them to the system, or the program does without.
+WITH_OTHERS = {"openmpi-bin", "fonts-dejavu-core", "libmujoco-dev"}
 
 
 def makefile(name):
