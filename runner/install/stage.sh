@@ -15,7 +15,7 @@ rm -rf "$folder"
 put 755 bin "$stance"
 put 644 include/stance/engine engine/stance.h engine/mechanism.h engine/tree.h
 put 644 include/stance/engine/control engine/control/design.h
-put 644 include/stance runner/objects/law/stance_law.h
+put 644 include/stance runner/objects/law/*.h
 put 644 lib "$build/libstance.a" "$build/libstance_control.a"
 put 644 share/doc/stance LICENSE README.md CHANGELOG.md CITATION.cff
 for f in $(cd scenarios && find . -name '*.yaml' -o -name '*.sh' -o -name '*.c'); do

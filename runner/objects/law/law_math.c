@@ -5,19 +5,11 @@
  * (Cody and Waite 1980); tanh x = e / (e + 2), e = exp(2 x) - 1, for which 2^n and 2^n - 1 are
  * exact. An arc tangent is halved three times, atan x = 2 atan(x / (1 + sqrt(1 + x^2))), down to
  * 0.1, where its series up to x^15 is good to 1e-17. */
+#include "law_math.h"
+
 #include "engine/core/lanes/sincos.h"
 
-double law_sin(double x);
-double law_cos(double x);
 double law_fma(double a, double b, double c);
-double law_floor(double x);
-double law_tan(double x);
-double law_asin(double x);
-double law_acos(double x);
-double law_atan(double x);
-double law_atan2(double y, double x);
-double law_exp(double x);
-double law_tanh(double x);
 
 double law_sin(double x)
 {

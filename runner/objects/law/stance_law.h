@@ -32,6 +32,8 @@
 #ifndef STANCE_LAW_H
 #define STANCE_LAW_H
 
+#include "law_math.h"
+
 #include <math.h>
 
 #if __has_include(<names.h>)
@@ -114,16 +116,6 @@ void law(const struct sample *now, const struct parameters *is, struct memory *m
 #define fmin law_fmin
 #define fmax law_fmax
 #define floor law_floor
-double law_sin(double x);
-double law_cos(double x);
-double law_tan(double x);
-double law_asin(double x);
-double law_acos(double x);
-double law_atan(double x);
-double law_atan2(double y, double x);
-double law_exp(double x);
-double law_tanh(double x);
-double law_floor(double x);
 #if defined(__FMA__) || defined(__aarch64__)
 static inline double law_fma(double a, double b, double c)
 {
