@@ -67,6 +67,7 @@ typedef struct stance_mechanism_numbers {
     stance_body_numbers body[STANCE_MAX_BODIES];
     stance_element_numbers element[STANCE_MAX_ELEMENTS];
     stance_point_numbers point[STANCE_MAX_NAMED];
+    stance_plate_numbers plate[STANCE_MAX_PLATES];
     double reference[2];                /* m, in the root's frame: what x and z are of */
     double limit[STANCE_MAX_ACTUATORS]; /* N m or N, > 0, may be INFINITY */
 } stance_mechanism_numbers;
@@ -88,7 +89,7 @@ typedef struct stance_carried {
 
 typedef struct stance_mechanism {
     const stance_carried *carried; /* or NULL: all numbers are as described */
-    int bodies, elements, points, actuators;
+    int bodies, elements, points, plates, actuators;
     struct {
         char name[STANCE_NAME];
         char coordinate[STANCE_NAME]; /* of its joint, a free root's angle; "": as the body */
@@ -109,6 +110,12 @@ typedef struct stance_mechanism {
         stance_push pushed; /* at most STANCE_MAX_PUSHES are */
         bool swings;        /* its `frequency` counts: of a force */
     } point[STANCE_MAX_NAMED];
+    struct {
+        char name[STANCE_NAME];
+        stance_ground_kind kind;
+        bool by_footfall; /* its `from` is ahead of the foot that stands before that footfall */
+        bool rough;       /* its `friction_factor` counts */
+    } plate[STANCE_MAX_PLATES];
     struct {
         char name[STANCE_NAME];
         int body; /* whose joint it drives: on the body, and the opposite on its parent */

@@ -21,6 +21,7 @@ enum {
     STANCE_MAX_ANGLES = 11,  /* joints of a mechanism; a rail is none, a free root one */
     STANCE_MAX_NAMED = 8,    /* points of a mechanism that have a name */
     STANCE_MAX_PUSHES = 4,
+    STANCE_MAX_PLATES = 8,                           /* pieces of ground */
     STANCE_MAX_DELAY = 16,                           /* samples */
     STANCE_MAX_WORDS = 32,                           /* that an answer may be, if it is a code */
     STANCE_ROBOT_FALL_HEIGHT = STANCE_MAX_ROBOT - 3, /* of the biped that is carried: lower has its
@@ -404,32 +405,7 @@ const stance_law *stance_law_find(const char *name);
 /* Where a law's parameters begin among those of all laws. */
 int stance_law_first(const stance_law *law);
 
-/* What kernels take of a mechanism (engine/tree.c has the meanings and makes them), arrays by
- * angles, contacts and so on in the order of its tables. */
-typedef struct stance_tree_numbers {
-    double mass;         /* kg */
-    double gravity[2];   /* minus gravity, m/s^2, in the ground's axes */
-    double slope[3];     /* angle, sine, cosine */
-    double lift[2];      /* gravity as a rail feels it, which may have an armature */
-    double rail[2];      /* its direction */
-    double reference[2]; /* m, of the root's frame: what x and z are of */
-    double curvature[3]; /* for Newton's stop rule */
-    double moment[STANCE_MAX_ANGLES][2];     /* kg m, first */
-    double inertia[STANCE_MAX_ANGLES];       /* kg m^2, second, about the joint, rotors included; of
-                                              * a slide kg */
-    double inverse[STANCE_MAX_ANGLES];       /* 1 / inertia */
-    double joint[STANCE_MAX_ANGLES][2];      /* m, in the frame above; of a slide its direction */
-    double rotor[STANCE_MAX_ANGLES + 1];     /* kg m^2, kg */
-    double spring[STANCE_MAX_ANGLES + 1][3]; /* stiffness, damping, where it rests */
-    double end[STANCE_MAX_CONTACTS][3]; /* m: place in its frame, radius; of a stop: the limit */
-    double rough[STANCE_MAX_CONTACTS];  /* its coefficient of friction by the ground's */
-    double point[STANCE_MAX_NAMED][2];  /* m: points that may fall, in their frames ... */
-    double lowest[STANCE_MAX_NAMED];    /* ... and how far */
-    double turn[STANCE_MAX_ANGLES][2];  /* rad, that bodies may turn; their angles at 0 */
-    double limit[STANCE_MAX_ACTUATORS]; /* N m, N: what an actuator gives at most */
-    double push[STANCE_MAX_PUSHES][7];  /* m: place in its frame; N, or N s where it is at an
-                                         * instant,  in the ground's axes; s: from, to; Hz */
-} stance_tree_numbers;
+#include "tree_numbers.h"
 
 /* What restitution e asks of contacts that meet the ground: normal velocities -e times those
  * before, by the largest e' <= e by which impulses add no energy; that whatever they add; or, as
@@ -516,6 +492,12 @@ typedef struct stance_case {
 /* Makes what kernels take of c->robot, and the scene, that of a case. To be called again where
  * robot has changed. */
 void stance_case_robot(const stance_scene *scene, stance_case *c);
+
+/* Height (m, normal to its plane) of the ground at x, m along it, and where to the right of x it
+ * next may change, INFINITY: nowhere. from[plates of c->body]: where its pieces begin; of one by
+ * footfall the case does not tell. |x| < 1e9. */
+void stance_ground_at(const stance_case *c, const double *from, double x, double *height,
+                      double *high);
 
 /* The answers of a case, in the order in which files hold them: name, type, how a case gets it,
  * which steps tell it, unit, text. Where there is none floating-point answers are NAN, counts

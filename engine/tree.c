@@ -404,12 +404,11 @@ static void tables_couple(const stance_mechanism *m, const struct frames *f, con
         if (tree->above[i] >= 0 && m->value.body[f->body[i]].armature != 0)
             tree->near[i][tree->above[i]] = 1;
     }
-    for (int k = 0; k < tree->springs; k++)
-        if (tree->spring[k] >= 0 && tree->above[tree->spring[k]] >= 0)
-            tree->near[tree->spring[k]][tree->above[tree->spring[k]]] = 1;
-    for (int k = 0; k < tree->rotors; k++)
-        if (tree->rotor[k] >= 0 && tree->above[tree->rotor[k]] >= 0)
-            tree->near[tree->rotor[k]][tree->above[tree->rotor[k]]] = 1;
+    for (int k = 0; k < tree->springs + tree->rotors; k++) {
+        const int i = k < tree->springs ? tree->spring[k] : tree->rotor[k - tree->springs];
+        if (i >= 0 && tree->above[i] >= 0)
+            tree->near[i][tree->above[i]] = 1;
+    }
     for (int i = n - 1; i >= 0; i--) /* what eliminating i fills in */
         for (int j = 0; j < i; j++)
             for (int k = 0; k < j; k++)
@@ -446,7 +445,10 @@ static bool tables_contacts(const stance_mechanism *m, const stance_mechanism_nu
                             const struct frames *f, const struct lumps *l, stance_tree *tree)
 {
     static const double none[2] = {0, 0};
-    bool fits = true;
+    bool fits = true, rough = false;
+    tree->plates = m->plates;
+    for (int p = 0; p < m->plates; p++)
+        rough |= m->plate[p].rough;
     for (int e = 0; e < m->elements; e++) {
         const int b = m->element[e].body, c = tree->contacts;
         const stance_element_numbers *const at = &v->element[e];
@@ -461,7 +463,7 @@ static bool tables_contacts(const stance_mechanism *m, const stance_mechanism_nu
         if (m->element[e].sole)
             fits = fits && add_contact(m, f, tree, l, kind, b, end[1], c, c);
         for (int k = c; k < tree->contacts; k++)
-            tree->rough[k] = m->element[e].rough;
+            tree->rough[k] = rough || m->element[e].rough;
     }
     for (int b = 0; b < m->bodies; b++) {
         for (int side = 0; side < 2; side++)
@@ -538,26 +540,22 @@ stance_error stance_tree_make(const stance_mechanism *m, stance_tree *tree, stan
         return refuse(message, "contacts (a sole has two, a limit of a joint is one)",
                       STANCE_MAX_CONTACTS);
     for (int p = 0; p < m->points; p++) {
-        const int b = m->point[p].body;
+        const int joint = f.joint[m->point[p].body], k = tree->pushes;
         double own[2];
-        if (!m->point[p].falls)
-            continue;
-        frames_place(&v, &f, b, v.point[p].at, own);
-        tree->point_top[tree->points] =
-            path_make(m, &f, tree, &l, f.joint[b], own, tree->point_path[tree->points]);
-        tree->points++;
-    }
-    for (int p = 0; p < m->points; p++) {
-        const int b = m->point[p].body;
-        double own[2];
+        frames_place(&v, &f, m->point[p].body, v.point[p].at, own);
+        if (m->point[p].falls) {
+            tree->point_top[tree->points] =
+                path_make(m, &f, tree, &l, joint, own, tree->point_path[tree->points]);
+            tree->points++;
+        }
         if (m->point[p].pushed == STANCE_NO_PUSH)
             continue;
-        if (tree->pushes == STANCE_MAX_PUSHES)
+        if (k == STANCE_MAX_PUSHES)
             return refuse(message, "points that are pushed", STANCE_MAX_PUSHES);
-        tree->push_impulse[tree->pushes] = m->point[p].pushed == STANCE_IMPULSE;
-        tree->push_swings[tree->pushes] = m->point[p].swings;
-        frames_place(&v, &f, b, v.point[p].at, own);
-        path_make(m, &f, tree, &l, f.joint[b], own, tree->push_path[tree->pushes++]);
+        tree->push_impulse[k] = m->point[p].pushed == STANCE_IMPULSE;
+        tree->push_swings[k] = m->point[p].swings;
+        path_make(m, &f, tree, &l, joint, own, tree->push_path[k]);
+        tree->pushes++;
     }
     tables_couple(m, &f, &l, tree);
     tables_loads(tree);
@@ -678,19 +676,22 @@ void stance_tree_numbers_make(const stance_tree *tree, const stance_mechanism *m
         }
     }
     memcpy(number->limit, v.limit, sizeof number->limit);
-    for (int p = 0, k = 0; p < m->points; p++) {
-        if (!m->point[p].falls)
-            continue;
-        frames_place(&v, &f, m->point[p].body, v.point[p].at, number->point[k]);
-        if (f.of[m->point[p].body] < 0)
-            lay(sine, cosine, number->point[k], number->point[k]);
-        number->lowest[k++] = v.point[p].lowest;
-    }
-    for (int p = 0, k = 0; p < m->points; p++) {
+    memcpy(number->plate, v.plate, sizeof number->plate);
+    for (; number->plates < m->plates; number->plates++)
+        number->plate_kind[number->plates] = m->plate[number->plates].kind;
+    for (int p = 0, fall = 0, k = 0; p < m->points; p++) {
         const stance_point_numbers *const point = &v.point[p];
+        double at[2];
+        frames_place(&v, &f, m->point[p].body, point->at, at);
+        if (m->point[p].falls) {
+            memcpy(number->point[fall], at, sizeof at);
+            if (f.of[m->point[p].body] < 0)
+                lay(sine, cosine, at, number->point[fall]);
+            number->lowest[fall++] = point->lowest;
+        }
         if (m->point[p].pushed == STANCE_NO_PUSH)
             continue;
-        frames_place(&v, &f, m->point[p].body, point->at, number->push[k]);
+        memcpy(number->push[k], at, sizeof at);
         memcpy(&number->push[k][2], point->force, sizeof point->force);
         number->push[k][4] = point->from;
         number->push[k][5] = m->point[p].pushed == STANCE_IMPULSE ? point->from : point->to;

@@ -30,7 +30,7 @@ enum { STANCE_TREE_TEXT = 8192 }; /* bytes of the tables as text, at most */
 /* All indices are of angles unless said otherwise; -1: none, the base, the rail. */
 typedef struct stance_tree {
     int base; /* coordinates of the base: 2 free, 1 on a rail, 0 pinned */
-    int angles, contacts, actuators, springs, rotors, points, turns, pushes;
+    int angles, contacts, actuators, springs, rotors, points, turns, pushes, plates;
     int slides, sliding[STANCE_MAX_ANGLES]; /* the joints that slide */
     int above[STANCE_MAX_ANGLES];           /* whose frame the joint is in */
     int slide[STANCE_MAX_ANGLES];           /* is it one of them, and no frame? */

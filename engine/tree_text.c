@@ -49,7 +49,7 @@ void stance_tree_text(const stance_tree *t, bool servos, char text[STANCE_TREE_T
                  {"SPRINGS", t->springs},   {"ROTORS", t->rotors},
                  {"POINTS", t->points},     {"TURNS", t->turns},
                  {"PUSHES", t->pushes},     {"SERVOS", servos && t->actuators > 0},
-                 {"SLIDES", t->slides}};
+                 {"SLIDES", t->slides},     {"PLATES", t->plates > 0}};
     for (size_t i = 0; i < sizeof count / sizeof *count; i++)
         write(&end, "#define TREE_%s %d\n", count[i].name, count[i].value);
     write_list(&end, "tree_above", t->above, t->angles);

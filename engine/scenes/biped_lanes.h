@@ -11,6 +11,7 @@
 #define TREE_PUSHES 0
 #define TREE_SERVOS 1
 #define TREE_SLIDES 0
+#define TREE_PLATES 0
 static const int tree_above[] = {-1, 0, 0};
 static const int tree_slide[] = {0, 0, 0};
 static const int tree_sliding[] = {0};

@@ -90,13 +90,25 @@ static const struct number_kind point_numbers[] = {
     {"frequency", "Hz", "Hz", "frequency of the push on", POINT(frequency), 1, 0, FAR},
 };
 #undef POINT
+#define PLATE(field) offsetof(stance_plate_numbers, field)
+static const struct number_kind plate_numbers[] = {
+    {"from", "m", "m", "where it begins, of", PLATE(from), 1, -FAR, FAR},
+    {"footfall", "1", "1", "footfall before which it is laid, of", PLATE(footfall), 1, 0, 1e9},
+    {"height", "m", "m", "height of", PLATE(height), 1, -FAR, FAR},
+    {"width", "m", "m", "width of each of", PLATE(width), 1, 1e-6, FAR},
+    {"count", "1", "1", "number of", PLATE(count), 1, 1, INFINITY},
+    {"seed", "1", "1", "which ground, of", PLATE(seed), 1, -1, 1e15},
+    {"friction_factor", "1", "1", "friction by the ground's, of", PLATE(friction_factor), 1, 0.01,
+     100},
+};
+#undef PLATE
 static const struct number_kind reference_numbers[] = {
     {"reference", "m", "m", "point that x and z are of, in the frame of", 0, 2, -FAR, FAR}};
 static const struct number_kind limit_numbers[] = {
     {"limit", "N m", "N", "largest torque of", 0, 1, 1e-9, INFINITY}};
 
 /* The arrays of stance_mechanism_numbers, in their order. */
-enum number_part { BODIES, CONTACTS, POINTS, REFERENCE, LIMITS, PARTS };
+enum number_part { BODIES, CONTACTS, POINTS, PLATES, REFERENCE, LIMITS, PARTS };
 #define PART(list, field, kinds)                                                                   \
     {                                                                                              \
         list, offsetof(stance_mechanism_numbers, field),                                           \
@@ -111,6 +123,7 @@ static const struct {
     [BODIES] = PART("bodies", body, body_numbers),
     [CONTACTS] = PART("contacts", element, element_numbers),
     [POINTS] = PART("points", point, point_numbers),
+    [PLATES] = PART("plates", plate, plate_numbers),
     [REFERENCE] = {"bodies", offsetof(stance_mechanism_numbers, reference), sizeof(double[2]),
                    reference_numbers, 1},
     [LIMITS] = PART("actuators", limit, limit_numbers),
@@ -124,6 +137,8 @@ static const char *name_in(const stance_mechanism *m, enum number_part part, siz
         return m->element[k].name;
     case POINTS:
         return m->point[k].name;
+    case PLATES:
+        return m->plate[k].name;
     case LIMITS:
         return m->actuator[k].name;
     default:
@@ -351,6 +366,11 @@ void stance_mechanism_defaults(stance_mechanism_numbers *numbers)
     }
     for (int i = 0; i < STANCE_MAX_NAMED; i++)
         numbers->point[i].lowest = -INFINITY;
+    for (int i = 0; i < STANCE_MAX_PLATES; i++) {
+        numbers->plate[i].count = INFINITY;
+        numbers->plate[i].seed = -1;
+        numbers->plate[i].friction_factor = 1;
+    }
     for (int i = 0; i < STANCE_MAX_ACTUATORS; i++)
         numbers->limit[i] = INFINITY;
 }
