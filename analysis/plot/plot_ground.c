@@ -3,7 +3,6 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 /* Of the stick figure at first, upwards or across. */
 static double size_of(const struct plot_case *c)
@@ -25,11 +24,7 @@ void plot_ground_learn(struct plot_case *c)
     if (!c->readable || c->scenario.scene->mechanism->plates == 0 ||
         !(c->floor = calloc(1, sizeof *c->floor)))
         return;
-    memcpy(c->floor->robot, c->values.robot, sizeof c->floor->robot);
-    c->floor->contacts = (uint32_t)c->values.contacts;
-    c->floor->seed = c->scenario.seed;
-    scenario_case_keys(&c->scenario, t->index, &c->floor->grid_index, &c->floor->sample_index);
-    stance_case_robot(c->scenario.scene, c->floor);
+    ground_case(&c->scenario, &c->values, t->index, c->floor);
     c->reach = 0.5 * size_of(c);
     ground_pieces_find(c->floor, t->rows, t->time, t->position, t->velocity, t->force, t->gap,
                        &c->pieces);

@@ -3,10 +3,47 @@
 #include "ground_line.h"
 
 #include <math.h>
+#include <string.h>
 
 enum { MEAN_PLACES = 64 };
-#define NEAR 1e-7 /* m: a foot on the ground */
-#define REST 1e-6 /* m/s: neither lifts nor falls */
+#define FARTHEST 1e9 /* m, that heights are told of */
+#define NEAR 1e-7    /* m: a foot on the ground */
+#define REST 1e-6    /* m/s: neither lifts nor falls */
+
+void ground_case(const struct scenario *s, const struct scenario_values *values, uint64_t index,
+                 stance_case *c)
+{
+    *c = (stance_case){.seed = s->seed, .contacts = (uint32_t)values->contacts};
+    memcpy(c->robot, values->robot, sizeof c->robot);
+    scenario_case_keys(s, index, &c->grid_index, &c->sample_index);
+    stance_case_robot(s->scene, c);
+}
+
+/* m along the ground; *rises: m/s, off it. */
+static double along(const stance_case *c, const double *position, const double *velocity,
+                    int contact, double *rises)
+{
+    double place[2], speed[2];
+    c->scene->contact_point(c->scene, c->robot, position, velocity, contact, place, speed);
+    *rises = speed[1];
+    return place[0] * c->body.slope[2] - place[1] * c->body.slope[1];
+}
+
+void ground_gaps(const stance_case *c, const double *position, double gap[STANCE_MAX_CONTACTS])
+{
+    const double rest[STANCE_MAX_COORDINATES] = {0};
+    double height, end, ignored;
+    struct ground_pieces pieces;
+    c->scene->gaps(c->scene, c->robot, position, gap);
+    ground_pieces_find(c, 0, NULL, NULL, NULL, NULL, NULL, &pieces);
+    for (int k = 0; c->body.plates > 0 && k < c->scene->contacts; k++) {
+        const double place = c->scene->grip[k] < 0 ? NAN : along(c, position, rest, k, &ignored);
+        if (!(fabs(place) < FARTHEST))
+            continue; /* the stop of a joint, or nowhere */
+        stance_ground_at(c, pieces.from, place, &height, &end);
+        gap[k] -= height;
+    }
+}
 
 /* ---- pieces by footfall ---------------------------------------------------------------------- */
 
@@ -22,17 +59,10 @@ static bool is_down(const struct footfalls *f, size_t row, int contact)
     return row > 0 ? f->force[2 * k] > 0 : fabs(f->gap[k]) < NEAR;
 }
 
-/* m along the ground; *rises: m/s, off it. */
-static double along(const struct footfalls *f, size_t row, int contact, double *rises)
+static double place_of(const struct footfalls *f, size_t row, int contact, double *rises)
 {
-    const stance_scene *const scene = f->c->scene;
-    const double *const slope = f->c->body.slope;
-    const size_t k = row * (size_t)scene->coordinates;
-    double place[2], speed[2];
-    scene->contact_point(scene, f->c->robot, f->position + k, f->velocity + k, contact, place,
-                         speed);
-    *rises = speed[1];
-    return place[0] * slope[2] - place[1] * slope[1];
+    const size_t k = row * (size_t)f->c->scene->coordinates;
+    return along(f->c, f->position + k, f->velocity + k, contact, rises);
 }
 
 /* What is laid once so many footfalls have been, before the next one. */
@@ -44,7 +74,7 @@ static void lay(const struct footfalls *f, double footfalls, size_t row, double 
     for (int i = 0; i < body->plates; i++) {
         if (body->plate[i].footfall != footfalls + 1)
             continue;
-        pieces->from[i] = along(f, row, contact, &ignored) + body->plate[i].from;
+        pieces->from[i] = place_of(f, row, contact, &ignored) + body->plate[i].from;
         pieces->laid[i] = row > 0 ? time : -INFINITY;
     }
 }
@@ -59,9 +89,9 @@ static int first_stand(const struct footfalls *f)
         double rises, of_first = INFINITY;
         if (scene->grip[k] < 0 || !(f->c->contacts >> k & 1) || !is_down(f, 0, k))
             continue;
-        along(f, 0, k, &rises);
+        place_of(f, 0, k, &rises);
         if (first >= 0)
-            along(f, 0, first, &of_first);
+            place_of(f, 0, first, &of_first);
         if (fabs(rises) < REST || !(fabs(of_first) < REST))
             first = k;
     }

@@ -2,9 +2,17 @@
 #ifndef STANCE_PLAN_GROUND_LINE_H
 #define STANCE_PLAN_GROUND_LINE_H
 
-#include "engine/stance.h"
+#include "runner/scenario/scenario.h"
 
 #include <stddef.h>
+
+/* Into *c the ground of a case of a scenario, with values as scenario_case_values has them, and the
+ * robot: no more than what the functions below ask for. */
+void ground_case(const struct scenario *s, const struct scenario_values *values, uint64_t index,
+                 stance_case *c);
+/* Gaps of the contacts in a position, as a scene's `gaps` has them, over the ground that there is
+ * before any footfall. */
+void ground_gaps(const stance_case *c, const double *position, double gap[STANCE_MAX_CONTACTS]);
 
 /* Where the pieces of the ground begin, m along it, and since when they are there, s: -INFINITY
  * always, INFINITY never. */
