@@ -56,9 +56,11 @@ static void put_ground(struct animation *a, const struct plot_case *c, struct pl
 {
     double(*const point)[2] = gnuplot_room(&a->g, PLOT_GROUND, sizeof *point);
     gnuplot_set(&a->g, "uneven = %d", c->floor != NULL);
+    gnuplot_block(&a->g, "ground");
+    if (!c->floor)
+        GNUPLOT_ROW(&a->g, NAN, NAN);
     if (!c->floor || !point)
         return;
-    gnuplot_block(&a->g, "ground");
     for (int f = 0; f < a->frames; f++) {
         const size_t points = find_ground(a, c, f, x, point);
         for (size_t k = 0; k < points; k++) {
