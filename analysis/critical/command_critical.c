@@ -85,41 +85,64 @@ static int axis_place(const struct scenario *s, const char *path)
     return axes;
 }
 
-/* On rank 0, whose scenario the others get: the axis, and that it alone is refined. */
-static bool ask_for_axis(struct search *search)
+static bool refines_one(const struct scenario *s)
 {
-    struct run *const run = &search->run;
+    int axes = 0;
+    for (int a = 0; a < s->axes; a++)
+        axes += s->axis[a].refined;
+    return axes == 1;
+}
+
+/* The --set that gives a scenario the axis, which alone is refined, after those that there are. */
+static bool add_sets(struct search *search, const struct scenario *s, const char *path,
+                     const double ends[2])
+{
     struct request *const asked = &search->asked;
-    struct option_texts *const sets = &run->options.asked.sets;
-    char path[96];
-    double ends[2];
-    if (!asked->of || !critical_range(asked->of, path, ends))
-        return run_fail(run, EXIT_USAGE,
-                        "stance critical: --of PATH=FROM..TO says along which number of the "
-                        "scenario, FROM where the outcome is kept%s%.60s",
-                        asked->of ? ", not " : "", asked->of ? asked->of : "");
-    struct scenario *const s = run_read_scenario(run, sets->count);
+    struct option_texts *const sets = &search->run.options.asked.sets;
     const char **const all = calloc(sets->count + SETS, sizeof *all);
-    if (!s || !all) {
-        scenario_drop(s);
-        free(all);
-        return s ? run_fail(run, EXIT_IO, "stance critical: not enough memory") : false;
-    }
-    memcpy(all, sets->text, sets->count * sizeof *all);
+    if (!all)
+        return run_fail(&search->run, EXIT_IO, "stance critical: not enough memory");
+    for (size_t k = 0; k < sets->count; k++)
+        all[k] = sets->text[k];
     snprintf(asked->set[0], SET,
              "sweep.grid[%d]={path: '%s', from: %.17g, to: %.17g, count: %" PRIu64 ", spacing: %s}",
              axis_place(s, path), path, ends[0], ends[1], asked->count,
              asked->log ? "log" : "linear");
     snprintf(asked->set[1], SET, "record={answers: [outcome, evidence, end_time]}");
+    /* Of fewer values than the lattice has all are simulated, as probes. */
+    const bool all_first = asked->count <= asked->start + 1;
     snprintf(asked->set[2], SET,
              "sweep.refine={along: '%s', start: %" PRIu64 ", margin: 0, probes: %.17g}", path,
-             asked->start + 1, asked->probes);
-    const size_t more = asked->count > asked->start + 1 ? SETS : SETS - 1;
-    for (size_t k = 0; k < more; k++)
+             all_first ? 2 : asked->start + 1, all_first ? 1 : asked->probes);
+    for (size_t k = 0; k < SETS; k++)
         all[sets->count + k] = asked->set[k];
-    *sets = (struct option_texts){all, sets->count + more};
-    scenario_drop(s);
+    *sets = (struct option_texts){all, sets->count + SETS};
     return true;
+}
+
+/* On rank 0, whose scenario the others get. */
+static bool ask_for_axis(struct search *search)
+{
+    struct run *const run = &search->run;
+    const char *const of = search->asked.of;
+    char path[96];
+    double ends[2];
+    bool good = !of || critical_range(of, path, ends) ||
+                run_fail(run, EXIT_USAGE,
+                         "stance critical: of a scenario --of takes PATH=FROM..TO, from where the "
+                         "outcome is kept, not '%.60s'",
+                         of);
+    struct scenario *const s = good ? run_read_scenario(run, run->options.asked.sets.count) : NULL;
+    if (s && of)
+        good = add_sets(search, s, path, ends);
+    else if (s && !refines_one(s))
+        good =
+            run_fail(run, EXIT_USAGE,
+                     "stance critical: %.150s does not say along which number (sweep.refine.along"
+                     "): --of PATH=FROM..TO, from where the outcome is kept",
+                     s->file);
+    scenario_drop(s);
+    return good;
 }
 
 static void stage_options(struct run *run)
@@ -172,9 +195,10 @@ static int run_critical(int argc, char **argv)
 static const struct option asks[] = {
     {"--of", "PATH=FROM..TO", TO(of),
      .text = "the number, and between which values: from FROM, where the outcome is kept, to TO, "
-             "above or below it. Of a results file PATH of an axis of its grid will do (default: "
-             "the only one, or the one that this command made)"},
-    {"--count", "N", TO(count), .low = 2, .high = 1e7,
+             "above or below it. Of a scenario that has sweep.refine.along, of which the results "
+             "keep what it records, it is not needed; of a results file PATH of an axis of its "
+             "grid will do (default: the only one, or the refined one)"},
+    {"--count", "N", TO(count), .low = 3, .high = 1e7,
      .text = "values along it, default 1025: what is found is as sharp as their spacing"},
     {"--log", TO(log), .text = "in equal ratios, not differences"},
     {"--start", "N", TO(start), .low = 1, .high = 1e6,

@@ -113,21 +113,25 @@ struct walk {
     uint64_t first, step, next; /* case at the axis's first point; to its next one; of the sample */
 };
 
-static bool is_known(uint8_t kind)
-{
-    return kind != RESULTS_PENDING && kind != RESULTS_FAILED;
-}
-
 static void count_line(struct walk *w)
 {
     const struct critical *const c = w->c;
-    for (size_t i = 0; i < c->count; i++) {
-        const uint64_t at = w->first + c->order[i] * w->step;
-        w->line.lost[i] = w->line.unknown[i] = 0;
-        for (uint32_t p = 0; p < c->points; p++) {
-            const uint8_t kind = c->r->kind[at + p * w->next];
-            w->line.unknown[i] += !is_known(kind);
-            w->line.lost[i] += is_known(kind) && kind != c->of;
+    const struct critical_line *const line = &w->line;
+    const size_t size = c->count * sizeof *line->gone;
+    memset(line->gone, 0, size);
+    memset(line->maybe, 0, size);
+    memset(line->out, 0, size);
+    for (uint32_t p = 0; p < c->points; p++) {
+        bool gone = false, maybe = false;
+        for (size_t i = 0; i < c->count; i++) {
+            const uint8_t kind = c->r->kind[w->first + c->order[i] * w->step + p * w->next];
+            const bool out = kind != c->of,
+                       known = kind != RESULTS_PENDING && kind != RESULTS_FAILED;
+            gone = gone || (out && known);
+            maybe = maybe || out;
+            line->gone[i] += gone;
+            line->maybe[i] += maybe;
+            line->out[i] += out;
         }
     }
 }
@@ -212,14 +216,16 @@ static bool make_rows(struct critical *c, stance_message *message)
     w.line = (struct critical_line){.count = c->count,
                                     .value = c->value,
                                     .points = c->points,
-                                    .lost = calloc(c->count, sizeof *w.line.lost),
-                                    .unknown = calloc(c->count, sizeof *w.line.unknown)};
+                                    .gone = calloc(c->count, sizeof *w.line.gone),
+                                    .maybe = calloc(c->count, sizeof *w.line.maybe),
+                                    .out = calloc(c->count, sizeof *w.line.out)};
     c->row = calloc(c->rows, sizeof *c->row);
     bool good = statistics_inferred(r, &inferred, &w.inferred, message);
-    if (good && !(c->row && w.line.lost && w.line.unknown && find_rows(&w)))
+    if (good && !(c->row && w.line.gone && w.line.maybe && w.line.out && find_rows(&w)))
         good = statistics_no_memory(r, message);
-    free(w.line.lost);
-    free(w.line.unknown);
+    free(w.line.gone);
+    free(w.line.maybe);
+    free(w.line.out);
     free(w.inferred);
     return good;
 }

@@ -89,15 +89,16 @@ static void add_row(struct table *t, const struct critical *c, const struct crit
 }
 
 static const char text[] = BASIN_TITLE
-    "[.rising:Largest|Smallest] {of} such that from {..from} on [share:at least {share*%.4g} % of "
-    "the {points} points of the sample|cases] end as {outcome}\n(looked for up to "
-    "{..to})\n\n{.rows}"
-    "[!share:  (the number lies between kept and lost: exact|  (kept, lost: of these points"
+    "How far {of} may go from {..from} towards {..to}, up to which [share:at least {share*%.4g} % "
+    "of the {points} points\nof the sample|cases] end as {outcome}\n\n{.rows}"
+    "  (the number lies between kept and lost: [share:of these points|exact]"
     "[.interval:; interval: of all that could be drawn, at {level*%.4g} %]"
-    "[.least:; least: of all that could be drawn at least this share keeps it, at {level*%.4g} %]"
-    "[.blocks:; no interval, as its points hang together in blocks]]"
-    "[.again:; again: values beyond that are kept, too, and do not count])\n"
-    "  (a pocket in which it is lost before that may have been missed where it is narrower than "
+    "[.least:; least: of all that could\n  be drawn at least this share keeps it, at {level*%.4g} "
+    "%]"
+    "[.blocks:; no interval: points hang together in blocks]"
+    "[.again:;\n  again: values beyond at which [share:so many keep it|it is kept], too, which do "
+    "not count])\n"
+    "  (before it, pockets in which it is lost may have been missed where they are narrower than "
     "{.unseen%.4g}[.unit: {.unit}])\n";
 
 bool critical_print(const struct critical *c, enum table_form form)
@@ -127,7 +128,6 @@ bool critical_print(const struct critical *c, enum table_form form)
         {"share", c->sampled ? as_number(c->choice.share) : as_nothing(NULL)},
         {"level", as_number(c->choice.level)}, {"points", as_whole(c->points)},
         {".from", as_place(axis, c->order[0])}, {".to", as_place(axis, c->order[c->count - 1])},
-        {".rising", as_truth(c->value[1] > c->value[0])},
         {".interval", as_truth(c->sampled && !c->blocks && !whole)},
         {".least", as_truth(whole && !c->blocks)}, {".blocks", as_truth(c->blocks)},
         {".again", as_truth(again)}, {".unseen", as_number(unseen)},
