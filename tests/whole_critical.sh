@@ -148,7 +148,7 @@ expect "a file that is there is left alone" 3 "${search[@]}" -o one.h5
     echo '  refine: {along: ground.friction, start: 33, margin: 0}}'
 } >own.yaml
 expect "a scenario that says along which number by itself" 0 "$stance" critical own.yaml
-[ -e results/own-critical.h5 ] && [ "$(grep -c ' undecided$' log)" = 9 ]
+[ -e results/own.h5 ] && [ "$(grep -c ' undecided$' log)" = 9 ]
 result $? "... has its file and numbers"
 expect "its axis is replaced" 0 "$stance" critical own.yaml --of ground.friction=1..0 --count 33 -o replaced.h5
 printed "... by a lattice of which all is simulated" '^replaced.h5: 297 cases: .* undecided; [0-9.]* s on'
@@ -185,7 +185,7 @@ critical blocks block.yaml ground.friction=1..0 --set "${sample/random, count: 6
 grep -q '"low": null' blocks.json && "$stance" critical blocks.h5 | grep -q 'no interval: points hang together in blocks'
 result $? "points in blocks have none"
 
-# ---- what is not known, and what is wrong -----------------------------------------------------------
+# ---- what is not known ------------------------------------------------------------------------------
 expect "another outcome, another way" 0 "$stance" critical one.h5 --of robot.slope=0.6..0.02 --outcome undecided
 printed "... along another axis" '^How far robot.slope may go from 0.6 rad towards 0.02 rad, up to which cases end as undecided'
 "$python" - >log 2>&1 <<'END'
@@ -196,6 +196,30 @@ f["status"][322:330] = 0
 END
 "$stance" critical full.h5 >log 2>&1
 printed "values that are not known widen the bracket" '^ +0\.307[0-9]* +1\.3[0-9]+  fell .* some unknown$'
+expect "a number that a case has beside its outcome" 0 "$stance" critical full.h5 --within end_time=10
+printed "... narrows it" 'end as rested with end_time <= 10$'
+
+# ---- pictures -----------------------------------------------------------------------------------------
+drawn() { # file, what the script has
+    mkdir -p scripts
+    STANCE_SCRIPTS=$scratch/scripts "$stance" plot "$1" --picture critical >log 2>&1 &&
+        grep -qE -- "$2" "$scratch/scripts/${1%.h5}-critical/"*
+    result $? "$1 is drawn"
+    head -c 8 "${1%.h5}-critical.png" | grep -q PNG
+    result $? "... as a picture"
+}
+critical curves block.yaml ground.friction=1..0 --set "$sample" --set robot.pull=1 \
+    --set 'sweep.grid=[{path: robot.mass, values: [1, 2, 3]}]'
+critical plane block.yaml ground.friction=1..0 --set 'sweep={grid: [{path: robot.mass, from: 1, to: 3, count: 8},
+    {path: robot.slope, from: 0, to: 0.5, count: 8}]}' --set robot.pull=1
+drawn friction.h5 'Up to which ground.friction, from 1 on, cases end as rested'
+drawn strengths.h5 'from 0 N on, cases end as rested'
+drawn curves.h5 'band: interval \(95 %\)'
+drawn plane.h5 "measure = 'ground.friction'"
+critical rows swing.yaml "$hz=0.2..4" --set 'sweep={grid: [{path: "robot.points.tip.force[1]", from: 2, to: 6, count: 9}]}'
+drawn rows.h5 'light: rested again beyond it'
+
+# ---- what is wrong ----------------------------------------------------------------------------------
 wrong() { # name, pattern, argument ...: exit code 2 and one line
     local name=$1 pattern=$2
     shift 2

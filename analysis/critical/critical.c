@@ -36,22 +36,33 @@ static bool is_monotone(const struct results_axis *axis)
     return !axis->word && axis->count > 1;
 }
 
-/* What sweep.refine.along names, or the only axis of the grid; -1: neither. */
-static int own_axis(const struct results *r)
+/* The one axis that sweep.refine refines; -1: none, or several. */
+static int refined_axis(const struct results *r)
 {
     struct scenario s;
     int found = -1, axes = 0;
-    for (int a = 0; a < r->axes; a++)
-        if (a != r->sample && r->axis[a].count > 1)
-            axes++, found = a;
-    if (axes == 1 || !results_scenario(r, &s))
-        return axes == 1 ? found : -1;
-    axes = 0;
+    if (r->single || !results_scenario(r, &s))
+        return -1;
     for (int a = 0; s.refine.given && a < s.axes && a < r->axes; a++)
         if (s.axis[a].refined)
             axes++, found = a;
     scenario_free(&s);
     return axes == 1 ? found : -1;
+}
+
+bool critical_is_refined(const struct results *r)
+{
+    return refined_axis(r) >= 0;
+}
+
+/* That one, or the only axis of the grid; -1: neither. */
+static int own_axis(const struct results *r)
+{
+    int found = -1, axes = 0;
+    for (int a = 0; a < r->axes; a++)
+        if (a != r->sample && r->axis[a].count > 1)
+            axes++, found = a;
+    return axes == 1 ? found : refined_axis(r);
 }
 
 static bool find_axis(struct critical *c, const char *of, double ends[2], stance_message *message)

@@ -91,6 +91,8 @@ struct critical {
     struct critical_island *island;
 };
 
+/* Whether sweep.refine refines one axis alone of several. */
+bool critical_is_refined(const struct results *r);
 /* Along an axis of the grid: `path` NULL: the one that sweep.refine.along names, or the only one;
  * "PATH=FROM..TO": from FROM on, to TO at the most. *usage: it is the request that is at fault. */
 bool critical_make(struct critical *critical, const struct results *r, const char *path,
