@@ -26,16 +26,6 @@ bool critical_range(const char *text, char path[96], double ends[2])
     return good && isfinite(ends[0]) && isfinite(ends[1]) && ends[0] != ends[1];
 }
 
-/* Values that rise, or fall, from the first to the last. */
-static bool is_monotone(const struct results_axis *axis)
-{
-    for (size_t i = 1; i < axis->count; i++)
-        if (axis->value[i] == axis->value[i - 1] ||
-            (axis->value[i] > axis->value[i - 1]) != (axis->value[1] > axis->value[0]))
-            return false;
-    return !axis->word && axis->count > 1;
-}
-
 /* The one axis that sweep.refine refines; -1: none, or several. */
 static int refined_axis(const struct results *r)
 {
@@ -83,7 +73,7 @@ static bool find_axis(struct critical *c, const char *of, double ends[2], stance
         return complain(message,
                         "stance critical: %.150s has several axes: --of PATH says along which",
                         r->file);
-    return (c->along >= 0 && is_monotone(&r->axis[c->along])) ||
+    return (c->along >= 0 && statistics_is_monotone(&r->axis[c->along])) ||
            complain(message,
                     "stance critical: --of needs the PATH of an axis of the grid whose values rise "
                     "or fall, not '%.60s'%s",
