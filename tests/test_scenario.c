@@ -515,6 +515,16 @@ static void refinement(void **state)
     for (int a = 0; a < s.axes; a++)
         assert_int_equal(s.axis[a].refined, refined[a]);
     scenario_free(&s);
+    /* One of several. */
+    read_good(&s, full,
+              (const char *[]){"sweep.refine={start: 4, along: stop.time}",
+                               "sweep.grid[4]={path: stop.time, from: 1, to: 3, count: 5}",
+                               "sweep.grid[5]={path: ground.restitution, from: 0, to: 1, count: 9}",
+                               "record={}"},
+              4);
+    for (int a = 0; a < s.axes; a++)
+        assert_int_equal(s.axis[a].refined, a == 4);
+    scenario_free(&s);
 }
 
 static void bad_sets_are_refused(void **state)
