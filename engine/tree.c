@@ -461,7 +461,7 @@ static bool tables_contacts(const stance_mechanism *m, const stance_mechanism_nu
         fits =
             fits && add_contact(m, f, tree, l, kind, b, end[0], m->element[e].sole ? c + 1 : -1, c);
         if (m->element[e].sole)
-            fits = fits && add_contact(m, f, tree, l, kind, b, end[1], c, c);
+            fits = fits && add_contact(m, f, tree, l, kind, b, end[1], c, m->plates ? c + 1 : c);
         for (int k = c; k < tree->contacts; k++)
             tree->rough[k] = rough || m->element[e].rough;
     }

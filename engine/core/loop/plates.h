@@ -3,9 +3,12 @@
  * A contact is above the plate that it is over, its gap is from there, and the plate does not
  * change within a step: nothing else of a step knows that there are any. At the end of one it is
  * seen which contacts have come over another plate. An edge is no wall. What is above the new plate
- * has that from now on: what slid over an edge has lost what it stood on. What is not, as it was
- * pushed against a riser, goes on at its height while it stays on it; in the air, or once it lifts
- * off, it has no ground, until it is above the surface again.
+ * has that from now on: what slid over an edge has lost what it stood on. What stands, and is
+ * pushed against a riser, keeps the plate that it stood on, on which it comes down again should it
+ * lift off, until it is above the surface; so does what drops off an edge and meets a riser before
+ * it has landed, or it would lose all ground on steps of no height. What comes into a riser through
+ * the air, as a foot that was not lifted high enough, has no ground until it is above the surface.
+ * Floors are left for lower ones only, by which nothing gains energy.
  *
  * Where that makes a difference (it stands, or may have met the higher of both plates in the step)
  * the crossing has to be the end of a step. With methods whose steps may be of any length the step
@@ -19,7 +22,7 @@
 #define STANCE_CORE_LOOP_PLATES_H
 
 #include "bundle.h"
-#include "ground.h"
+#include "engine/ground.h"
 
 #if SCENE_PLATES
 
@@ -114,13 +117,17 @@ static bool plates_set(struct bundle *b, int lane, int c, const struct ground *a
     const bool stands = lane_get(&b->set.may_touch[c], lane) > 0 &&
                         lane_get(&b->plates.inside[c], lane) < PLATES_NO_GROUND &&
                         lane_get(&b->now.gap[c], lane) <= STEP_CLOSED;
+    const double floor = lane_get(&b->set.body.floor[c], lane);
+    const bool drops = z <= lane_get(&b->plates.dropped[c], lane) + PLATES_NEAR;
     lane_set(&b->plates.roof[c], lane, at->height);
-    if (!above && stands) {
+    if (!above && (stands || drops || lane_get(&b->plates.inside[c], lane) == PLATES_STANDS)) {
         lane_set(&b->plates.inside[c], lane, PLATES_STANDS);
         return false;
     }
     const bool inside = lane_get(&b->plates.inside[c], lane) >= PLATES_NO_GROUND;
     plates_floor(b, lane, c, z, at->height);
+    if (stands && at->height < floor - PLATES_NEAR)
+        lane_set(&b->plates.dropped[c], lane, floor);
     lane_set(&b->plates.inside[c], lane, above ? 0 : PLATES_NO_GROUND);
     if (!above)
         lane_set(&b->set.may_touch[c], lane, 0);
@@ -170,6 +177,7 @@ COLD void plates_begin(struct bundle *b, mask fresh)
             if (k < CONTACTS) {
                 lane_set(&b->plates.inside[k], lane, 0);
                 lane_set(&b->plates.landing[k], lane, NAN);
+                lane_set(&b->plates.dropped[k], lane, -INFINITY);
             }
             plates_step_on(b, lane, k);
         }
@@ -191,7 +199,7 @@ COLD void plates_footfall(struct bundle *b, int lane, double footfalls, double x
             plates_step_on(b, lane, k);
 }
 
-/* What lifts off inside a plate has no ground from now on; what comes out of one has. */
+/* What comes out of a plate is above it. What has landed drops no more, nor what has risen. */
 HOT void plates_inside(struct bundle *b, mask ok)
 {
     mask changes = MASK_NONE;
@@ -200,7 +208,10 @@ HOT void plates_inside(struct bundle *b, mask ok)
             continue;
         const lanes z = b->now.gap[c] + b->set.body.floor[c];
         const mask in = ok & mask_less(lanes_of(0), b->plates.inside[c]);
-        changes |= in & mask_less(lanes_of(STEP_CLOSED), b->now.gap[c]);
+        const mask ends = ok & (mask_less_equal(b->now.gap[c], lanes_of(STEP_CLOSED)) |
+                                mask_less(b->plates.dropped[c] + PLATES_NEAR, z));
+        b->plates.dropped[c] = choose(ends, lanes_of(-INFINITY), b->plates.dropped[c]);
+        changes |= in & mask_less(b->plates.roof[c] + STEP_CLOSED, z);
         b->answer.through_ground =
             choose(in, lanes_max(b->plates.roof[c] - z, b->answer.through_ground),
                    b->answer.through_ground);
@@ -210,8 +221,7 @@ HOT void plates_inside(struct bundle *b, mask ok)
     for (int lane = 0; lane < LANES; lane++)
         for (int c = 0; c < CONTACTS && b->which[lane] && mask_get(changes, lane); c++) {
             SCENE_BEGIN(b->which[lane]);
-            if (plates_has(c) && lane_get(&b->plates.inside[c], lane) > 0 &&
-                lane_get(&b->now.gap[c], lane) > STEP_CLOSED)
+            if (plates_has(c) && lane_get(&b->plates.inside[c], lane) > 0)
                 plates_step_on(b, lane, c);
         }
 }
