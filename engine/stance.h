@@ -473,9 +473,10 @@ typedef struct stance_case {
      * steps before, within walk_angle and walk_rate (rad, rad/s) just after the footfall, the
      * second half of them no less than the first. A step is a footfall that is walk_length (m) or
      * more away from the foot that stood, the way the last one went, and comes walk_time (s) or
-     * more after the last: core/loop/walk.h.
+     * more after the last: core/loop/walk.h. Whatever they are like, walk_enough of them do; 0: no
+     * number does.
      */
-    int64_t walk_steps;
+    int64_t walk_steps, walk_enough;
     double walk_length, walk_time, walk_angle, walk_rate;
     bool has_target;     /* without one nothing is ever `stabilised` */
     uint32_t supports;   /* bit c: a stabilised robot stands on contact c, and on no other */

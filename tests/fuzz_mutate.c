@@ -45,7 +45,7 @@ static void build_schemas(void)
     if (!schemas || !any)
         abort();
     for (size_t i = 0; i <= schema_count; i++)
-        schema_build(&schemas[i], i < schema_count ? scenes[i] : any, NULL);
+        schema_build(&schemas[i], i < schema_count ? scenes[i] : any, NULL, true);
     schema_count++;
 }
 

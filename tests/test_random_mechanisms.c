@@ -6,6 +6,8 @@
  *
  * Contacts that all have the friction factor k on a ground of friction mu do what those without one
  * do on a ground of k mu, but for where iterations stop.
+ *
+ * The same holds on random plates; and on one plate that is raised a robot does what it does below.
  */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -63,24 +65,74 @@ static void tell(const char *method, int tree, int k, const stance_case *c, cons
         r->coulomb_residual, r->friction_used, r->impact_energy, r->signorini_residual);
 }
 
+/* The scene on other ground. */
+static stance_scene *on_plates(stance_scene *flat, void (*lay)(stance_mechanism *m))
+{
+    static stance_mechanism m;
+    stance_scene *scene = NULL;
+    m = *flat->mechanism;
+    lay(&m);
+    assert_int_equal(stance_mechanism_scene(&m, &scene, NULL), STANCE_OK);
+    stance_scene_free(flat);
+    return scene;
+}
+static void move_to(const stance_scene *scene, stance_case *c)
+{
+    c->scene = scene, c->tree = scene->tree;
+    stance_tree_numbers_make(scene->tree, scene->mechanism, c->robot, &c->body);
+}
+
+/* Steps, stairs and rough ground, some with a friction of their own, some before a footfall. */
+static void lay_any(stance_mechanism *m)
+{
+    double from = between(-1, 0.2);
+    m->plates = whole(1, STANCE_MAX_PLATES);
+    for (int p = 0; p < m->plates; p++, from += between(0, 0.5)) {
+        m->plate[p].kind = (stance_ground_kind)whole(0, 2);
+        m->plate[p].by_footfall = sometimes(0.1);
+        m->plate[p].rough = sometimes(0.2);
+        m->value.plate[p] =
+            (stance_plate_numbers){.from = from,
+                                   .footfall = m->plate[p].by_footfall ? whole(1, 3) : 0,
+                                   .height = sometimes(0.1) ? 0 : between(-0.2, 0.2),
+                                   .width = between(0.01, 0.4),
+                                   .count = sometimes(0.5) ? whole(1, 5) : INFINITY,
+                                   .seed = sometimes(0.5) ? whole(0, 100) : -1,
+                                   .friction_factor = m->plate[p].rough ? between(0.2, 2) : 1};
+    }
+}
+
+/* One plate, so far up. */
+#define RAISED 0.37
+static void lay_raised(stance_mechanism *m)
+{
+    m->plates = 1;
+    m->value.plate[0] =
+        (stance_plate_numbers){.from = -1e3, .height = RAISED, .count = 1, .friction_factor = 1};
+}
+
 static int trees_of(void)
 {
     return long_tests() ? 200 : 15;
 }
 
 /* Trees of hinges alone, then those that slide. */
-static void hunt(const stance_method *method, int hinged, int sliding)
+static void hunt(const stance_method *method, int hinged, int sliding,
+                 void (*lay)(stance_mechanism *m))
 {
     static stance_case cases[CASES];
     static stance_result results[CASES];
     struct tally t = {0};
     long bad = 0;
     for (int tree = 0; tree < hinged + sliding; tree++) {
-        stance_scene *const scene =
+        stance_scene *scene =
             tree < hinged ? random_scene(tree, 0) : random_scene(tree - hinged, 0.4);
+        if (lay)
+            scene = on_plates(scene, lay);
         for (int k = 0; k < CASES; k++) {
             random_scene_case(scene, &cases[k]);
             cases[k].tolerance = method->tolerance;
+            cases[k].grid_index = (uint64_t)k;
         }
         stance_kernel_find(scene, method, NULL)->run(cases, results, CASES);
         for (int k = 0; k < CASES; k++)
@@ -109,17 +161,17 @@ static void hunt(const stance_method *method, int hinged, int sliding)
 static void implicit(void **state)
 {
     (void)state;
-    hunt(stance_method_find("implicit"), trees_of(), trees_of());
+    hunt(stance_method_find("implicit"), trees_of(), trees_of(), NULL);
 }
 static void midpoint(void **state)
 {
     (void)state;
-    hunt(stance_method_find("midpoint"), trees_of(), trees_of());
+    hunt(stance_method_find("midpoint"), trees_of(), trees_of(), NULL);
 }
 static void capturing(void **state)
 {
     (void)state;
-    hunt(stance_method_find("capturing"), trees_of() / 4, trees_of() / 4);
+    hunt(stance_method_find("capturing"), trees_of() / 4, trees_of() / 4, NULL);
 }
 
 /* One mechanism on its ground and on one of a half of the friction, with factors of 2. */
@@ -166,13 +218,66 @@ static void factors(void **state)
     }
 }
 
+static void plates(void **state)
+{
+    static const char *const method[] = {"implicit", "midpoint", "capturing"};
+    (void)state;
+    for (size_t i = 0; i < sizeof method / sizeof *method; i++)
+        hunt(stance_method_find(method[i]), trees_of() / 3, trees_of() / 5, lay_any);
+}
+
+static void raised_by(const char *name, long *same, long *cases)
+{
+    static stance_case c[CASES], up[CASES];
+    static stance_result r[CASES], above[CASES];
+    for (int tree = 0; tree < trees_of() / 2; tree++) {
+        stance_scene *const flat = random_scene(tree, 0.2);
+        if (flat->mechanism->body[0].joint != STANCE_FREE) {
+            stance_scene_free(flat);
+            continue;
+        }
+        stance_scene *const raised = on_plates(random_scene(tree, 0.2), lay_raised);
+        for (int k = 0; k < CASES; k++) {
+            random_scene_case(flat, &c[k]);
+            c[k].tolerance = stance_method_find(name)->tolerance;
+            c[k].steps /= 4;
+            up[k] = c[k];
+            up[k].position[0] += RAISED * c[k].body.slope[1];
+            up[k].position[1] += RAISED * c[k].body.slope[2];
+            move_to(raised, &up[k]);
+        }
+        stance_kernel_find(flat, stance_method_find(name), NULL)->run(c, r, CASES);
+        stance_kernel_find(raised, stance_method_find(name), NULL)->run(up, above, CASES);
+        for (int k = 0; k < CASES; k++, ++*cases) {
+            double off =
+                fmax(fabs(r[k].position[0] - above[k].position[0] + RAISED * c[k].body.slope[1]),
+                     fabs(r[k].position[1] - above[k].position[1] + RAISED * c[k].body.slope[2]));
+            for (int i = 2; i < flat->coordinates; i++)
+                off = fmax(off, fabs(r[k].position[i] - above[k].position[i]));
+            *same += r[k].status == above[k].status && off <= 1e-5;
+        }
+        stance_scene_free(flat);
+        stance_scene_free(raised);
+    }
+}
+
+static void raised(void **state)
+{
+    static const char *const method[] = {"implicit", "midpoint", "capturing", "lagrange"};
+    (void)state;
+    for (size_t i = 0; i < sizeof method / sizeof *method; i++) {
+        long same = 0, cases = 0;
+        raised_by(method[i], &same, &cases);
+        print_message("# on a raised plate, %s: %ld of %ld the same\n", method[i], same, cases);
+        assert_true(cases - same <= 1 + cases / 50);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(factors),
-        cmocka_unit_test(implicit),
-        cmocka_unit_test(midpoint),
-        cmocka_unit_test(capturing),
+        cmocka_unit_test(factors),  cmocka_unit_test(raised),   cmocka_unit_test(plates),
+        cmocka_unit_test(implicit), cmocka_unit_test(midpoint), cmocka_unit_test(capturing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -611,7 +611,7 @@ static void several_errors_are_sorted(void **state)
             "bad.yaml:4:28: initial.state.x: expected a number, found 'y'\n"
             "bad.yaml:5:20: ground.friction: 11 is out of range (0 ... 10)\n"
             "bad.yaml:5:24: ground: unknown key 'grip' (known: friction, restitution, slope, "
-            "gravity, law, lands, prefer, contacts)\n"
+            "gravity, law, lands, prefer, plates, contacts)\n"
             "--set method.step=1: method.step: 1 is out of range (more than 0, at most 0.1 s)\n"
             "--set seed=-1: seed: -1 is out of range (0 ... 9223372036854775807)\n");
 
@@ -704,7 +704,7 @@ static void every_field_can_be_set_and_swept(void **state)
     int fields = 0;
     (void)state;
     assert_non_null(schema);
-    assert_true(schema_build(schema, stance_scene_find("biped"), NULL));
+    assert_true(schema_build(schema, stance_scene_find("biped"), NULL, false));
     for (int round = 0; round < 20; round++) {
         for (size_t i = 0; i < schema->count; i++) {
             const struct scenario_field *field = &schema->field[i];

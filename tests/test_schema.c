@@ -5,7 +5,7 @@
 #include "support.h"
 
 #include "runner/base/command.h"
-#include "runner/scenario/schema.h"
+#include "runner/scenario/schema_mechanism.h"
 
 #define assert_near(found, wanted, tolerance) assert_true(fabs((found) - (wanted)) <= (tolerance))
 
@@ -34,7 +34,7 @@ static struct schema *built_schema(const stance_scene *scene)
 {
     struct schema *schema = malloc(sizeof *schema);
     assert_non_null(schema);
-    assert_true(schema_build(schema, scene, NULL));
+    assert_true(schema_build(schema, scene, NULL, true));
     return schema;
 }
 
@@ -100,6 +100,7 @@ static void own_names_are_described(void **state)
         {"initial.state.vtrunk", "scene: mechanism\ninitial.state.vBODY\n"},
         {"controller.weights.trunk", "scene: mechanism\ncontroller.weights.BODY\n"},
         {"controller.gains.hip.trunk", "scene: mechanism\ncontroller.gains.ACTUATOR.BODY\n"},
+        {"ground.plates.step.height", "ground.plates.PLATE.height\n"},
         {"controller.poles[]", "scene: biped, mechanism\ncontroller.poles[]\n"},
         {"controller.poles[2]", "scene: biped, mechanism\ncontroller.poles[]\n"},
     };
@@ -166,7 +167,10 @@ static json_t *json_at(json_t *root, const char *path)
         snprintf(name, sizeof name, "%.*s", (int)length, at);
         root =
             branches && !json_object_get(root, "properties") ? json_array_get(branches, 1) : root;
-        root = json_object_get(json_object_get(root, "properties"), name);
+        json_t *const any = json_object_get(json_object_get(root, "additionalProperties"), "anyOf");
+        root = strcmp(name, PLATE_PATTERN) == 0
+                   ? json_array_get(any, 0)
+                   : json_object_get(json_object_get(root, "properties"), name);
         at += length + (at[length] == '.');
     }
     return root;
@@ -177,7 +181,7 @@ static void check_number_schema(const struct scenario_field *field, json_t *obje
     if (json_object_get(object, "anyOf")) /* or a word, or a complex number */
         object = json_array_get(json_object_get(object, "anyOf"), 0);
     assert_string_equal(json_string_value(json_object_get(object, "type")),
-                        field->type == FIELD_INTEGER ? "integer" : "number");
+                        field->whole || field->type == FIELD_INTEGER ? "integer" : "number");
     json_t *low = json_object_get(object, field->low_open ? "exclusiveMinimum" : "minimum");
     json_t *high = json_object_get(object, "maximum");
     assert_near(json_number_value(low), field->low, 0);
@@ -210,9 +214,11 @@ static void check_scene_schema(json_t *root, const stance_scene *scene)
         } else if (field->type == FIELD_WORD) {
             assert_int_equal(json_array_size(json_object_get(object, "enum")), field->word_count);
         } else if (field->type == FIELD_MAP) {
-            const bool own = strcmp(field->path, "controller") == 0; /* a law has keys of its own */
+            /* A law has keys of its own, the ground pieces. */
+            const bool ground = strcmp(field->path, "ground.plates") == 0,
+                       own = strcmp(field->path, "controller") == 0 || ground;
             assert_true(own || json_is_false(json_object_get(object, "additionalProperties")));
-            assert_int_equal(json_object_size(json_object_get(object, "properties")),
+            assert_int_equal(json_object_size(json_object_get(object, "properties")) + ground,
                              schema_children(schema, field->path, names, SCHEMA_MAX_FIELDS));
         }
         if (field->offset != NO_OFFSET && !field->fallback_text && !isnan(field->fallback)) {

@@ -39,7 +39,7 @@ static void merge_keys_are_read(void **state)
             "bad.yaml:5:14: << takes a mapping, or a list of mappings, such as *NAME\n");
     refused(HEAD "x-a: &a {fricton: 1}\nground: {<<: *a}\n", NULL,
             "bad.yaml:5:10: ground: unknown key 'fricton'; did you mean 'friction'? (known: "
-            "friction, restitution, slope, gravity, law, lands, prefer, contacts)\n");
+            "friction, restitution, slope, gravity, law, lands, prefer, plates, contacts)\n");
     refused(HEAD "ground: {<<: {friction: 1}, <<: {friction: 2}}\n", NULL,
             "bad.yaml:5:29: duplicate key '<<'; write <<: [*A, *B]\n");
     refused(HEAD, "x-a=1",

@@ -334,7 +334,7 @@ static void take_case(struct return_map *map, const stance_case *c)
 {
     map->base = *c;
     map->base.settle = map->base.has_target = false;
-    map->base.walk_steps = 0;
+    map->base.walk_steps = map->base.walk_enough = 0;
     map->base.trajectory = NULL;
     map->base.steps = (int64_t)(LONGEST / c->step);
 }

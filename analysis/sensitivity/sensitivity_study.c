@@ -159,7 +159,7 @@ static double *make_points(const struct sensitivity_study *study)
         double parts = f->listed ? (double)f->points : 0;
         bool whole = true; /* it takes whole numbers only */
         for (int p = 0; p < f->paths; p++)
-            whole = whole && axis->integer[f->first + p];
+            whole = whole && axis->whole[f->first + p];
         for (int p = 0; !f->listed && whole && p < f->paths; p++)
             parts = fmax(parts, fabs(f->value[f->paths + p] - f->value[p]) + 1);
         for (size_t i = 0; parts > 0 && i < points; i++)

@@ -216,6 +216,21 @@ static void advance_forget(struct advance *a, mask m)
     memset(a->stood, 0, sizeof a->stood);
 }
 
+static inline double advance_done(const struct advance *a, int lane)
+{
+    (void)lane;
+    return a->within ? a->here.tau : 0;
+}
+/* The integrator is begun anew from wherever it is. */
+static inline void advance_back(struct advance *a, const struct advance *before, mask m)
+{
+    const struct advance now = *a;
+    if (!m)
+        return;
+    *a = *before;
+    a->arkode = now.arkode, a->y = now.y, a->context = now.context;
+}
+
 /* Makes ARKODE start at *from with the internal step `length`, not beyond `target`. */
 static bool event_restart(struct advance *a, const struct event_point *from, double target,
                           double length)

@@ -20,6 +20,7 @@
 #define TREE_PUSHES STANCE_MAX_PUSHES
 #define TREE_SERVOS 1
 #define TREE_SLIDES 1
+#define TREE_PLATES 1
 
 enum { SCENE_POSTURE = STANCE_MAX_POSTURE };
 
@@ -36,6 +37,7 @@ static _Thread_local const stance_tree *tree_now;
 #define tree_points (tree_now->points)
 #define tree_turns (tree_now->turns)
 #define tree_pushes (tree_now->pushes)
+#define tree_plates (tree_now->plates)
 #define tree_above (tree_now->above)
 #define tree_slide (tree_now->slide)
 #define tree_sliding (tree_now->sliding)

@@ -177,6 +177,8 @@ HOT lanes scene_gap(const scene_body *b, const lanes *s, const scene_trig *trig,
     lanes gap = tree_place(b, s, trig, c, 1);
     if (tree_kind[c] == STANCE_TREE_DISC)
         gap = gap - b->end[c][2];
+    if (tree_plates > 0)
+        gap = gap - b->floor[c];
     return gap;
 }
 /* Where it is along the ground, m; no stop. */

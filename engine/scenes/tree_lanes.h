@@ -95,7 +95,10 @@ enum {
     tree_turns = TREE_TURNS,
     tree_pushes = TREE_PUSHES,
     tree_slide_count = TREE_SLIDES,
+    tree_plates = TREE_PLATES,
 #endif
+    /* What lies on the ground's plates: contacts, then the points that may fall. */
+    SCENE_PLACES = TREE_PLATES ? TREE_SLOTS(TREE_CONTACTS) + TREE_POINTS : 1,
 };
 #define tree_free (tree_base_size == 2)
 #define tree_rail (tree_base_size == 1)
@@ -106,6 +109,7 @@ enum {
 #endif
 #define SCENE_SLIDES(a) tree_slides(a)
 #define SCENE_PUSHES TREE_PUSHES
+#define SCENE_PLATES TREE_PLATES
 
 #ifdef TREE_RUNTIME
 #define TREE_UNROLL
@@ -136,6 +140,7 @@ typedef struct scene_body {
     lanes push[TREE_SLOTS(TREE_PUSHES)][7];    /* place in its frame; force or impulse; from, to;
                                                 * frequency */
     lanes pull[TREE_SLOTS(TREE_PUSHES)][2];    /* N, in the present step: see scene_push */
+    lanes floor[SCENE_PLACES];                 /* m, of what is under a place, see plates.h */
 } scene_body;
 
 /* Of a joint that slides the displacement in place of the sine. */
@@ -173,6 +178,8 @@ static inline void scene_load_body(scene_body *b, int lane, const stance_tree_nu
 #undef LOAD
     for (size_t i = 0; i < sizeof b->pull / sizeof(lanes); i++) /* not that of the case before */
         lane_set((lanes *)b->pull + i, lane, 0);
+    for (int k = 0; k < SCENE_PLACES; k++)
+        lane_set(&b->floor[k], lane, 0);
 }
 
 /* What the structure lacks of the room that there is: nothing, unless it is read at run time. */
@@ -494,6 +501,41 @@ HOT mask scene_strike(const scene_body *b, const scene_trig *trig, lanes t, lane
     return struck;
 }
 
+/* How joint j moves point p, which hangs from it: as tree_reach. */
+HOT void tree_point_reach(const scene_body *b, const scene_trig *trig, int p, int j, lanes reach[2])
+{
+    const int through = tree_point_path[p][j];
+    if (tree_slides(j))
+        tree_slide_arm(b, trig, j, reach);
+    else
+        tree_arm(b, trig, through != TREE_OWN && tree_straight_joint[through],
+                 through == TREE_OWN ? b->point[p] : b->joint[through], j, tree_point_path[p],
+                 reach);
+}
+/* Where it is along an axis of the ground, as tree_place. */
+HOT lanes tree_point_place(const scene_body *b, const lanes *s, const scene_trig *trig, int p,
+                           int axis)
+{
+    const int top = tree_point_top[p];
+    lanes place = tree_base(b, s, axis);
+    if (top >= 0)
+        place = place + (top == TREE_OWN ? b->point[p][axis] : b->joint[top][axis]);
+    TREE_UNROLL
+    for (int j = 0; j < tree_angles; j++) {
+        lanes reach[2];
+        if (tree_point_path[p][j] < 0)
+            continue;
+        if (tree_slides(j)) {
+            if (tree_above[j] < 0)
+                place = lanes_fma(trig->sine[j], b->joint[j][axis], place);
+            continue;
+        }
+        tree_point_reach(b, trig, p, j, reach);
+        place = place + reach[axis];
+    }
+    return place;
+}
+
 /* Down by a cause: a point lower than it may be, or, after the points, a body turned further. How
  * far it is from that, and how fast that changes. */
 #define SCENE_CAUSES (tree_points + tree_turns)
@@ -507,29 +549,18 @@ HOT lanes scene_fall_margin(const scene_body *b, const lanes *s, const scene_tri
         *rate = choose(mask_less(angle, lanes_of(0)), w[at], -w[at]);
         return b->turn[k][0] - lanes_abs(angle);
     }
-    lanes height = tree_base(b, s, 1);
     *rate = tree_base(b, w, 1);
-    if (tree_point_top[cause] >= 0)
-        height = height + (tree_point_top[cause] == TREE_OWN ? b->point[cause][1]
-                                                             : b->joint[tree_point_top[cause]][1]);
     TREE_UNROLL
     for (int j = 0; j < tree_angles; j++) {
-        const int through = tree_point_path[cause][j];
         lanes reach[2];
-        if (through < 0)
+        if (tree_point_path[cause][j] < 0)
             continue;
-        if (tree_slides(j)) {
-            if (tree_above[j] < 0)
-                height = lanes_fma(trig->sine[j], b->joint[j][1], height);
-            tree_slide_arm(b, trig, j, reach);
-        } else {
-            tree_arm(b, trig, through != TREE_OWN && tree_straight_joint[through],
-                     through == TREE_OWN ? b->point[cause] : b->joint[through], j,
-                     tree_point_path[cause], reach);
-            height = height + reach[1];
-        }
+        tree_point_reach(b, trig, cause, j, reach);
         *rate = lanes_fma(w[TREE_BASE + j], reach[0], *rate);
     }
+    const lanes height = tree_point_place(b, s, trig, cause, 1);
+    if (tree_plates > 0)
+        return height - b->floor[TREE_SLOTS(TREE_CONTACTS) + cause] - b->lowest[cause];
     return height - b->lowest[cause];
 }
 /* Largest of the rates: the reference point's, the root's, the joints'. */

@@ -1,6 +1,6 @@
 /* describe.c - documentation of the scenario format, and its JSON Schema, from the table. */
 #include "mechanism.h"
-#include "schema.h"
+#include "schema_mechanism.h"
 #include "tree.h"
 
 #include "runner/base/words.h"
@@ -86,8 +86,9 @@ static const char *kind_text(const struct scenario_field *field, char *buffer, s
     switch (field->type) {
     case FIELD_NUMBER:
     case FIELD_INTEGER:
-        snprintf(buffer, size, "%s, %s%s%s%s%s", text[field->type].before, range,
-                 unit[0] ? " " : "", unit, field->words ? text[field->type].after : "", words);
+        snprintf(buffer, size, "%s, %s%s%s%s%s",
+                 text[field->whole ? FIELD_INTEGER : field->type].before, range, unit[0] ? " " : "",
+                 unit, field->words ? text[field->type].after : "", words);
         break;
     case FIELD_POLES:
     case FIELD_NUMBERS:
@@ -209,8 +210,8 @@ static json_t *json_number(double value)
 
 static json_t *number_schema(const struct scenario_field *field)
 {
-    json_t *schema =
-        json_pack("{s:s}", "type", field->type == FIELD_INTEGER ? "integer" : "number");
+    json_t *schema = json_pack("{s:s}", "type",
+                               field->whole || field->type == FIELD_INTEGER ? "integer" : "number");
     if (isfinite(field->low)) {
         json_object_set_new(schema, field->low_open ? "exclusiveMinimum" : "minimum",
                             json_number(field->low));
@@ -396,6 +397,8 @@ static json_t *field_schema(const struct schema *schema, const struct scenario_f
 static bool is_pattern(const struct schema *schema, const char *name)
 {
     const stance_scene *const scene = schema->scene;
+    if (schema_any_plate(schema) && strcmp(name, PLATE_PATTERN) == 0)
+        return true;
     return schema->pattern &&
            (strcmp(name, scene->mechanism->body[0].name) == 0 ||
             (name[0] == 'v' && strcmp(name + 1, scene->mechanism->body[0].name) == 0) ||
@@ -589,7 +592,7 @@ static const struct scenario_field *find_row(const struct schema *schema, const 
     }
     general[n] = '\0';
     const bool exact = field != NULL;
-    for (size_t i = 0; i < schema->count && schema->pattern && !exact; i++)
+    for (size_t i = 0; i < schema->count && schema->documents && !exact; i++)
         if (fits_pattern(schema, schema->field[i].path, general))
             field = &schema->field[i]; /* a rate comes after its coordinate */
     return field;
@@ -660,7 +663,7 @@ bool scenario_describe(const char *path, bool json_schema, const struct scenario
                             i < count ? stance_scenes()[i]
                             : of      ? of->scene
                                       : any,
-                            of ? &of->law : NULL);
+                            of ? &of->law : NULL, true);
     count++;
     if (!good) {
         fputs("stance describe: out of memory\n", errors);

@@ -11,8 +11,8 @@
 const char *description_path(char path[DESCRIPTION_PATH], enum part part, const char *name,
                              const char *key)
 {
-    snprintf(path, DESCRIPTION_PATH, "robot.%s.%.40s%s%.95s", part_kinds[part].key, name,
-             key[0] ? "." : "", key);
+    snprintf(path, DESCRIPTION_PATH, "%s.%s.%.40s%s%.95s", part_kinds[part].in,
+             part_kinds[part].key, name, key[0] ? "." : "", key);
     return path;
 }
 
@@ -33,13 +33,16 @@ static bool misplaced(struct description *d, const struct part_key *key, int i, 
         [STANCE_SLIDE] = "what slides has no such number",
         [STANCE_FIXED] = "what is fixed has no joint",
     };
-    return problem_add(description_problems(d), mark, "%s: %s", path,
-                       key->part == PART_BODY ? joint[d->m->body[i].joint]
-                       : key->part == PART_POINT
-                           ? "a push has force, from and to, a stroke impulse and "
-                             "from"
-                       : key->of_point ? "a sole, or a capsule, has from and to"
-                                       : "a contact has at, or from and to: not both");
+    return problem_add(
+        description_problems(d), mark, "%s: %s", path,
+        key->part == PART_BODY    ? joint[d->m->body[i].joint]
+        : key->part == PART_POINT ? "a push has force, from and to, a stroke impulse and "
+                                    "from"
+        : key->part == PART_PLATE ? key->grounds == 1 << STANCE_ROUGH
+                                        ? "only rough ground has one; write kind: rough"
+                                        : "one plate has none; write kind: stairs, or rough"
+        : key->of_point           ? "a sole, or a capsule, has from and to"
+                                  : "a contact has at, or from and to: not both");
 }
 
 static bool read_key(struct description *d, const struct part_key *key, int i,
@@ -136,12 +139,12 @@ static const struct tree_node *find_below(const struct tree_node *node, const ch
     return node;
 }
 
-/* Whether the sweep varies the number at a path below robot ("robot.") or the model. */
+/* Whether the sweep varies the number at a path below robot, ground or the model. */
 static bool is_varied(const struct description *d, const char *of, const char *path)
 {
     const struct tree_node *const root = d->r->tree.root;
     char whole[DESCRIPTION_PATH + 24];
-    snprintf(whole, sizeof whole, "%s%s", of, path);
+    snprintf(whole, sizeof whole, "%s.%s", of, path);
     return names_path(find_below(root, (const char *const[]){"sweep", "grid", NULL}), whole) ||
            names_path(find_below(root, (const char *const[]){"sweep", "sample", "vary", NULL}),
                       whole);
@@ -161,8 +164,8 @@ static void choose_key(struct description *d, const struct part_key *key, int i)
             snprintf(item, sizeof item, "[%d]", n);
         snprintf(path, sizeof path, "%s.%s.%s%s", part_kinds[key->part].key, name, key->field.path,
                  item);
-        varies[n] = is_varied(d, "robot.", path);
-        wanted = wanted || varies[n] || is_varied(d, "controller.model.", path);
+        varies[n] = is_varied(d, part_kinds[key->part].in, path);
+        wanted = wanted || varies[n] || is_varied(d, "controller.model", path);
     }
     wanted =
         wanted || find_below(d->r->tree.root,
@@ -177,6 +180,27 @@ static void choose_key(struct description *d, const struct part_key *key, int i)
     }
 }
 
+/* Whether a number of part i is one of robot[]. */
+static bool is_number(const stance_mechanism *m, enum part part, const char *name, int i)
+{
+    return part_robot(m, part_place(m, part_key(part, name), i)) >= 0;
+}
+
+/* What counts only where it is given, or varied. */
+static void note_given(stance_mechanism *m)
+{
+    for (int b = 0; b < m->bodies; b++)
+        m->body[b].bounded |= is_number(m, PART_BODY, "turn", b);
+    for (int e = 0; e < m->elements; e++)
+        m->element[e].rough |= is_number(m, PART_CONTACT, "friction_factor", e);
+    for (int p = 0; p < m->points; p++)
+        m->point[p].falls |= is_number(m, PART_POINT, "lowest", p);
+    for (int i = 0; i < m->plates; i++) {
+        m->plate[i].by_footfall = is_number(m, PART_PLATE, "footfall", i);
+        m->plate[i].rough = is_number(m, PART_PLATE, "friction_factor", i);
+    }
+}
+
 bool description_numbers(struct description *d)
 {
     bool good = true;
@@ -188,8 +212,9 @@ bool description_numbers(struct description *d)
             for (size_t k = 0; k < part_key_count; k++)
                 if (part_keys[k].part == (enum part)part)
                     choose_key(d, &part_keys[k], i);
+    note_given(d->m);
     return (d->m->numbers <= STANCE_ROBOT_FALL_HEIGHT ||
-            problem_add(description_problems(d), tree_find(d->r->tree.root, "robot")->mark,
+            problem_add(description_problems(d), description_mark(d),
                         "robot: %d numbers are given; at most %d", d->m->numbers,
                         STANCE_ROBOT_FALL_HEIGHT)) &&
            good;

@@ -7,14 +7,15 @@
 
 enum { DESCRIPTION_PATH = 192 };
 
-/* One of robot.bodies, .contacts, ... as it stands in the file. */
+/* One of robot.bodies, .contacts, ..., ground.plates as it stands in the file. */
 struct entry {
     const struct tree_key *key;
     const struct tree_node *map;
     stance_joint joint;
-    int parent, like; /* of a body: places in the file, or -1 */
-    int body;         /* that any other belongs to */
-    bool read;        /* its numbers are */
+    stance_ground_kind ground; /* of a plate */
+    int parent, like;          /* of a body: places in the file, or -1 */
+    int body;                  /* that any other belongs to */
+    bool read;                 /* its numbers are */
 };
 
 struct description {
@@ -31,6 +32,13 @@ struct description {
 static inline struct problems *description_problems(struct description *d)
 {
     return &d->r->problems;
+}
+
+/* Where the robot stands in the file; of one that it only has ground for, the file. */
+static inline struct mark description_mark(struct description *d)
+{
+    const struct tree_node *const root = d->r->tree.root, *const robot = tree_find(root, "robot");
+    return robot ? robot->mark : root->mark;
 }
 
 /* "robot.bodies.trunk.mass". Returns path. */

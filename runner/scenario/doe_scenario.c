@@ -53,7 +53,7 @@ static bool make_values(struct scenario *s, struct scenario_axis *axis)
             const struct scenario_factor *f = &sample->factor[j];
             for (int k = 0; k < f->paths; k++) {
                 axis->value[i * paths + (size_t)(f->first + k)] =
-                    factor_value(f, axis->integer[f->first + k], k, u[j]);
+                    factor_value(f, axis->whole[f->first + k], k, u[j]);
             }
         }
     }
@@ -99,7 +99,7 @@ static bool check_ends(struct axis_reader *a, const struct scenario_factor *f, b
 
     for (int k = 0; k < f->paths; k++) {
         differ = differ || from[k] != to[k];
-        if (f->log && a->axis->integer[f->first + k])
+        if (f->log && a->axis->whole[f->first + k])
             return axis_complain(a, "spacing log is for numbers that need not be whole");
         if (f->log && (from[k] <= 0 || to[k] <= 0))
             return axis_complain(a, "spacing log needs from and to above 0");
@@ -183,7 +183,7 @@ static bool check_sphere(struct axis_reader *a, const struct scenario_factor *f)
 {
     bool whole = false;
     for (int k = 0; k < f->paths; k++)
-        whole = whole || a->axis->integer[f->first + k];
+        whole = whole || a->axis->whole[f->first + k];
     if (f->listed || f->log || whole) {
         return axis_complain(a,
                              "method sphere needs linear ranges of numbers that need not be whole");

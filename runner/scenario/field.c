@@ -156,14 +156,18 @@ bool field_number(struct problems *problems, const struct scenario_field *field,
                   const struct tree_node *node, double *value)
 {
     bool finite;
+    const char *const wanted = field->whole && field->words ? "a whole number or none"
+                               : field->whole               ? "a whole number"
+                               : field->words               ? "a number or none"
+                                                            : "a number";
     if (field->words && node->kind == TREE_SCALAR && strcmp(node->text, field->words[0]) == 0) {
         *value = INFINITY;
         return true;
     }
-    if (node->kind != TREE_SCALAR || node->quoted || !number_parse(node->text, value, &finite)) {
-        return no_number(problems, field, name, field->words ? "a number or none" : "a number",
-                         node);
-    }
+    if (node->kind != TREE_SCALAR || node->quoted || !number_parse(node->text, value, &finite))
+        return no_number(problems, field, name, wanted, node);
+    if (field->whole && *value != floor(*value))
+        return field_mismatch(problems, name, wanted, node);
     return field_admits(problems, field, name, node->text, node->mark, *value);
 }
 

@@ -38,18 +38,19 @@ static const char *name_fault(enum part part, const char *name)
         return "a name has at most 63 letters";
     if (listed(truths, name))
         return "some readers of YAML take it for true, false or nothing";
-    if (part != PART_ACTUATOR && listed(coordinates, name))
+    if (part < PART_ACTUATOR && listed(coordinates, name))
         return "a coordinate of a free root, or its rate, is called so";
     if (part == PART_BODY && listed(keys, name))
         return "a key of initial.offset or initial.equilibrium is called so";
     return NULL;
 }
 
-/* Another part of this name, or the body whose rate it is; actuators have names of their own. */
+/* Another part of this name, or the body whose rate it is; actuators have names of their own, and
+ * plates. */
 static const struct entry *namesake(const struct description *d, enum part part, int i)
 {
     const char *const name = d->entry[part][i].key->name;
-    for (int p = 0; p <= (int)part && part != PART_ACTUATOR; p++)
+    for (int p = 0; p <= (int)part && part < PART_ACTUATOR; p++)
         for (int k = 0; k < d->count[p] && !(p == (int)part && k >= i); k++)
             if (strcmp(d->entry[p][k].key->name, name) == 0)
                 return &d->entry[p][k];
@@ -66,8 +67,9 @@ static bool check_name(struct description *d, enum part part, int i)
     const struct entry *const other = fault ? NULL : namesake(d, part, i);
     char word[SHOWN_SIZE];
     if (fault)
-        return problem_add(description_problems(d), key->mark, "robot.%s: '%s' is no name: %s",
-                           part_kinds[part].key, shown(word, key->name), fault);
+        return problem_add(description_problems(d), key->mark, "%s.%s: '%s' is no name: %s",
+                           part_kinds[part].in, part_kinds[part].key, shown(word, key->name),
+                           fault);
     if (!other)
         return true;
     const bool rate = strcmp(other->key->name, key->name) != 0;
@@ -111,16 +113,18 @@ static bool check_part(struct description *d, enum part part, const struct entry
     return check_keys(d, entry->map, path, known, count);
 }
 
-static bool read_names(struct description *d, const struct tree_node *robot, enum part part)
+static bool read_names(struct description *d, enum part part)
 {
     const struct part_kind *const kind = &part_kinds[part];
-    const struct tree_node *const map = tree_find(robot, kind->key);
+    const struct tree_node *const in = tree_find(d->r->tree.root, kind->in),
+                                  *const map =
+                                      in && in->kind == TREE_MAP ? tree_find(in, kind->key) : NULL;
     char path[DESCRIPTION_PATH];
-    snprintf(path, sizeof path, "robot.%s", kind->key);
+    snprintf(path, sizeof path, "%s.%s", kind->in, kind->key);
     if (!map)
-        return part != PART_BODY || problem_add(description_problems(d), robot->mark,
-                                                "robot.bodies is missing: a mechanism is made "
-                                                "of them");
+        return part != PART_BODY ||
+               problem_add(description_problems(d), in->mark,
+                           "robot.bodies is missing: a mechanism is made of them");
     if (map->kind != TREE_MAP)
         return field_mismatch(description_problems(d), path, "a mapping of names, without dashes",
                               map);
@@ -212,7 +216,7 @@ static bool read_links(struct description *d)
     }
     for (int b = 0; good && b < d->count[PART_BODY]; b++)
         good = check_like(d, b);
-    for (int part = PART_CONTACT; part < PARTS; part++)
+    for (int part = PART_CONTACT; part < ROBOT_PARTS; part++)
         for (int i = 0; i < d->count[part]; i++)
             good = read_body(d, (enum part)part, &d->entry[part][i], "body", true,
                              &d->entry[part][i].body) &&
@@ -271,10 +275,19 @@ static void fill_point(struct description *d, int i)
     const struct entry *const entry = &d->entry[PART_POINT][i];
     snprintf(d->m->point[i].name, STANCE_NAME, "%s", entry->key->name);
     d->m->point[i].body = d->place[entry->body];
-    d->m->point[i].falls |= tree_find(entry->map, "lowest") != NULL;
     d->m->point[i].swings |= tree_find(entry->map, "frequency") != NULL;
     if (tree_find(entry->map, "impulse") || tree_find(entry->map, "force"))
         d->m->point[i].pushed = tree_find(entry->map, "impulse") ? STANCE_IMPULSE : STANCE_FORCE;
+}
+
+static void fill_plates(struct description *d)
+{
+    d->m->plates = d->count[PART_PLATE];
+    for (int i = 0; i < d->m->plates; i++) {
+        const struct entry *const entry = &d->entry[PART_PLATE][i];
+        snprintf(d->m->plate[i].name, STANCE_NAME, "%s", entry->key->name);
+        d->m->plate[i].kind = entry->ground;
+    }
 }
 
 /* Names and links, with bodies in their places. */
@@ -290,7 +303,6 @@ static void fill_structure(struct description *d)
         snprintf(m->body[b].name, STANCE_NAME, "%s", entry->key->name);
         m->body[b].joint = entry->joint;
         m->body[b].parent = entry->parent < 0 ? -1 : d->place[entry->parent];
-        m->body[b].bounded = tree_find(entry->map, "turn");
         const struct tree_node *const own = tree_find(entry->map, "coordinate");
         if (own && own->kind == TREE_SCALAR)
             snprintf(m->body[b].coordinate, STANCE_NAME, "%s", own->text);
@@ -300,10 +312,10 @@ static void fill_structure(struct description *d)
         snprintf(m->element[i].name, STANCE_NAME, "%s", entry->key->name);
         m->element[i].body = d->place[entry->body];
         m->element[i].sole = tree_find(entry->map, "from") || tree_find(entry->map, "to");
-        m->element[i].rough = tree_find(entry->map, "friction_factor");
     }
     for (int i = 0; i < m->points; i++)
         fill_point(d, i);
+    fill_plates(d);
     for (int i = 0; i < m->actuators; i++) {
         snprintf(m->actuator[i].name, STANCE_NAME, "%s", d->entry[PART_ACTUATOR][i].key->name);
         m->actuator[i].body = d->place[d->entry[PART_ACTUATOR][i].body];
@@ -426,21 +438,39 @@ static bool check_links(struct description *d)
     return good;
 }
 
+/* The pieces of the ground, each of its kind. */
+static bool read_plates(struct description *d)
+{
+    bool good = read_names(d, PART_PLATE);
+    for (int i = 0; good && i < d->count[PART_PLATE]; i++) {
+        struct entry *const entry = &d->entry[PART_PLATE][i];
+        const struct scenario_field *const row = &part_key(PART_PLATE, "kind")->field;
+        const struct tree_node *const node = tree_find(entry->map, row->path);
+        char path[DESCRIPTION_PATH];
+        int word = STANCE_PLATE;
+        description_path(path, PART_PLATE, entry->key->name, row->path);
+        good = !node || field_word(description_problems(d), row, path, node, &word);
+        entry->ground = (stance_ground_kind)word;
+    }
+    return good;
+}
+
 static bool describe(struct description *d)
 {
     const struct tree_node *const robot = tree_find(d->r->tree.root, "robot");
-    const char *known[PARTS];
+    const char *known[ROBOT_PARTS];
     bool good;
     if (!robot)
         return problem_add(description_problems(d), d->r->tree.root->mark,
                            "robot is missing: it describes the mechanism");
     if (robot->kind != TREE_MAP)
         return field_mismatch(description_problems(d), "robot", "a mapping", robot);
-    for (int part = 0; part < PARTS; part++)
+    for (int part = 0; part < ROBOT_PARTS; part++)
         known[part] = part_kinds[part].key;
-    good = check_keys(d, robot, "robot", known, PARTS);
-    for (int part = 0; part < PARTS; part++)
-        good = read_names(d, robot, (enum part)part) && good;
+    good = check_keys(d, robot, "robot", known, ROBOT_PARTS);
+    for (int part = 0; part < ROBOT_PARTS; part++)
+        good = read_names(d, (enum part)part) && good;
+    good = read_plates(d) && good;
     if (!good || !read_links(d) || !sort_bodies(d))
         return false;
     fill_structure(d);
@@ -449,8 +479,7 @@ static bool describe(struct description *d)
     return description_numbers(d) && good;
 }
 
-/* ---- more points of a scene that is carried ---------------------------------------------------
- */
+/* ---- more points of a scene that is carried, and its ground ---------------------------------- */
 
 /* Its parts as if the file wrote them, without a key. */
 static void enter_carried(struct description *d, const stance_mechanism *carried)
@@ -501,18 +530,27 @@ static bool read_point(struct description *d, const struct tree_key *key,
     return check_push(d, i);
 }
 
-static bool describe_points(struct description *d, const stance_mechanism *carried)
+static bool read_points(struct description *d)
 {
-    const struct tree_node *const map =
-        tree_find(tree_find(d->r->tree.root, "robot"), part_kinds[PART_POINT].key);
+    const struct tree_node *const robot = tree_find(d->r->tree.root, "robot"),
+                                  *const map = robot && robot->kind == TREE_MAP
+                                                   ? tree_find(robot, part_kinds[PART_POINT].key)
+                                                   : NULL;
     bool good = true;
-    enter_carried(d, carried);
-    if (map->kind != TREE_MAP)
+    if (map && map->kind != TREE_MAP)
         return field_mismatch(description_problems(d), "robot.points",
                               "a mapping of names, without dashes", map);
-    for (size_t k = 0; k < map->count; k++)
+    for (size_t k = 0; map && k < map->count; k++)
         good = read_point(d, &map->key[k], map->item[k]) && good;
-    return good && description_numbers(d);
+    return good;
+}
+
+static bool describe_carried(struct description *d, const stance_mechanism *carried)
+{
+    enter_carried(d, carried);
+    const bool points = read_points(d), plates = read_plates(d);
+    fill_plates(d);
+    return points && plates && description_numbers(d);
 }
 
 /* ---- the scene ------------------------------------------------------------------------------- */
@@ -523,8 +561,7 @@ static bool check_contact_names(struct description *d, const stance_scene *scene
     for (int c = 0; c < scene->contacts; c++)
         for (int k = 0; k < c; k++)
             if (strcmp(scene->contact_name[c], scene->contact_name[k]) == 0)
-                return problem_add(description_problems(d),
-                                   tree_find(d->r->tree.root, "robot")->mark,
+                return problem_add(description_problems(d), description_mark(d),
                                    "robot: %s would stand for two contacts (an end of a sole, or "
                                    "the stop of a joint, is called so): choose other names",
                                    scene->contact_name[c]);
@@ -539,8 +576,7 @@ static stance_scene *make_scene(struct description *d)
     if (error == STANCE_NO_MEMORY) {
         problem_no_memory(description_problems(d));
     } else if (error != STANCE_OK) {
-        problem_add(description_problems(d), tree_find(d->r->tree.root, "robot")->mark, "robot: %s",
-                    message.text);
+        problem_add(description_problems(d), description_mark(d), "robot: %s", message.text);
     } else if (!check_contact_names(d, scene)) {
         stance_scene_free(scene);
         scene = NULL;
@@ -556,7 +592,7 @@ stance_scene *mechanism_read(struct reader *r, const stance_scene *carried)
     if (d && m) {
         d->r = r;
         d->m = m;
-        if (carried ? describe_points(d, carried->mechanism) : describe(d))
+        if (carried ? describe_carried(d, carried->mechanism) : describe(d))
             scene = make_scene(d);
     } else {
         problem_no_memory(&r->problems);
@@ -589,6 +625,10 @@ bool mechanism_same(const stance_mechanism *a, const stance_mechanism *b)
     for (int i = 0; same && i < a->points; i++)
         same = a->point[i].falls == b->point[i].falls && a->point[i].pushed == b->point[i].pushed &&
                a->point[i].swings == b->point[i].swings;
+    for (int i = 0; same && i < a->plates; i++)
+        same = a->plate[i].kind == b->plate[i].kind &&
+               a->plate[i].by_footfall == b->plate[i].by_footfall &&
+               a->plate[i].rough == b->plate[i].rough;
     for (int i = 0; same && i < a->numbers; i++)
         same = a->number[i] == b->number[i] && a->varies[i] == b->varies[i];
     return same;

@@ -14,11 +14,11 @@ enum { POSTURES = 64 };
 
 /* What is wrong with some numbers: of which key, and why. */
 struct fault {
-    char path[96], text[160];
+    char path[96], text[200];
 };
 
 #define FAULT(f, what, name, key, ...)                                                             \
-    (snprintf((f)->path, sizeof(f)->path, "robot." what ".%.31s%s", name, key),                    \
+    (snprintf((f)->path, sizeof(f)->path, what ".%.31s%s", name, key),                             \
      snprintf((f)->text, sizeof(f)->text, __VA_ARGS__), true)
 
 /* ---- body by body ---------------------------------------------------------------------------- */
@@ -29,12 +29,13 @@ static bool body_fault(const stance_mechanism *m, const stance_mechanism_numbers
     const stance_body_numbers *const body = &number->body[b];
     const char *const name = m->body[b].name;
     if (body->inertia > 0 && !(body->mass > 0))
-        return FAULT(f, "bodies", name, ".inertia", "%.6g kg m^2, but no mass", body->inertia);
+        return FAULT(f, "robot.bodies", name, ".inertia", "%.6g kg m^2, but no mass",
+                     body->inertia);
     if (!(body->limits[0] < body->limits[1]))
-        return FAULT(f, "bodies", name, ".limits", "%.6g is not below %.6g", body->limits[0],
+        return FAULT(f, "robot.bodies", name, ".limits", "%.6g is not below %.6g", body->limits[0],
                      body->limits[1]);
     if (m->body[b].joint == STANCE_SLIDE && body->axis[0] == 0 && body->axis[1] == 0)
-        return FAULT(f, "bodies", name, ".axis", "[0, 0] has no direction");
+        return FAULT(f, "robot.bodies", name, ".axis", "[0, 0] has no direction");
     return false;
 }
 
@@ -43,7 +44,7 @@ static bool sole_fault(const stance_mechanism *m, const stance_mechanism_numbers
 {
     const stance_element_numbers *const sole = &number->element[e];
     return m->element[e].sole && sole->at[0] == sole->to[0] && sole->at[1] == sole->to[1] &&
-           FAULT(f, "contacts", m->element[e].name, ".to",
+           FAULT(f, "robot.contacts", m->element[e].name, ".to",
                  "stands where from does: a sole has a length");
 }
 
@@ -52,8 +53,66 @@ static bool push_fault(const stance_mechanism *m, const stance_mechanism_numbers
 {
     const stance_point_numbers *const point = &number->point[p];
     return m->point[p].pushed == STANCE_FORCE && point->to < point->from &&
-           FAULT(f, "points", m->point[p].name, ".to", "%.6g s is before from, %.6g s", point->to,
-                 point->from);
+           FAULT(f, "robot.points", m->point[p].name, ".to", "%.6g s is before from, %.6g s",
+                 point->to, point->from);
+}
+
+/* ---- the ground ------------------------------------------------------------------------------ */
+
+/* A piece begins behind the one before it, or is laid later; of those that are always there, and of
+ * those by footfall. */
+static bool order_fault(const stance_mechanism *m, const stance_mechanism_numbers *number, int i,
+                        struct fault *f)
+{
+    const stance_plate_numbers *const plate = &number->plate[i];
+    int before = i - 1;
+    while (before >= 0 && m->plate[before].by_footfall != m->plate[i].by_footfall)
+        before--;
+    const stance_plate_numbers *const other = before < 0 ? NULL : &number->plate[before];
+    if (other && plate->footfall < other->footfall)
+        return FAULT(f, "ground.plates", m->plate[i].name, ".footfall",
+                     "%.9g is before that of %.31s, %.9g: pieces stand in their order",
+                     plate->footfall, m->plate[before].name, other->footfall);
+    return other && plate->footfall == other->footfall && !(plate->from > other->from) &&
+           FAULT(f, "ground.plates", m->plate[i].name, ".from",
+                 "%.6g m is not beyond %.31s, at %.6g m: pieces stand in their order", plate->from,
+                 m->plate[before].name, other->from);
+}
+
+static bool plate_fault(const stance_mechanism *m, const stance_mechanism_numbers *number, int i,
+                        struct fault *f)
+{
+    const stance_plate_numbers *const plate = &number->plate[i];
+    const char *const name = m->plate[i].name;
+    if (m->plate[i].kind != STANCE_PLATE && !(plate->width > 0))
+        return FAULT(f, "ground.plates", name, "", "width is missing: how wide each plate is");
+    if (m->plate[i].kind == STANCE_ROUGH && plate->height < 0)
+        return FAULT(f, "ground.plates", name, ".height",
+                     "%.6g m; rough ground goes up and down by 0 m or more", plate->height);
+    if (m->plate[i].by_footfall && !(plate->from > 0))
+        return FAULT(f, "ground.plates", name, ".from",
+                     "%.6g m is not ahead of the foot that stands before the footfall",
+                     plate->from);
+    return order_fault(m, number, i, f);
+}
+
+/* Over an edge what is round would turn about it. */
+static bool round_fault(const stance_scene *scene, const stance_mechanism_numbers *number,
+                        uint32_t contacts, struct fault *f)
+{
+    const stance_mechanism *const m = scene->mechanism;
+    for (int e = 0; m->plates > 0 && e < m->elements; e++) {
+        if (!(number->element[e].radius > 0) ||
+            !(mechanism_contacts(scene, UINT32_C(1) << e) & contacts))
+            continue;
+        snprintf(f->path, sizeof f->path, "ground.plates");
+        snprintf(f->text, sizeof f->text,
+                 "%.31s is round and would turn about their edges, which is not modelled: make it "
+                 "a point or a flat sole, or leave it out of ground.contacts",
+                 m->element[e].name);
+        return true;
+    }
+    return false;
 }
 
 /* ---- inertia --------------------------------------------------------------------------------- */
@@ -141,8 +200,9 @@ static bool inertia_fault(const stance_scene *scene, const double *robot, struct
     return false;
 }
 
-static bool find_fault(const stance_scene *scene, const double *robot, struct fault *f)
+static bool find_fault(const struct reader *r, const double *robot, struct fault *f)
 {
+    const stance_scene *const scene = r->s->scene;
     const stance_mechanism *const m = scene->mechanism;
     stance_mechanism_numbers number;
     stance_mechanism_expand(m, robot, &number);
@@ -155,6 +215,11 @@ static bool find_fault(const stance_scene *scene, const double *robot, struct fa
     for (int p = 0; p < m->points; p++)
         if (push_fault(m, &number, p, f))
             return true;
+    for (int i = 0; i < m->plates && r->problems.count == 0; i++) /* else one may be missing */
+        if (plate_fault(m, &number, i, f))
+            return true;
+    if (round_fault(scene, &number, (uint32_t)r->s->base.contacts, f))
+        return true;
     return inertia_fault(scene, robot, f);
 }
 
@@ -187,7 +252,7 @@ static bool check_point(struct reader *r, const double *first, int a, int k, siz
     for (int i = 0; i < axis->paths; i++)
         if (is_robot(axis->offset[i]))
             robot[axis->offset[i] / sizeof *robot] = scenario_axis_value(axis, point, i);
-    if (!find_fault(r->s->scene, robot, &fault))
+    if (!find_fault(r, robot, &fault))
         return true;
     char name[AXIS_NAME];
     return problem_add(&r->problems, r->swept[a][k].mark, "%s: with %s = %.6g %s: %s",
@@ -226,7 +291,7 @@ static void check_model(struct reader *r, const struct scenario_values *values)
             model[i] = values->model[i];
             other = true;
         }
-    if (!other || !find_fault(r->s->scene, model, &fault))
+    if (!other || !find_fault(r, model, &fault))
         return;
     char path[sizeof fault.path + 16];
     snprintf(path, sizeof path, "controller.model%.90s", fault.path + strlen("robot"));
@@ -244,8 +309,7 @@ void mechanism_check(struct reader *r)
     memcpy(values, &r->s->base, sizeof *values);
     if (!r->axes_bad)
         scenario_case_values(r->s, 0, values);
-    if ((r->axes_bad || !check_axes(r, values->robot)) &&
-        find_fault(r->s->scene, values->robot, &fault))
+    if ((r->axes_bad || !check_axes(r, values->robot)) && find_fault(r, values->robot, &fault))
         reader_refuse(r, fault.path, ": %s", fault.text);
     else
         check_model(r, values);

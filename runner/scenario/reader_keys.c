@@ -8,13 +8,18 @@
 
 enum { PATH_SIZE = 160 };
 
+static bool is_below(const char *path, const char *map)
+{
+    const size_t length = strlen(map);
+    return strncmp(path, map, length) == 0 && (!path[length] || path[length] == '.');
+}
+
 bool reader_described(const struct reader *r, const char *path)
 {
     if (!r->s->own_scene || !path[0])
         return false;
-    return r->s->own_scene->mechanism->carried
-               ? strncmp(path, "robot.points", 12) == 0 && (!path[12] || path[12] == '.')
-               : strncmp(path, "robot", strcspn(path, ".")) == 0;
+    return is_below(path, "ground.plates") ||
+           is_below(path, r->s->own_scene->mechanism->carried ? "robot.points" : "robot");
 }
 
 static bool is_empty(const struct tree_node *node)

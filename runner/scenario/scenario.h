@@ -47,7 +47,8 @@ struct scenario_equilibrium {
  * schema, contacts as bits. */
 /* clang-format off */
 #define SCENARIO_WHOLES(X) \
-    X(impacts) X(most_energy) X(lands_ahead) X(contacts) X(delay) X(settle) X(footfalls) X(walk_steps)
+    X(impacts) X(most_energy) X(lands_ahead) X(contacts) X(delay) X(settle) X(footfalls) X(walk_steps) \
+    X(walk_enough)
 #define SCENARIO_NUMBERS(X) \
     X(friction) X(restitution) X(torque_limit) X(lag) X(angle_noise) X(rate_noise) X(noise) \
     X(settle_angle) X(settle_rate) X(settle_hold) X(walk_length) X(walk_time) X(walk_angle) \
@@ -115,6 +116,7 @@ struct scenario_axis {
     size_t offset[SCENARIO_MAX_PATHS];    /* of the field in struct scenario_values */
     bool integer[SCENARIO_MAX_PATHS];     /* the field is an int (an enumeration: words below) */
     bool enumeration[SCENARIO_MAX_PATHS]; /* ... of words */
+    bool whole[SCENARIO_MAX_PATHS];       /* its values are whole numbers, or words */
     bool words;                           /* some path is an enumeration: the axis lists strings */
     bool design;                          /* some path changes what the design depends on */
     size_t count;

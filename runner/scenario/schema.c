@@ -304,6 +304,8 @@ static bool add_row(struct schema *schema, const struct row *row)
     switch (row->family) {
     case FAMILY_ROBOT:
         return add_robot(schema, row);
+    case FAMILY_PLATES:
+        return schema_add_plates(schema, &row->field);
     case FAMILY_STATE:
     case FAMILY_OFFSET:
         return add_states(schema, row);
@@ -320,9 +322,11 @@ static bool add_row(struct schema *schema, const struct row *row)
     }
 }
 
-bool schema_build(struct schema *schema, const stance_scene *scene, const struct law_file *law)
+bool schema_build(struct schema *schema, const stance_scene *scene, const struct law_file *law,
+                  bool documents)
 {
     memset(schema, 0, offsetof(struct schema, field));
+    schema->documents = documents;
     schema->scene = scene;
     schema->pattern = scene && scene->mechanism->numbers == 0;
     for (size_t i = 0; i < SCHEMA_MAX_WORDS - 1 && stance_scenes()[i]; i++)

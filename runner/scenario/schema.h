@@ -73,6 +73,7 @@ struct scenario_field {
     bool required;             /* must stand in the file where `use` allows it, unless swept */
     bool design;               /* what the design depends on, see resolve.h */
     bool sweep;                /* may vary along an axis */
+    bool whole;                /* FIELD_NUMBER: only whole numbers, kept as a double all the same */
     bool quiet;                /* a summary tells it only where it is not as it is by default */
     const char *samples;       /* why it needs controller.sample_time > 0, other than by default */
     bool by_scene;             /* cannot be checked without a known scene */
@@ -99,6 +100,7 @@ struct schema {
     const stance_scene *scene; /* NULL: unknown; fields by scene are left out then */
     /* A mechanism without a number is that of the documentation: its names stand for any. */
     bool pattern;
+    bool documents; /* with rows for what a scenario may add, by names that stand for any */
     const char *scenes[SCHEMA_MAX_WORDS], *methods[SCHEMA_MAX_WORDS];
     const char *laws[STANCE_MAX_LAWS], *far_laws[STANCE_MAX_LAWS];
     size_t scene_count, method_count, law_count, far_law_count;
@@ -111,9 +113,13 @@ struct schema {
     struct scenario_field field[SCHEMA_MAX_FIELDS]; /* [count]; what lies behind is not set */
 };
 
-/* Writes the table out for a scene and a law of the user's own (NULL: none). False: it has more
- * rows than fit (a scene that is too large). */
-bool schema_build(struct schema *schema, const stance_scene *scene, const struct law_file *law);
+/* Writes the table out for a scene and a law of the user's own (NULL: none), to be read by or, with
+ * rows for any piece of the ground, to be documented. False: it has more rows than fit (a scene
+ * that is too large). */
+bool schema_build(struct schema *schema, const stance_scene *scene, const struct law_file *law,
+                  bool documents);
+/* Whether its row of a piece of the ground stands for any. */
+bool schema_any_plate(const struct schema *schema);
 
 /* The table of a scene and a law. Those of stance_scenes() and of no known scene (NULL), without a
  * law, are written once and kept; another goes to *own, else NULL, to be freed by the caller. NULL:

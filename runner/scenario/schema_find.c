@@ -140,7 +140,7 @@ const struct schema *schema_of(const stance_scene *scene, const struct law_file 
     if (i < SCHEMA_MAX_WORDS && kept[i])
         return kept[i];
     struct schema *schema = malloc(sizeof *schema);
-    if (!schema || !schema_build(schema, scene, law)) {
+    if (!schema || !schema_build(schema, scene, law, false)) {
         free(schema);
         return NULL;
     }

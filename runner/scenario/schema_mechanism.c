@@ -7,15 +7,20 @@
 #include <string.h>
 
 const struct part_kind part_kinds[PARTS] = {
-    [PART_BODY] = {"bodies", "body", STANCE_MAX_BODIES, "rigid bodies, each with its joint"},
-    [PART_CONTACT] = {"contacts", "contact", STANCE_MAX_ELEMENTS,
+    [PART_BODY] = {"robot", "bodies", "body", STANCE_MAX_BODIES,
+                   "rigid bodies, each with its joint"},
+    [PART_CONTACT] = {"robot", "contacts", "contact", STANCE_MAX_ELEMENTS,
                       "what may touch the ground: points, discs, soles"},
-    [PART_POINT] = {"points", "point", STANCE_MAX_NAMED, "points of bodies that have a name"},
-    [PART_ACTUATOR] = {"actuators", "actuator", STANCE_MAX_ACTUATORS, "motors in joints"},
+    [PART_POINT] = {"robot", "points", "point", STANCE_MAX_NAMED,
+                    "points of bodies that have a name"},
+    [PART_ACTUATOR] = {"robot", "actuators", "actuator", STANCE_MAX_ACTUATORS, "motors in joints"},
+    [PART_PLATE] = {"ground", "plates", "piece of the ground", STANCE_MAX_PLATES, NULL},
 };
 
 /* In the order of stance_joint. */
 static const char *const joint_words[] = {"free", "hinge", "slide", "fixed"};
+/* In the order of stance_ground_kind. */
+static const char *const ground_words[] = {"plate", "stairs", "rough"};
 
 /* ---- the table ------------------------------------------------------------------------------- */
 
@@ -24,6 +29,9 @@ enum {
     MOVES = SLIDES | 1 << STANCE_HINGE,
     HANGS = MOVES | 1 << STANCE_FIXED,
     ANY = HANGS | 1 << STANCE_FREE,
+    ROUGH = 1 << STANCE_ROUGH,
+    SEVERAL = ROUGH | 1 << STANCE_STAIRS,
+    ALL = SEVERAL | 1 << STANCE_PLATE,
 };
 
 /* Loose bounds that keep nonsense out where physics gives none. */
@@ -37,6 +45,7 @@ enum {
 #define BODY_TWO(member) .type = FIELD_NUMBERS, .items = 2, IN(stance_body_numbers, member)
 #define ELEMENT(member) IN(stance_element_numbers, member)
 #define POINT(member) IN(stance_point_numbers, member)
+#define PLATE(member) .type = FIELD_NUMBER, IN(stance_plate_numbers, member)
 #define TWO .type = FIELD_NUMBERS, .items = 2
 #define WORD_ROW .offset = NO_OFFSET, .fallback = NAN
 
@@ -160,35 +169,78 @@ const struct part_key part_keys[] = {
         RANGE(0, LARGE), .low_open = true, .fallback = INFINITY, .fallback_text = "none",
         .words = schema_none, .word_count = 1, .text = "largest torque",
         .more = "Where controller.torque_limit is smaller, that one holds."}, .slide_unit = "N"},
+
+    {PART_PLATE, {.path = "kind", .type = FIELD_WORD, .offset = NO_OFFSET, .fallback = STANCE_PLATE,
+        .words = ground_words, .word_count = 3, .text = "what begins there",
+        .more = "plate: one plate. stairs: plates of `width`, each `height` above the one before, "
+                "the first above what is before the piece. rough: plates of `width`, each at random "
+                "up to `height` above or below what is before the piece."}, .grounds = ALL},
+    {PART_PLATE, {.path = "from", PLATE(from), .required = true, .unit = "m", RANGE(-FAR, FAR),
+        .fallback = NAN, .text = "where it begins, along the ground",
+        .more = "It ends where the next one begins. With `footfall`: so far ahead (+x) of the foot "
+                "that stands then."}, .grounds = ALL},
+    {PART_PLATE, {.path = "footfall", PLATE(footfall), .whole = true, .unit = "1", RANGE(1, LARGE),
+        .fallback = NAN, .fallback_text = "none, it is always there",
+        .text = "footfall before which it is laid: of the first one is 1"}, .grounds = ALL},
+    {PART_PLATE, {.path = "height", PLATE(height), .unit = "m", RANGE(-FAR, FAR),
+        .text = "of a plate above the plane of the ground, normal to it; of stairs and rough see kind"}, .grounds = ALL},
+    {PART_PLATE, {.path = "width", PLATE(width), .unit = "m", RANGE(1e-6, FAR), .fallback = NAN,
+        .fallback_text = "must be given", .text = "width of each plate of stairs or rough ground"},
+        .grounds = SEVERAL},
+    {PART_PLATE, {.path = "count", PLATE(count), .whole = true, .unit = "1", RANGE(1, LARGE),
+        .fallback = INFINITY, .fallback_text = "none, they do not end", .words = schema_none,
+        .word_count = 1, .text = "how many plates stairs or rough ground has",
+        .more = "Behind them the last stair goes on; behind rough ground what was before it."},
+        .grounds = SEVERAL},
+    {PART_PLATE, {.path = "seed", PLATE(seed), .whole = true, .unit = "1", RANGE(0, 1e15),
+        .fallback = NAN, .fallback_text = "none, another ground in each case",
+        .text = "which rough ground",
+        .more = "The same in every case that has it. Else it follows from the study's seed and the "
+                "place of the case in the study."}, .grounds = ROUGH},
+    {PART_PLATE, {.path = "friction_factor", PLATE(friction_factor), .unit = "1",
+        RANGE(0.01, 100), .fallback = 1, .text = "coefficient of friction there: so many times ground.friction",
+        .more = "By the contact's own friction_factor, too."}, .grounds = ALL},
 };
 /* clang-format on */
 const size_t part_key_count = sizeof part_keys / sizeof part_keys[0];
 
 /* ---- parts ----------------------------------------------------------------------------------- */
 
+const struct part_key *part_key(enum part part, const char *name)
+{
+    const struct part_key *key = part_keys;
+    while (key->part != part || strcmp(key->field.path, name) != 0)
+        key++;
+    return key;
+}
+
 int part_count(const stance_mechanism *m, enum part part)
 {
     const int count[] = {[PART_BODY] = m->bodies,
                          [PART_CONTACT] = m->elements,
                          [PART_POINT] = m->points,
-                         [PART_ACTUATOR] = m->actuators};
+                         [PART_ACTUATOR] = m->actuators,
+                         [PART_PLATE] = m->plates};
     return count[part];
 }
 
 const char *part_name(const stance_mechanism *m, enum part part, int i)
 {
-    return part == PART_BODY      ? m->body[i].name
-           : part == PART_CONTACT ? m->element[i].name
-           : part == PART_POINT   ? m->point[i].name
-                                  : m->actuator[i].name;
+    return part == PART_BODY       ? m->body[i].name
+           : part == PART_CONTACT  ? m->element[i].name
+           : part == PART_POINT    ? m->point[i].name
+           : part == PART_ACTUATOR ? m->actuator[i].name
+           : m->plates > 0         ? m->plate[i].name
+                                   : PLATE_PATTERN;
 }
 
 int part_body(const stance_mechanism *m, enum part part, int i)
 {
-    return part == PART_BODY      ? m->body[i].parent
-           : part == PART_CONTACT ? m->element[i].body
-           : part == PART_POINT   ? m->point[i].body
-                                  : m->actuator[i].body;
+    return part == PART_BODY       ? m->body[i].parent
+           : part == PART_CONTACT  ? m->element[i].body
+           : part == PART_POINT    ? m->point[i].body
+           : part == PART_ACTUATOR ? m->actuator[i].body
+                                   : -1;
 }
 
 int part_numbers(const struct part_key *key)
@@ -203,16 +255,19 @@ int part_place(const stance_mechanism *m, const struct part_key *key, int i)
         [PART_CONTACT] = offsetof(stance_mechanism_numbers, element),
         [PART_POINT] = offsetof(stance_mechanism_numbers, point),
         [PART_ACTUATOR] = offsetof(stance_mechanism_numbers, limit),
+        [PART_PLATE] = offsetof(stance_mechanism_numbers, plate),
     };
     static const size_t size[] = {
         [PART_BODY] = sizeof(stance_body_numbers),
         [PART_CONTACT] = sizeof(stance_element_numbers),
         [PART_POINT] = sizeof(stance_point_numbers),
         [PART_ACTUATOR] = sizeof(double),
+        [PART_PLATE] = sizeof(stance_plate_numbers),
     };
     if (part_numbers(key) == 0 ||
         (key->part == PART_BODY && !(key->joints >> m->body[i].joint & 1)) ||
         (key->part == PART_POINT && key->pushes && !(key->pushes >> m->point[i].pushed & 1)) ||
+        (key->part == PART_PLATE && !(key->grounds >> m->plate[i].kind & 1)) ||
         (key->part == PART_CONTACT && !(m->element[i].sole ? key->of_sole : key->of_point)))
         return -1;
     return (int)((begins[key->part] + (size_t)i * size[key->part] + key->field.offset) /
@@ -236,6 +291,11 @@ const char *part_unit(const stance_mechanism *m, const struct part_key *key, int
 
 /* ---- rows ------------------------------------------------------------------------------------ */
 
+bool schema_any_plate(const struct schema *schema)
+{
+    return schema->documents && schema->scene && schema->scene->mechanism->plates == 0;
+}
+
 static bool add_map(struct schema *schema, const struct scenario_field *row, const char *name,
                     const char *text)
 {
@@ -255,7 +315,9 @@ static bool add_key(struct schema *schema, const struct scenario_field *row, boo
                     const struct part_key *key, int i)
 {
     const stance_mechanism *const m = schema->scene->mechanism;
-    const int number = part_robot(m, part_place(m, key, i)), count = part_numbers(key);
+    const bool plate = key->part == PART_PLATE,
+               any = plate ? schema_any_plate(schema) : schema->pattern;
+    const int number = any ? -1 : part_robot(m, part_place(m, key, i)), count = part_numbers(key);
     const char *const name = part_name(m, key->part, i);
     const struct scenario_field *const own = &key->field;
     for (int item = 0; item < (count == 2 ? 2 : 1); item++) {
@@ -265,13 +327,13 @@ static bool add_key(struct schema *schema, const struct scenario_field *row, boo
         struct scenario_field *const field = schema_add(schema, row, "", path);
         if (!field)
             return false;
-        const bool varied = (number >= 0 || (schema->pattern && count > 0)) && (count == 1 || item);
+        const bool varied = (number >= 0 || (any && count > 0)) && (count == 1 || item);
         const struct scenario_field general = *field;
         *field = *own;
         memcpy(field->path, general.path, sizeof field->path);
         field->use = general.use;
-        field->by_scene = true;
-        field->required = own->required && !model && !m->carried;
+        field->by_scene = !(plate && any);
+        field->required = own->required && !model && (plate || !m->carried);
         field->sweep = varied;
         field->design = general.design && key->part != PART_POINT; /* no law knows those */
         field->offset =
@@ -298,6 +360,24 @@ static bool add_key(struct schema *schema, const struct scenario_field *row, boo
     return true;
 }
 
+/* The rows of part i. */
+static bool add_part(struct schema *schema, const struct scenario_field *row, bool model,
+                     enum part part, int i)
+{
+    const stance_mechanism *const m = schema->scene->mechanism;
+    const struct part_kind *const kind = &part_kinds[part];
+    char name[64], text[64];
+    snprintf(name, sizeof name, "%s.%.31s", kind->key, part_name(m, part, i));
+    snprintf(text, sizeof text, "the %s %.31s", kind->one, part_name(m, part, i));
+    bool good = add_map(schema, row, name, text);
+    for (size_t k = 0; good && k < part_key_count; k++)
+        if (part_keys[k].part == part &&
+            (!model || part_robot(m, part_place(m, &part_keys[k], i)) >= 0 ||
+             (schema->pattern && part_numbers(&part_keys[k]) > 0)))
+            good = add_key(schema, row, model, &part_keys[k], i);
+    return good;
+}
+
 bool schema_add_mechanism(struct schema *schema, const struct scenario_field *row)
 {
     const stance_mechanism *const m = schema->scene->mechanism;
@@ -308,21 +388,28 @@ bool schema_add_mechanism(struct schema *schema, const struct scenario_field *ro
     for (int b = 0; b < m->bodies; b++)
         schema->bodies[b] = m->body[b].name;
     for (int part = m->carried ? PART_POINT : 0;
-         good && part < (m->carried ? PART_ACTUATOR : PARTS); part++) {
-        const struct part_kind *const kind = &part_kinds[part];
-        good = add_map(schema, row, kind->key, kind->text);
-        for (int i = 0; good && i < part_count(m, (enum part)part); i++) {
-            char name[64], text[64];
-            snprintf(name, sizeof name, "%s.%.31s", kind->key, part_name(m, (enum part)part, i));
-            snprintf(text, sizeof text, "the %s %.31s", kind->one,
-                     part_name(m, (enum part)part, i));
-            good = add_map(schema, row, name, text);
-            for (size_t k = 0; good && k < part_key_count; k++)
-                if (part_keys[k].part == (enum part)part &&
-                    (!model || part_robot(m, part_place(m, &part_keys[k], i)) >= 0 ||
-                     (schema->pattern && part_numbers(&part_keys[k]) > 0)))
-                    good = add_key(schema, row, model, &part_keys[k], i);
-        }
+         good && part < (m->carried ? PART_ACTUATOR : ROBOT_PARTS); part++) {
+        good = add_map(schema, row, part_kinds[part].key, part_kinds[part].text);
+        for (int i = 0; good && i < part_count(m, (enum part)part); i++)
+            good = add_part(schema, row, model, (enum part)part, i);
     }
     return good;
+}
+
+bool schema_add_plates(struct schema *schema, const struct scenario_field *row)
+{
+    struct scenario_field below = *row;
+    struct scenario_field *const map = schema_add(schema, row, "", "");
+    if (!map)
+        return false;
+    map->offset = NO_OFFSET;
+    map->sweep = false;
+    map->by_scene = !schema->documents;
+    bool good = true;
+    below.more = NULL;
+    below.by_scene = map->by_scene;
+    snprintf(below.path, sizeof below.path, "%s.*", part_kinds[PART_PLATE].in);
+    for (int i = 0; good && schema->scene && i < schema->scene->mechanism->plates; i++)
+        good = add_part(schema, &below, false, PART_PLATE, i);
+    return good && (!schema_any_plate(schema) || add_part(schema, &below, false, PART_PLATE, 0));
 }

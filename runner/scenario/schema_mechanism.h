@@ -1,5 +1,6 @@
 /* schema_mechanism.h - the rows of the scenario format that describe a mechanism: one table of what
- * may stand in a body, a contact, a point, an actuator, written out for each that there is. */
+ * may stand in a body, a contact, a point, an actuator, a piece of the ground, written out for each
+ * that there is. */
 #ifndef STANCE_SCENARIO_SCHEMA_MECHANISM_H
 #define STANCE_SCENARIO_SCHEMA_MECHANISM_H
 
@@ -10,11 +11,20 @@
 /* What `scene` is then. */
 #define MECHANISM_WORD "mechanism"
 
-enum part { PART_BODY, PART_CONTACT, PART_POINT, PART_ACTUATOR, PARTS };
+/* Those of the robot come first. */
+enum part {
+    PART_BODY,
+    PART_CONTACT,
+    PART_POINT,
+    PART_ACTUATOR,
+    PART_PLATE,
+    PARTS,
+    ROBOT_PARTS = PART_PLATE
+};
 
-/* What a mechanism is made of: a mapping of names below robot. */
+/* What a mechanism is made of, and what it stands on: a mapping of names below robot, or ground. */
 struct part_kind {
-    const char *key, *one; /* "bodies", "body" */
+    const char *in, *key, *one; /* "robot", "bodies", "body" */
     int most;
     const char *text;
 };
@@ -31,13 +41,17 @@ struct part_key {
     bool names_body, of_sole; /* the value is the name of a body; a sole has it */
     bool of_point;            /* a contact that is no sole has it */
     unsigned pushes;          /* of a point: bit per stance_push that has it; 0: any */
+    unsigned grounds;         /* of a plate: bit per stance_ground_kind that has it */
 };
 extern const struct part_key part_keys[];
 extern const size_t part_key_count;
 
+/* One of them, which there is. */
+const struct part_key *part_key(enum part part, const char *name);
+
 int part_count(const stance_mechanism *m, enum part part);
 const char *part_name(const stance_mechanism *m, enum part part, int i);
-/* The body that it belongs to; of a body its parent, or -1. */
+/* The body that it belongs to; of a body its parent, or -1, as of a plate. */
 int part_body(const stance_mechanism *m, enum part part, int i);
 
 /* How many numbers a key takes: 0, 1, 2. */
@@ -54,5 +68,10 @@ const char *part_unit(const stance_mechanism *m, const struct part_key *key, int
 /* The rows of schema->scene->mechanism, made from `row`: robot.* or controller.model.*, which has
  * those of numbers alone. False: no room. */
 bool schema_add_mechanism(struct schema *schema, const struct scenario_field *row);
+
+/* The row of ground.plates, and those of its pieces. Where there are none, documentation has one
+ * whose name stands for any. False: no room. */
+#define PLATE_PATTERN "PLATE"
+bool schema_add_plates(struct schema *schema, const struct scenario_field *row);
 
 #endif

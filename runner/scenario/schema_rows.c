@@ -99,6 +99,12 @@ const struct row schema_rows[] = {
          .more = "The one that leaves the least kinetic energy, or the most; contacts go on as "
                  "they do, standing or sliding, while they can. Such steps are counted as ambiguous_steps. Swept "
                  "over both, each case is followed down both branches."}},
+    {FAMILY_PLATES, {.path = "ground.plates", .type = FIELD_MAP, .by_scene = true, .sweep = true,
+         VALUE(robot), .text = "pieces of uneven ground, in their order along it",
+         .more = "At most 8, each a mapping with a name: {from: 0.5, height: -0.05}. Before the "
+                 "first one is the plane, at height 0; of those that begin at a place or before it "
+                 "the last in the list holds. For contacts that are points or flat soles, whose "
+                 "ends are held."}},
     {FAMILY_CONTACTS, {.path = "ground.contacts", .type = FIELD_WORDS, .by_scene = true,
          VALUE(contacts), .fallback_text = "all of the scene's",
          .text = "points that may touch the ground"}},
@@ -353,6 +359,10 @@ const struct row schema_rows[] = {
          .more = "Alike in angles and rates just after the footfall, legs exchanged, in the second "
                  "half of them no less than in the first; see the answers walked_steps, step_time, step_length, walking_speed, "
                  "cost_of_transport, gait_period and gait_change."}},
+    {0, {.path = "stop.walks.enough", .type = FIELD_INTEGER, .use = USE_WALKS, .sweep = true,
+         VALUE(walk_enough), .unit = "1", .fallback = 0, RANGE(0, 1e9), .quiet = true,
+         .text = "steps that are walking whatever they are like; 0: no number is",
+         .more = "On rough ground no two are alike. gait_period and settle_time are then none."}},
     {0, {.path = "stop.walks.length", .type = FIELD_NUMBER, .use = USE_WALKS, .sweep = true,
          VALUE(walk_length), .unit = "m", .fallback = 0.05, ABOVE(0, LARGE), .quiet = true,
          .text = "shortest step: what lands nearer to the other foot is none",

@@ -8,6 +8,7 @@
 enum family {
     FAMILY_NONE,
     FAMILY_ROBOT,     /* parameters of the body */
+    FAMILY_PLATES,    /* of the ground */
     FAMILY_STATE,     /* coordinates, then their rates with a "v" before the name */
     FAMILY_OFFSET,    /* the same, as differences */
     FAMILY_POSTURE,   /* angles that a posture law acts on */

@@ -29,7 +29,7 @@ static bool add_path(struct axis_reader *a, const struct tree_node *node)
     if (!axis_read_path(a, node))
         return false;
     const struct scenario_field *const field = a->swept[axis->paths - 1].field;
-    if (axis->integer[axis->paths - 1])
+    if (axis->whole[axis->paths - 1])
         return problem_add(&a->r->problems, node->mark,
                            "%s: %s takes %s, which are not varied: search for each of them with "
                            "--set, or list them in sweep.grid",

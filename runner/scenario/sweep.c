@@ -127,6 +127,7 @@ bool axis_read_path(struct axis_reader *a, const struct tree_node *node)
     a->swept[k] = swept;
     snprintf(axis->path[k], sizeof axis->path[k], "%s", node->text);
     axis->integer[k] = integer;
+    axis->whole[k] = integer || swept.field->whole;
     axis->enumeration[k] = swept.field->type == FIELD_WORD;
     axis->offset[k] = offset;
     axis->words = axis->words || axis->enumeration[k];
@@ -295,7 +296,7 @@ static bool check_range(struct axis_reader *a, int k, double from, double to)
                                    : "from and to are equal: use count 1";
     else if (count == 1 && from != to)
         wrong = "count 1 leaves no room for to";
-    else if (a->axis->integer[k] && count > 1 && fmod(to - from, (double)(count - 1)) != 0)
+    else if (a->axis->whole[k] && count > 1 && fmod(to - from, (double)(count - 1)) != 0)
         wrong = "this count leads to values that are not whole numbers";
     if (wrong)
         axis_complain(a, wrong);

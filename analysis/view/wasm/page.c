@@ -175,7 +175,7 @@ int view_open(const char *sets)
             return 0;
     return open_plan(&page.view_plan, &page.view, page.file_plan.single && !page.resweeps,
                      page.file_plan.single_case) &&
-           schema_build(&page.schema, page.view.scene, &page.view.law) &&
+           schema_build(&page.schema, page.view.scene, &page.view.law, false) &&
            (page_design(0) || !page.message.text[0]);
 }
 

@@ -133,9 +133,9 @@ static void tell_field(struct text *text, const struct scenario_field *field,
     const bool swept = scenario_axis_of(&page.view, field->offset + item * size, &k) != NULL;
     text_json(text, "~{'path':$,'text':$,'unit':$,'type':$,'value':", path, field->text,
               field->unit,
-              field->type == FIELD_NUMBER    ? "number"
-              : field->type == FIELD_INTEGER ? "integer"
-                                             : "word");
+              field->type == FIELD_WORD                      ? "word"
+              : field->type == FIELD_INTEGER || field->whole ? "integer"
+                                                             : "number");
     add_value(text, field, values, item);
     text_json(text, ",'low':#,'high':#,'lowOpen':?,'highOpen':?,'design':?,'swept':?", field->low,
               field->high, field->low_open, field->high_open, field->design, swept);

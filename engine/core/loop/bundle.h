@@ -43,6 +43,21 @@ struct gathered {
 #define GATHERED_FROM_MAX 0
 #define GATHERED_FROM_MIN INFINITY
 
+#if SCENE_PLATES
+/* What is kept of the ground's plates, see plates.h. */
+enum { PLATES_STANDS = 1, PLATES_NO_GROUND = 2 };
+struct plates {
+    lanes from[STANCE_MAX_PLATES]; /* where pieces begin; INFINITY: it is not laid yet */
+    lanes along[SCENE_PLACES];     /* m, where a place is ... */
+    lanes moved[SCENE_PLACES];     /* ... by how much it has come along in the last step ... */
+    lanes low[SCENE_PLACES], high[SCENE_PLACES]; /* ... and from where to where its plate is */
+    lanes roof[CONTACTS];                        /* height of that */
+    lanes inside[CONTACTS];  /* 0: above it; or it stands inside, or has no ground there */
+    lanes landing[CONTACTS]; /* height on which a step that is taken again is to land; NAN */
+    lanes cut;               /* s, of the step: its next piece ends there, at the latest */
+};
+#endif
+
 struct bundle {
     const stance_feed *feed;
     mask live;                                                        /* lanes that are not idle */
@@ -84,6 +99,9 @@ struct bundle {
     lanes foot;            /* that landed last; -1: none has */
     lanes leg;             /* that stands, of stance_exchange: 0, 1 */
     struct walking walk;
+#if SCENE_PLATES
+    struct plates plates;
+#endif
 
     struct gathered answer;
     lanes fell, fell_by; /* in the last step, before its end: see struct step_report */

@@ -9,6 +9,7 @@
 #ifndef STANCE_CORE_LOOP_FEET_H
 #define STANCE_CORE_LOOP_FEET_H
 
+#include "plates.h"
 #include "walk.h"
 
 #define FEET_DEEPEST 1e-9 /* m: what begins deeper in the ground is not in play */
@@ -47,6 +48,18 @@ COLD void feet_stand(struct bundle *b, mask where, int c)
     }
 }
 
+/* Contact c stands: what of the ground is laid ahead of it. */
+static void feet_lay(struct bundle *b, int lane, int c)
+{
+#if SCENE_PLATES
+    SCENE_BEGIN(b->which[lane]);
+    const lanes along = scene_along(&b->set.body, b->now.s, &b->now.trig, c);
+    plates_footfall(b, lane, lane_get(&b->answer.footfalls, lane), lane_get(&along, lane));
+#else
+    (void)b, (void)lane, (void)c;
+#endif
+}
+
 /* At the beginning of the cases in `fresh`. */
 COLD void feet_begin(struct bundle *b, mask fresh)
 {
@@ -66,6 +79,9 @@ COLD void feet_begin(struct bundle *b, mask fresh)
             feet_stand(b, stands, c);
             b->walk.foot = choose(stands, lanes_of(c), b->walk.foot);
         }
+    for (int lane = 0; lane < LANES; lane++)
+        if (b->which[lane] && mask_get(fresh, lane) && lane_get(&b->walk.foot, lane) >= 0)
+            feet_lay(b, lane, (int)lane_get(&b->walk.foot, lane));
 }
 
 /* Which are in play from now on, in the lanes of `live`. */
@@ -108,6 +124,9 @@ COLD void feet_count(struct bundle *b, mask live, const mask *before)
         if (mask_any(other)) {
             feet_stand(b, other, c);
             walk_footfall(b, other, c);
+            for (int lane = 0; lane < LANES; lane++)
+                if (mask_get(other, lane))
+                    feet_lay(b, lane, c);
         }
     }
 }

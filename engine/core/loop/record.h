@@ -23,11 +23,11 @@ static void bundle_record(struct bundle *b, int lane)
         for (int i = 0; i < OWN_ACTUATORS; i++)
             t->torque[row * OWN_ACTUATORS + i] = lane_get(&b->torque[i], lane);
         for (int k = 0; k < OWN_CONTACTS; k++) {
+            const double rough = lane_get(&b->set.body.rough[k], lane);
             t->gap[row * OWN_CONTACTS + k] = lane_get(&b->now.gap[k], lane);
             for (int a = 0; a < 2; a++)
                 t->force[(row * OWN_CONTACTS + k) * 2 + a] =
-                    elapsed > 0 ? (a == 1 ? c->body.rough[k] : 1) *
-                                      lane_get(&b->impulse[k][a], lane) / elapsed
+                    elapsed > 0 ? (a == 1 ? rough : 1) * lane_get(&b->impulse[k][a], lane) / elapsed
                                 : NAN;
         }
     }

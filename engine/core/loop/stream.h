@@ -46,10 +46,17 @@ enum { STREAM_BUNDLES = 1, STREAM_STEPS = 1000, STREAM_SLOW = 200 };
 
 #include "regroup.h"
 
+/* Are there steps of several pieces? */
+#define STREAM_PIECES (SCENE_PUSHES > 0 || SCENE_PLATES)
+
 /* Judges and records the initial state of fresh lanes. */
 COLD void bundle_start(struct bundle *b, mask fresh, bool coupled)
 {
     bundle_begin(b, fresh);
+#if SCENE_PLATES
+    if (tree_plates > 0)
+        plates_begin(b, fresh);
+#endif
     feet_begin(b, fresh);
     walk_begin(b, fresh);
     feet_choose(b, fresh);
@@ -118,6 +125,10 @@ PER_SET bool stream_ordinary(struct bundle *b, bool coupled, contact_set touchin
     walk_effort(b, b->live, coupled ? report.torque : b->torque, false);
     for (int i = 0; i < SCENE_ACTUATORS && coupled; i++)
         b->torque[i] = report.torque[i];
+#if SCENE_PLATES
+    if (tree_plates > 0)
+        plates_follow(b, b->live);
+#endif
     stream_follow(b, true, b->live, MASK_NONE, true, touching, &report);
     return true;
 }
@@ -138,8 +149,12 @@ CONTACT_SETS(STREAM_ORDINARY)
 HOT bool stream_try_ordinary(struct bundle *b, bool coupled)
 {
     const contact_set now = step_touching(&b->set, b->now.gap, b->live);
+#if SCENE_PLATES
+    if (tree_plates > 0 && mask_any(plates_near(b)))
+        return false;
+#endif
 #ifdef ADVANCE_PIECES
-    if (SCENE_PUSHES > 0 &&
+    if (STREAM_PIECES &&
         mask_any(b->live & (mask_less(lanes_of(0), b->piece_from) | mask_less(b->piece_to, b->h))))
         return false;
 #endif
@@ -165,6 +180,9 @@ COLD mask stream_join(struct bundle *b, mask ok, struct step_report *report)
     choose_all(last, &sum, report, sizeof sum);
     choose_all(last, &none, &b->pieces, sizeof none);
     b->piece_from = choose(ok, choose(last, lanes_of(0), b->piece_to), b->piece_from);
+#if SCENE_PLATES
+    b->plates.cut = choose(ok, lanes_of(INFINITY), b->plates.cut);
+#endif
     return last;
 }
 #endif
@@ -187,13 +205,28 @@ COLD void stream_any(struct bundle *b, bool coupled)
         down[c] = feet_landed(b, c);
     lanes h = b->h;
 #ifdef ADVANCE_PIECES
-    if (SCENE_PUSHES > 0)
+    if (STREAM_PIECES)
         h = b->piece_to - b->piece_from;
+#endif
+#if SCENE_PLATES
+    struct motion from;
+    struct advance before;
+    if (tree_plates > 0) {
+        memcpy(&from, &b->now, sizeof from);
+        memcpy(&before, &b->advance, sizeof before);
+    }
 #endif
     mask ok =
         advance(&b->advance, &b->set, b->torque, h, b->live, coupled, &b->now, &report, &failed);
+#if SCENE_PLATES
+    if (tree_plates > 0) {
+        const mask back = plates_back(b, &from, &before, h, ok, failed);
+        plates_follow(b, b->live & LANES_NOT(back | failed));
+        ok &= LANES_NOT(back);
+    }
+#endif
 #ifdef ADVANCE_PIECES
-    if (SCENE_PUSHES > 0)
+    if (STREAM_PIECES)
         ok = stream_join(b, ok, &report);
 #endif
     walk_effort(b, b->live & LANES_NOT(ok), b->torque, true);
@@ -268,6 +301,10 @@ COLD void stream_strike(struct bundle *b, lanes from)
 HOT void stream_push(struct bundle *b)
 {
     const lanes begins = b->n * b->h;
+#if SCENE_PLATES && defined ADVANCE_PIECES
+    if (tree_plates > 0)
+        b->piece_to = lanes_min(b->h, b->plates.cut);
+#endif
     if (SCENE_PUSHES == 0 || !mask_any(b->live & mask_less_equal(begins, b->pushed_until + b->h)))
         return;
 #ifdef ADVANCE_PIECES
@@ -275,6 +312,10 @@ HOT void stream_push(struct bundle *b)
     const lanes t = begins + b->piece_from, left = b->h - b->piece_from;
     const lanes edge = scene_push_edge(&b->set.body, t, left, STREAM_INSTANT * b->h);
     b->piece_to = choose(mask_less(edge, left), b->piece_from + edge, b->h);
+#if SCENE_PLATES
+    if (tree_plates > 0)
+        b->piece_to = lanes_min(b->piece_to, b->plates.cut);
+#endif
     scene_push(&b->set.body, t, b->piece_to - b->piece_from);
 #else
     stream_strike(b, lanes_of(0));

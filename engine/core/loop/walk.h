@@ -6,7 +6,8 @@
  * is a point of the return map; where points repeat, one to four steps after, as often as is
  * asked and in the second half of them no less well than in the first, the robot walks. That says
  * what it does, not for ever: a gait that wanders takes more steps to be sure of. What is no step,
- * or not alike, begins the count anew.
+ * or not alike, begins the count anew. Where no two steps are alike, as on rough ground, so many of
+ * them may be enough.
  *
  * Footfalls are rare: a lane at a time. */
 #ifndef STANCE_CORE_LOOP_WALK_H
@@ -175,10 +176,10 @@ COLD void walk_begin(struct bundle *b, mask fresh)
         b->walk.moved[i] = choose(fresh, scene_actuated(b->now.s, i), b->walk.moved[i]);
 }
 
-/* Lanes that walk. */
+/* Lanes that walk: in steps that are alike, or in enough of them. */
 static inline mask walk_goes(const struct bundle *b)
 {
-    return mask_less(lanes_of(0), b->walk.period);
+    return mask_less(lanes_of(0), b->walk.period) | mask_less_equal(b->walk.enough, b->walk.steps);
 }
 
 /* The answers, at the end of a case. */
@@ -205,7 +206,7 @@ static void walk_answer(const struct bundle *b, int lane, stance_result *r)
     }
     if (isfinite(lane_get(&w->change, lane)))
         r->gait_change = lane_get(&w->change, lane);
-    if (r->outcome == STANCE_WALKS)
+    if (period > 0 && r->outcome == STANCE_WALKS)
         r->settle_time = lane_get(&w->settled, lane);
     if (period > 0)
         r->gait_period = period;

@@ -9,6 +9,7 @@ enum { WALK_PERIODS = 4, WALK_KEPT = WALK_PERIODS };
 
 struct walking {
     lanes wanted;           /* steps that are to be alike; 0: nobody asks */
+    lanes enough;           /* steps that do, whatever they are like; INFINITY: none */
     lanes foot;             /* contact that stood up to now; -1: none */
     lanes last;             /* s, of the last footfall, be it a step */
     lanes settled;          /* s, since when */
@@ -35,6 +36,7 @@ static inline void walking_load(struct walking *w, int lane, const stance_case *
     for (size_t i = 0; i < sizeof *w / sizeof(lanes); i++)
         lane_set(&all[i], lane, 0);
     lane_set(&w->wanted, lane, (double)c->walk_steps);
+    lane_set(&w->enough, lane, c->walk_enough > 0 ? (double)c->walk_enough : INFINITY);
     lane_set(&w->foot, lane, -1);
     lane_set(&w->last, lane, -INFINITY);
     lane_set(&w->ended, lane, -1);
