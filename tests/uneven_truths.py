@@ -43,7 +43,7 @@ class Ground:
         """-1 ... 1, of a plate of piece k."""
         seed, grid, sample = self.place
         own = self.pieces[k].get("seed")
-        counter = (grid, sample, number % 2**64, k) if own is None else (own, 0, number % 2**64, k + MOST_PIECES)
+        counter = (grid, sample, number % 2**64, k) if own is None else (int(own), 0, number % 2**64, k + MOST_PIECES)
         return (philox(counter, (seed, PLATES))[0] >> 11) / 2**52 - 1
 
     def at(self, x, pieces=None):
@@ -94,7 +94,7 @@ class Point:
         assert not (e and mu)
         self.ground, self.e, self.mu = ground, e, mu
         self.pull, self.weight = G * sin(slope), G * cos(slope)
-        self.landings, self.inside = [], 0.0  # inside: how deep a plate it came
+        self.landings, self.inside, self.lay = [], 0.0, False  # inside: how deep a plate it came; did bounces accumulate?
 
     def move(self, t, ax, az):
         x, z, vx, vz = self.state
@@ -158,8 +158,9 @@ class Point:
         """All that are left, where they end before the next edge and the end; else None."""
         height, _, low, high = self.over()
         seconds = 2 * self.state[3] / (self.weight * (1 - self.e)) if self.e < 1 else inf
-        if not (self.state[3] > 0 and seconds < min(self.left, self.edge(self.pull, low, high)[0])):
+        if not (self.state[1] == height and self.state[3] > 0 and seconds < min(self.left, self.edge(self.pull, low, high)[0])):
             return False
+        self.lay = True
         self.move(seconds, self.pull, 0)
         self.state[1], self.state[3] = height, 0.0
         return True
