@@ -3,6 +3,7 @@
 
     uneven_oracle.py STANCE SCENARIOS      speaks TAP; with STANCE_TEST_LONG at length"""
 import copy
+import json
 import os
 import subprocess
 import sys
@@ -145,7 +146,9 @@ def balls_bounce_on_any_ground():
         assert 0.1 < lay.mean() < 0.6 and max(k[1].inside for k in known) > 0.05
         for method, close in ("event-driven", 1e-10), ("capturing", 2e-6), ("lagrange", 1e-8):
             found = bouncing(grounds[0], method, 0.005, 0.9, cases, slope, numbers_of(grounds))
-            whole = ~lay if method != "capturing" else lay | True
+            gives_up = found["failure"] == 6
+            assert not gives_up.any() if method == "capturing" else (gives_up >= lay).all() and (gives_up & ~lay).sum() <= len(cases) / 100
+            whole = ~gives_up
             near(states(found, "x", "z", "vx", "vz")[whole], state[whole], close, f"{method}, slope {slope}")
             assert found["energy_gain"].max() < 1e-9 and found["max_penetration"].max() < 1e-9
 
@@ -339,13 +342,13 @@ def wheel(plates, rate, method, **more):
 def a_wheel_rolls_over_a_step():
     """State after each of four footfalls: angles by the chord between two feet, energy, angular momentum."""
     heights = [-0.09, -0.02, 0.01, 0.03]
-    axes = grid((["ground.plates.step.height"], [[h] for h in heights]), (["stop.footfalls"], [[k] for k in (1, 2, 4)]))
+    axes = grid((["ground.plates.step.height"], [[h] for h in heights]), (["stop.footfalls"], [[k] for k in (1, 4)]))
     for rate, edge in (0.8, 0.9), (1.0, 1.7):
         known = []
         for height in heights:
             # The spoke upright at 0: its angle against the ground's normal is minus the slope.
             rows = truth.Wheel(Ground({"step": {"from": edge, "height": height}}), 0.1, 6, 0.2).roll(rate, 4, angle=-0.2)
-            known += [(t, -turned, -rate) for t, _, _, turned, rate, _ in (rows[0], rows[1], rows[3])]
+            known += [(t, -turned, -rate) for t, _, _, turned, rate, _ in (rows[0], rows[3])]
         for method, close in ("event-driven", 1e-9), ("capturing", 1e-7):
             found = run(wheel({"step": {"from": edge, "height": 0.0}}, rate, method, sweep=axes))
             near(np.column_stack([found["end_time"].ravel(), states(found, "wheel", "vwheel")]), known, close, f"{method}, {edge}")
@@ -418,10 +421,10 @@ def agree(walker, name, heights, steps, method):
         beside = [len(walks(walker, height + by, steps)[0]) for by in (-1e-6, 1e-6)] if name == "simplest" else []
         left += beside != [len(rows)] * len(beside)
         known.append((len(rows), why, beside == [len(rows)] * len(beside)))
-    found = run(walking(walker, heights, steps, method))
+    found = run(walking(walker, heights, steps, method), codes=(0, 1))  # event-driven gives up some that fall
     for height, (made, why, sure), took, outcome in zip(heights, known, found["walked_steps"].ravel(), found["outcome"].ravel()):
         # A leg that falls on may land once more, where nothing carries it.
-        assert not sure or (took == made if why is None else made <= took <= made + 1), \
+        assert not sure or outcome == 0 and why or (took == made if why is None else made <= took <= made + 1), \
             f"{name}, {method}, step of {height!r}: {took} steps and outcome {outcome}, not {made}, {why}"
     assert found["energy_gain"].max() < 1e-6 and found["max_penetration"].max() < 1e-9
     return left
@@ -431,14 +434,29 @@ def the_compass_survives_steps_as_large():
     """Down and up a step, bracketed by 2e-6 m; and what becomes of it in steps of other heights."""
     for side, most in zip((-1, 1), MOST):
         assert walks(COMPASS, most - side * 1e-6, 60)[1] is None and walks(COMPASS, most + side * 1e-6, 60)[1] is not None
-        heights = [most - side * 1e-6, most + side * 1e-6] + [most * k / 4 for k in (range(1, 13) if LONG else (2, 3, 6))]
+        heights = [most - side * 1e-6, most + side * 1e-6] + [most * k / 4 for k in (range(1, 13) if LONG else (2, 6))]
         for method in ("event-driven", "capturing") if LONG else ("capturing",):
-            agree(COMPASS, "compass", heights, 60 if LONG else 18, method)
+            agree(COMPASS, "compass", heights, 60 if LONG else 16, method)
+
+
+def critical_brackets_them():
+    """stance critical, which looks for the largest step by halves."""
+    scenario = walking(COMPASS, [0], 25, "capturing")
+    del scenario["sweep"]
+    with open("critical.yaml", "w", encoding="utf-8") as file:
+        yaml.safe_dump({"stance": 1, **scenario}, file, sort_keys=False)
+    for most, end in zip(MOST, (-0.02, 0.02)):
+        done = subprocess.run([STANCE, "critical", "critical.yaml", "--of", f"ground.plates.step.height=0..{end}", "--outcome", "walks", "--count",
+                               "129", "-o", "critical.h5", "--force", "--quiet", "--json"], capture_output=True, text=True, timeout=PATIENCE,
+                              check=False, env={**os.environ, "CC": "false"})
+        assert done.returncode == 0, done.stderr
+        line = json.loads(done.stdout)["rows"][0]
+        assert abs(line["kept"]) < abs(most) < abs(line["lost"]) <= abs(line["kept"]) + 2e-4, (line, most)
 
 
 def the_simplest_walker_survives_others():
     """Nearly all of its steps end it: of which smallness is seen by fractions of a millimetre."""
-    heights = np.linspace(-0.0031, 0.0031, 101 if LONG else 9).tolist()
+    heights = np.linspace(-0.0031, 0.0031, 101 if LONG else 7).tolist()
     for method in ("event-driven", "capturing") if LONG else ("capturing",):
         left = agree(SIMPLEST, "simplest", heights, 20 if LONG else 10, method)
         assert left < len(heights) / 4, left
@@ -468,10 +486,12 @@ def a_compass_walks_on_rough_ground():
     robot, (angle, stands, swings), _ = COMPASS
     steps = 20 if LONG else 12
     for count, height, more in (1000 if LONG else 16, 0.005, {}), (1, 0.003, {"seed": 3}):
-        found = run(compass_on_rough_ground(height, count, steps, **more))
+        scenario = compass_on_rough_ground(height, count, steps, **more)
+        scenario["method"]["step"] = 0.001 if LONG else 0.005
+        found = run(scenario)
         known = [len(robot.walk([angle, -angle, stands, swings], Ground(rough(height, **more), 11, 0, k), steps)[0]) for k in range(count)]
-        differ = (found["walked_steps"].ravel() != known).sum()
-        assert differ <= count / 50 and (count == 1 or len(set(known)) > 4), f"{differ} of {count} differ: {found['walked_steps'].ravel()}, {known}"
+        differ = (found["footfalls"].ravel() != known).sum()  # feet in the ground that come over a lower plate have that at a step's end
+        assert differ <= count / 50 and (count == 1 or len(set(known)) > 4), f"{differ} of {count} differ: {found['footfalls'].ravel()}, {known}"
 
 
 ROBOTS = {
@@ -552,5 +572,6 @@ tap([philox_gives_its_published_numbers, heights_are_the_documented_function,
      a_riser_has_no_ground_until_a_ball_is_above_it, points_slide, a_block_tips_over_an_edge, a_sole_is_its_two_ends,
      an_edge_is_crossed_and_crossed_back, a_wheel_rolls_over_a_step,
      a_wheel_comes_up_a_step_or_does_not, the_compass_survives_steps_as_large,
+     critical_brackets_them,
      the_simplest_walker_survives_others, a_compass_walks_on_rough_ground, laws_hold_on_rough_ground,
      plates_of_no_height_change_nothing])

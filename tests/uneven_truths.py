@@ -411,16 +411,23 @@ class Compass:
 
         def lies(_, y):
             return 1.3 - max(abs(y[0]), abs(y[1]) / 2)
+
+        def turns(_, y):
+            """The foot is highest, or lowest: between these it meets a height once."""
+            return sin(y[1]) * y[3] - sin(y[0]) * y[2]
         lies.terminal = True
-        meets = [lies]
-        for h in sorted(heights):
-            meets.append(lambda _, y, h=h: self.l * (cos(y[0]) - cos(y[1])) - (h - base))
-            meets[-1].direction = -1
         for seconds in 0.35, 1.3:
-            out = solve_ivp(self.rates, (0, seconds * sqrt(self.l * G / self.g) * 3), y, events=meets, method="DOP853",
-                            rtol=self.tolerance, atol=self.tolerance / 10)
-            found = [(t, state) for h, times, states in zip(sorted(heights), out.t_events[1:], out.y_events[1:])
-                     for t, state in zip(times, states) if self.foot(state)[0] > 1e-6 and ground.height(x + self.foot(state)[0]) == h]
+            out = solve_ivp(self.rates, (0, seconds * sqrt(self.l * G / self.g) * 3), y, events=[lies, turns], method="DOP853",
+                            rtol=self.tolerance, atol=self.tolerance / 10, dense_output=True)
+            times, found = [0, *out.t_events[1], out.t[-1]], []
+            for begin, end in zip(times, times[1:]):
+                for h in heights:
+                    above = [self.foot(out.sol(t))[1] - (h - base) for t in (begin, end)]
+                    if above[0] > 0 >= above[1]:
+                        t = brentq(lambda t, h=h: self.foot(out.sol(t))[1] - (h - base), begin, end, xtol=1e-15, rtol=1e-14)
+                        ahead = self.foot(out.sol(t))[0]
+                        if ahead > 1e-6 and ground.height(x + ahead) == h:
+                            found.append((t, out.sol(t)))
             if found or out.t_events[0].size:
                 break
         if not found:

@@ -2,7 +2,7 @@
 # Ground in plates: balls, blocks, a wheel and walkers on it against independent programs (uneven_oracle.py); the same bits
 # on any number of ranks, on every instruction set, by kernels that are compiled and by those that are built in.
 # Speaks TAP.
-# about: runner/run analysis/compare
+# about: runner/run analysis/compare analysis/critical
 set -u
 # shellcheck source=tests/scratch.sh
 . "$(dirname "$0")/scratch.sh"
