@@ -280,7 +280,7 @@ golden-web:
 # ---- pages: the engine as WebAssembly, the page around it, see analysis/view/page -----------------
 # The engine of a page reads scenarios, too, but no YAML and no files, and designs nothing.
 page_sources := $(wildcard analysis/view/wasm/*.c) $(addprefix runner/base/,checksum.c numbers.c problem.c words.c) \
-    $(addprefix runner/plan/,plan.c refine.c resolve.c shard.c) \
+    $(addprefix runner/plan/,ground_line.c plan.c refine.c resolve.c shard.c) \
     $(filter-out %/command_describe.c %/describe.c %/scenario_file.c %/tree_yaml.c,$(wildcard runner/scenario/*.c))
 # A page carries the engine of its file's scene.
 engines = $(patsubst %,$(WEB)/engine-%.z,$(STRUCTURES) $(RUNTIME))

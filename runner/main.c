@@ -16,14 +16,14 @@ extern const struct command command_check, command_design, command_build, comman
     command_export, command_status, command_summary, command_plot, command_compare,
     command_describe, command_bench, command_basin, command_merge, command_table,
     command_sensitivity, command_replay, command_ranges, command_optimise, command_view,
-    command_gait, command_import;
+    command_gait, command_import, command_critical;
 
 static const struct command *const commands[] = {
-    &command_check,    &command_ranges, &command_design,   &command_build,  &command_run,
-    &command_optimise, &command_status, &command_summary,  &command_plot,   &command_replay,
-    &command_gait,     &command_view,   &command_compare,  &command_basin,  &command_sensitivity,
-    &command_merge,    &command_table,  &command_describe, &command_export, &command_import,
-    &command_bench,
+    &command_check,       &command_ranges, &command_design,  &command_build,    &command_run,
+    &command_optimise,    &command_status, &command_summary, &command_plot,     &command_replay,
+    &command_gait,        &command_view,   &command_compare, &command_basin,    &command_critical,
+    &command_sensitivity, &command_merge,  &command_table,   &command_describe, &command_export,
+    &command_import,      &command_bench,
 };
 enum { COMMANDS = sizeof commands / sizeof commands[0] };
 
@@ -131,7 +131,7 @@ int main(int argc, char **argv)
     }
     /* Of commands that are not for several ranks the first one speaks. */
     if (!parallel_is_first() && strcmp(argv[1], command_run.name) != 0 &&
-        strcmp(argv[1], command_optimise.name) != 0)
+        strcmp(argv[1], command_optimise.name) != 0 && strcmp(argv[1], command_critical.name) != 0)
         return EXIT_DONE;
     for (size_t i = 0; i < COMMANDS; i++)
         if (strcmp(argv[1], commands[i]->name) == 0)

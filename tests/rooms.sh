@@ -32,6 +32,7 @@ analysis/draw: $numbers
 analysis/optimise: $numbers analysis/draw
 analysis/summary: $numbers analysis/draw analysis/optimise
 analysis/basin: $numbers analysis/draw
+analysis/critical: $numbers analysis/draw analysis/basin
 analysis/sensitivity: $numbers analysis/draw analysis/optimise analysis/summary
 analysis/compare: $numbers analysis/draw
 analysis/gait: $numbers analysis/draw

@@ -317,9 +317,51 @@ static void wrong_ones_are_told(void **state)
     assert_true(WRONG >= 60);
 }
 
+/* Pieces of the ground, of a described robot and of one that is carried: their numbers, which of
+ * them an axis gives, and what the file keeps. */
+static void ground_becomes_plates(void **state)
+{
+    static const char *const scene[] = {good, "stance: 1\nscene: rod\ninitial: {state: {}}\n"
+                                              "stop: {time: 5}\n"};
+    const char *const sets[] = {
+        "ground.plates={step: {from: 0.5, height: -0.05}, up: {from: 1, friction_factor: 0.5}, "
+        "stairs: {kind: stairs, from: 2, width: 0.3, height: 0.05}, "
+        "field: {kind: rough, from: 6, width: 0.2, count: 9}, late: {from: 0.1}}",
+        "sweep.grid=[{path: ground.plates.late.footfall, values: [3, 5]}, "
+        "{path: ground.plates.field.seed, from: 1, to: 3, count: 3}, "
+        "{path: ground.plates.field.height, from: 0, to: 0.02, count: 2}]"};
+    (void)state;
+    for (int k = 0; k < 2; k++) {
+        struct scenario s, again;
+        struct scenario_values v;
+        read_good(&s, scene[k], sets, 2);
+        const stance_mechanism *const m = s.scene->mechanism;
+        assert_int_equal(m->plates, 5);
+        assert_string_equal(m->plate[2].name, "stairs");
+        assert_true(m->plate[0].kind == STANCE_PLATE && m->plate[2].kind == STANCE_STAIRS &&
+                    m->plate[3].kind == STANCE_ROUGH);
+        assert_true(m->plate[1].rough && !m->plate[0].rough && m->plate[4].by_footfall &&
+                    !m->plate[0].by_footfall);
+        assert_near(quantity(&s, s.base.robot, "plates.step.height"), -0.05, 0);
+        assert_near(quantity(&s, s.base.robot, "plates.field.count"), 9, 0);
+        assert_true(isinf(m->value.plate[2].count) && m->value.plate[0].seed < 0);
+        scenario_case_values(&s, 1 + 2 * 2 + 6, &v);
+        assert_near(quantity(&s, v.robot, "plates.late.footfall"), 5, 0);
+        assert_near(quantity(&s, v.robot, "plates.field.seed"), 3, 0);
+        assert_near(quantity(&s, v.robot, "plates.field.height"), 0.02, 0);
+        assert_false(s.axis[0].design);
+        read_good(&again, s.text, NULL, 0);
+        assert_string_equal(s.text, again.text);
+        assert_true(scenario_same_scene(&s, &again));
+        scenario_free(&again);
+        scenario_free(&s);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(ground_becomes_plates),
         cmocka_unit_test(description_becomes_a_scene),
         cmocka_unit_test(numbers_vary),
         cmocka_unit_test(text_reads_back),

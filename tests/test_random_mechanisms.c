@@ -273,11 +273,44 @@ static void raised(void **state)
     }
 }
 
+/* Capturing and the reference make the same of cases on plates. */
+static void reference(void **state)
+{
+    static const char *const method[] = {"event-driven", "capturing"};
+    static stance_case c[CASES];
+    static stance_result r[2][CASES];
+    long same = 0, cases = 0;
+    (void)state;
+    for (int tree = 0; tree < trees_of(); tree++) {
+        stance_scene *const scene = on_plates(random_scene(tree, 0.1), lay_any);
+        for (int k = 0; k < 20; k++)
+            random_scene_case(scene, &c[k]);
+        for (int i = 0; i < 2; i++) {
+            for (int k = 0; k < 20; k++)
+                c[k].tolerance = i ? 1e-10 : 1e-12;
+            stance_kernel_find(scene, stance_method_find(method[i]), NULL)->run(c, r[i], 20);
+        }
+        for (int k = 0; k < 20; k++) {
+            double off = 0;
+            if (r[0][k].status != STANCE_DONE)
+                continue;
+            for (int i = 0; i < scene->coordinates; i++)
+                off = fmax(off, fabs(r[0][k].position[i] - r[1][k].position[i]));
+            cases++;
+            same += off <= 1e-5;
+        }
+        stance_scene_free(scene);
+    }
+    print_message("# on plates, capturing and event-driven: %ld of %ld the same\n", same, cases);
+    assert_true(cases - same <= 1 + cases / 100);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(factors),  cmocka_unit_test(raised),   cmocka_unit_test(plates),
-        cmocka_unit_test(implicit), cmocka_unit_test(midpoint), cmocka_unit_test(capturing),
+        cmocka_unit_test(factors),   cmocka_unit_test(raised),   cmocka_unit_test(plates),
+        cmocka_unit_test(reference), cmocka_unit_test(implicit), cmocka_unit_test(midpoint),
+        cmocka_unit_test(capturing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

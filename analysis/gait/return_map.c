@@ -334,6 +334,9 @@ static bool check(const stance_case *c, const stance_kernel *kernel, int steps,
     if (c->restitution > 0)
         return refuse(message, "a foot that rebounds is not on the ground after its footfall: set "
                                "ground.restitution to 0");
+    if (c->body.plates > 0)
+        return refuse(message, "on uneven ground no step is as the one before: leave out "
+                               "ground.plates");
     if (timed(c))
         return refuse(message,
                       "a gait has no time of its own: pushes, ramps and integrals of a run "

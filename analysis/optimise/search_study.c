@@ -251,9 +251,10 @@ void search_describe(const struct search_study *study, struct results_axis *axis
     const struct scenario *const s = study->first;
     struct schema *const schema = s ? malloc(sizeof *schema) : NULL;
     size_t index[2];
-    const struct scenario_field *const field = schema && schema_build(schema, s->scene, &s->law, false)
-                                                   ? schema_find_concrete(schema, axis->name, index)
-                                                   : NULL;
+    const struct scenario_field *const field =
+        schema && schema_build(schema, s->scene, &s->law, false)
+            ? schema_find_concrete(schema, axis->name, index)
+            : NULL;
     if (field) {
         snprintf(axis->unit, sizeof axis->unit, "%s",
                  strcmp(field->unit, "1") == 0 ? "" : field->unit);

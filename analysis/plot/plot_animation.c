@@ -22,6 +22,7 @@ struct animation {
     struct gnuplot g;
     struct figure *figure[2]; /* [frames] of each case; NULL: there is no other */
     int frames;
+    double step;  /* s, from one to the next */
     bool follows; /* the robot travels too far for a view that stays */
 };
 
@@ -41,7 +42,37 @@ static struct plot_range see(const struct animation *a, int i)
     return range;
 }
 
-static void put_view(struct animation *a)
+/* The ground of frame f between places that move with the view. Returns how many points it has. */
+static size_t find_ground(const struct animation *a, const struct plot_case *c, int f,
+                          struct plot_range x, double (*point)[2])
+{
+    const double about = a->follows ? a->figure[0][f].centre : 0;
+    return plot_ground(c, f * a->step, about + x.low, about + x.high, point);
+}
+
+/* Plates, each frame an index of $ground; `z` is widened to where they go down to. */
+static void put_ground(struct animation *a, const struct plot_case *c, struct plot_range x,
+                       struct plot_range *z)
+{
+    double(*const point)[2] = gnuplot_room(&a->g, PLOT_GROUND, sizeof *point);
+    gnuplot_set(&a->g, "uneven = %d", c->floor != NULL);
+    gnuplot_block(&a->g, "ground");
+    if (!c->floor)
+        GNUPLOT_ROW(&a->g, NAN, NAN);
+    if (!c->floor || !point)
+        return;
+    for (int f = 0; f < a->frames; f++) {
+        const size_t points = find_ground(a, c, f, x, point);
+        for (size_t k = 0; k < points; k++) {
+            GNUPLOT_ROW(&a->g, point[k][0], point[k][1]);
+            z->low = fmin(z->low, point[k][1] - (a->follows ? a->figure[0][f].base : 0));
+        }
+        gnuplot_gap(&a->g);
+        gnuplot_gap(&a->g);
+    }
+}
+
+static void put_view(struct animation *a, const struct plot_case *c)
 {
     struct plot_range x = see(a, 0), z = see(a, 1);
     if (x.high - x.low > 3 * (z.high - z.low)) {
@@ -52,6 +83,7 @@ static void put_view(struct animation *a)
     const double tall = z.high - z.low, margin = 0.08 * tall + 1e-9;
     const double half = fmax(0.6 * tall, 0.5 * (x.high - x.low)) + margin,
                  middle = 0.5 * (x.low + x.high);
+    put_ground(a, c, (struct plot_range){middle - half, middle + half}, &z);
     gnuplot_set(&a->g, "low_x = %#.17g; high_x = %#.17g; low_z = %#.17g; high_z = %#.17g",
                 middle - half, middle + half, z.low - margin, z.high + margin);
     gnuplot_arrays(&a->g, (size_t)a->frames, "centre base");
@@ -82,6 +114,7 @@ bool plot_animation(const struct plot_case *c)
                         "%.150s: no stick figures: this version cannot read its scenario",
                         c->plot->r->file);
     const double step = fmax(frame_time, ceil(100 * end_of(c) / LOOK_MOST_FRAMES) / 100);
+    a.step = step;
     a.frames = (int)(end_of(c) / step + 1e-9) + 1;
     c->plot->look->animated = step;
     if (!plot_case_begin(c, &a.g, "animation", plot_animation_gp, "Stick figures"))
@@ -95,7 +128,7 @@ bool plot_animation(const struct plot_case *c)
     }
     const int contacts = figure_names(&a.g, c->scenario.scene);
     if (a.figure[0]) {
-        put_view(&a);
+        put_view(&a, c);
         put_frames(&a, contacts);
     }
     gnuplot_set(&a.g, "frames = %d; step = %.10g; fall = %#.17g; follows = %d; cases = %d",

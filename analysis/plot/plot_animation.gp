@@ -36,12 +36,13 @@ if (drawing eq 'svg') {
     plot NaN notitle
 }
 eval (drawing eq 'svg' && !follows ? no_axes : axes)
-set samples 2 # of the ground, a straight line
+set samples 2 # of even ground, a straight line
 do for [f=1:frames] {
     set xrange [centre[f] + low_x:centre[f] + high_x]
     set yrange [base[f] + low_z:base[f] + high_z]
     set label 1000 sprintf('%.2f s', (f - 1)*step)
-    plot -fall*x with lines lw 2 lc rgb '#a0a0a0' notitle, \
+    plot for [k=uneven:0] -fall*x with lines lw 2 lc rgb '#a0a0a0' notitle, \
+        for [k=1:uneven] '$ground' index f-1 using 1:2 with lines lw 2 lc rgb '#a0a0a0' notitle, \
         for [c=cases:2:-1] '$segments'.c index f-1 using 1:2 with lines lw 3 lc rgb '#b8b8b8' notitle, \
         for [k=contacts:0:-1] $segments1 index f-1 using 1:($3 == k ? $2 : NaN) with lines lw 3 lc rgb group_colour(k) notitle, \
         for [k=contacts:0:-1] $points1 index f-1 using 1:($3 == k ? $2 : NaN) with points pt 7 ps 0.9 lc rgb group_colour(k) notitle

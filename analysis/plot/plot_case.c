@@ -538,6 +538,7 @@ static void learn(struct plot_case *c)
                                         t->coordinates) != t->coordinates)
         for (int i = 0; i < STANCE_MAX_COORDINATES; i++)
             c->equilibrium[i] = NAN;
+    plot_ground_learn(c);
 }
 
 bool plot_case_load(struct plot_case *c, const struct plot *plot, size_t place, uint64_t index)
@@ -558,6 +559,7 @@ void plot_case_free(struct plot_case *c)
 {
     if (c->readable)
         scenario_free(&c->scenario);
+    free(c->floor);
     results_trajectory_free(&c->trajectory);
 }
 

@@ -4,6 +4,7 @@
 #define STANCE_PLOT_PLOT_CASE_H
 
 #include "analysis/draw/plot.h"
+#include "runner/plan/ground_line.h"
 
 /* One case with its trajectory. */
 struct plot_case {
@@ -16,6 +17,9 @@ struct plot_case {
     struct scenario scenario;
     struct scenario_values values;              /* of this case */
     double equilibrium[STANCE_MAX_COORDINATES]; /* of the controller; NAN: none, or not known */
+    stance_case *floor;                         /* whose numbers the ground has; NULL: it is even */
+    struct ground_pieces pieces;                /* of it */
+    double reach;                               /* m, of the robot: half its size */
 };
 
 /* Loads the case at a place among the recorded ones; freed with plot_case_free. */
@@ -68,6 +72,14 @@ size_t figure_row(const struct results_trajectory *t, double time);
 void figure_make(struct figure *figure, const struct plot_case *c, size_t row);
 /* The ground's fall along x: a slope's tangent. */
 double figure_fall(const struct plot_case *c);
+/* The ground at a time from x = low to high, m: points x, z of a line, [PLOT_GROUND]; how many. */
+enum { PLOT_GROUND = 2000 };
+size_t plot_ground(const struct plot_case *c, double time, double low, double high,
+                   double (*point)[2]);
+/* Height z of the ground at x, m; of plates the mean about it. */
+double plot_ground_base(const struct plot_case *c, double time, double x);
+/* Once the rest of a case is known. */
+void plot_ground_learn(struct plot_case *c);
 /* Tells the script of the contacts: contacts, contact_name[]. Returns how many. */
 int figure_names(struct gnuplot *g, const stance_scene *scene);
 /* Rows x, z, colour, time of its segments, each a line of its own, or of its joints and contacts;

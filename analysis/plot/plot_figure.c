@@ -114,7 +114,7 @@ void figure_make(struct figure *figure, const struct plot_case *c, size_t row)
     figure->centre = 0;
     for (int p = 0; p < figure->points; p++)
         figure->centre += figure->point[p][0] / figure->points;
-    figure->base = -figure_fall(c) * figure->centre;
+    figure->base = plot_ground_base(c, figure->time, figure->centre);
 }
 
 int figure_names(struct gnuplot *g, const stance_scene *scene)

@@ -215,6 +215,23 @@ static double slide_of(const struct model *m, int k, double from[2])
     return sign ? 0.18 * m->size : q;
 }
 
+/* Uneven ground, to either side as far as it may be seen; pieces by footfall are not there yet. */
+static void put_ground(struct model *m)
+{
+    double(*const point)[2] = gnuplot_room(m->g, PLOT_GROUND, sizeof *point);
+    struct ground_pieces pieces;
+    gnuplot_set(m->g, "uneven = %d", m->scene->mechanism->plates > 0);
+    gnuplot_block(m->g, "ground");
+    GNUPLOT_ROW(m->g, NAN, NAN);
+    if (m->scene->mechanism->plates == 0 || !point)
+        return;
+    ground_pieces_find(m->c, 0, NULL, NULL, NULL, NULL, NULL, &pieces);
+    const size_t points = ground_line(m->c, &pieces, 0, m->range[0].low - 4 * m->size,
+                                      m->range[0].high + 4 * m->size, point, PLOT_GROUND);
+    for (size_t k = 0; k < points; k++)
+        GNUPLOT_ROW(m->g, point[k][0], point[k][1]);
+}
+
 static void put_lines(struct model *m)
 {
     gnuplot_block(m->g, "segments");
@@ -383,6 +400,7 @@ static int draw_model(const struct scenario *s, const stance_case *c, void *aske
         gnuplot_set(&g, "has_place = %d; place_x = %#.9g; place_y = %#.9g; fall = %#.9g",
                     is_place(m, 0), c->position[0], c->position[1],
                     tan(c->robot[STANCE_ROBOT_SLOPE]));
+        put_ground(m);
         put_lines(m);
         put_things(m);
         put_words(m);

@@ -1,4 +1,4 @@
-# plot_model.gp - the robot in one posture: $segments its stick figure, the ground z = -fall x, $zeros where angles are 0,
+# plot_model.gp - the robot in one posture: $segments its stick figure, the ground z = -fall x or $ground, $zeros where angles are 0,
 # $arrows (x, y, dx, dy, ink, whether it has a head) and labels of coordinates, actuators and contacts. Both
 # directions have the same scale. The words stand beside the figure, under it where the page is narrow.
 array ink[3] = [shade(0x0072b2), shade(0xd55e00), shade(0x009e73)]
@@ -129,9 +129,11 @@ do for [i=1:labels] {
     set label label_text[i] at x_at, y_at center font ',13' textcolor rgb ink[label_ink[i]+1] boxed front
 }
 bottom = middle_y - 0.5*height/scale
-ground(x) = -fall*x > bottom ? -fall*x : bottom
-plot '+' using 1:(ground($1)) with filledcurves y1=bottom fc rgb '#f0f0f0' notitle, \
-    '+' using 1:(-fall*$1) with lines lw 2 lc rgb '#a0a0a0' notitle, \
+ground(z) = z > bottom ? z : bottom
+plot for [k=uneven:0] '+' using 1:(ground(-fall*$1)) with filledcurves y1=bottom fc rgb '#f0f0f0' notitle, \
+    for [k=uneven:0] '+' using 1:(-fall*$1) with lines lw 2 lc rgb '#a0a0a0' notitle, \
+    for [k=1:uneven] '$ground' using 1:(ground($2)) with filledcurves y1=bottom fc rgb '#f0f0f0' notitle, \
+    for [k=1:uneven] '$ground' using 1:2 with lines lw 2 lc rgb '#a0a0a0' notitle, \
     $segments using 1:2 with lines lw 3.4 lc rgb '#303030' notitle, \
     $zeros using 1:2 with lines dt 2 lw 1.2 lc rgb '#606060' notitle, \
     $segments using 1:2 with points pt 7 ps 0.7 lc rgb '#303030' notitle, \

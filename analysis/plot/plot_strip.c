@@ -13,9 +13,9 @@ struct strip {
     int count, contacts;
     struct figure figure[MOST_FIGURES];
     struct figure other[MOST_FIGURES]; /* of the other case, without points from its end on */
-    double fall;                       /* of the ground along x: a slope's tangent */
     double spacing;                    /* m: between figures */
     struct plot_range height;          /* m: what is shown */
+    double ground[PLOT_GROUND][2];     /* of a figure */
     bool follows;                      /* places move with the figures */
 };
 
@@ -30,13 +30,21 @@ static double measure_figures(struct strip *strip)
     for (int i = 0; i < 2 * strip->count; i++) {
         struct figure *const own = &strip->figure[i / 2];
         const struct figure *const figure = i % 2 ? &strip->other[i / 2] : own;
-        own->base = -strip->fall * own->centre;
+        own->base = plot_ground_base(strip->c, own->time, own->centre);
         for (int p = 0; p < figure->points; p++) {
             half = fmax(half, fabs(figure->point[p][0] - own->centre));
             plot_widen(&strip->height, figure->point[p][1] - own->base);
         }
     }
     return half;
+}
+
+/* The ground that a figure stands on. Returns how many points it has. */
+static size_t find_ground(struct strip *strip, int i)
+{
+    const struct figure *const of = &strip->figure[i];
+    return plot_ground(strip->c, of->time, of->centre - 0.5 * strip->spacing,
+                       of->centre + 0.5 * strip->spacing, strip->ground);
 }
 
 /* Where and how large the figures are drawn. */
@@ -52,8 +60,11 @@ static void measure(struct strip *strip)
         strip->figure[i].centre = 0.5 * (centre.low + centre.high);
     const double half = measure_figures(strip), tall = strip->height.high - strip->height.low;
     strip->spacing = 2.1 * fmax(half, 0.1 * tall);
-    strip->height.low =
-        fmin(strip->height.low, -0.5 * fabs(strip->fall) * strip->spacing) - 0.05 * tall;
+    for (int i = 0; i < strip->count; i++)
+        for (size_t k = find_ground(strip, i); k-- > 0;)
+            strip->height.low =
+                fmin(strip->height.low, strip->ground[k][1] - strip->figure[i].base);
+    strip->height.low -= 0.05 * tall;
     strip->height.high += 0.06 * tall;
 }
 
@@ -78,12 +89,15 @@ static void make_strip(struct strip *strip)
 /* ---- drawing ------------------------------------------------------------------------------ */
 
 /* In the script's plane the figures stand `spacing` apart. */
-static void put_figures(struct gnuplot *g, const struct strip *strip)
+static void put_figures(struct gnuplot *g, struct strip *strip)
 {
     gnuplot_block(g, "ground");
     for (int i = 0; i < strip->count; i++) {
-        for (int end = 0; end < 2; end++)
-            GNUPLOT_ROW(g, (i + end) * strip->spacing, (0.5 - end) * strip->fall * strip->spacing);
+        const size_t points = find_ground(strip, i);
+        for (size_t k = 0; k < points; k++)
+            GNUPLOT_ROW(g,
+                        (i + 0.5) * strip->spacing + strip->ground[k][0] - strip->figure[i].centre,
+                        strip->ground[k][1] - strip->figure[i].base);
         gnuplot_gap(g);
     }
     static const char *const blocks[] = {"segments", "points", "other"};
@@ -108,7 +122,6 @@ bool plot_strip(const struct plot_case *c)
     struct strip *const strip = gnuplot_room(&g, 1, sizeof *strip);
     if (strip) {
         strip->c = c;
-        strip->fall = figure_fall(c);
         make_strip(strip);
         gnuplot_set(&g,
                     "count = %d; spacing = %#.17g; low = %#.17g; high = %#.17g; travels = %d; "

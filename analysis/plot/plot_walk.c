@@ -112,9 +112,38 @@ static const char fit[] =
     "'half').' step'";
 /* s of the axis that are as long as one m of height. */
 static const char metre[] = "metre(_) = panel_high[1]/(y1_high - y1_low)*(x_high - x_low)/width";
-#define FIGURE_PLACE                                                                               \
+#define FIGURE_PLACE_ALONE                                                                         \
     "(int(($4 - figure_begin)/figure_time + 0.5)%%every ? NaN : $4 + metre(0)*$1):"                \
-    "($2 - figure_fall*($4 - x_low)/metre(0)):(figure_colour($3))"
+    "($2 - figure_fall*($4 - x_low)/metre(0))"
+#define FIGURE_PLACE FIGURE_PLACE_ALONE ":(figure_colour($3))"
+
+static void put_plane(struct case_page *page)
+{
+    gnuplot_series(&page->g,
+                   "using 1:(-figure_fall*($1 - x_low)/metre(0)) with lines lw 2 lc rgb 0xa0a0a0");
+    GNUPLOT_ROW(&page->g, page->time.low, 0);
+    GNUPLOT_ROW(&page->g, page->time.high, 0);
+}
+
+/* What is under the feet of each figure. */
+static void put_plates(struct case_page *page, const struct figure *figure)
+{
+    static double point[PLOT_GROUND][2]; /* large, as the figures */
+    const int contacts = plot_case_grounded(page->c->scenario.scene);
+    gnuplot_series(&page->g, "using " FIGURE_PLACE_ALONE " with lines lw 2 lc rgb 0xa0a0a0");
+    for (int i = 0; i <= STEPS * FIGURES; i++) {
+        struct plot_range x = PLOT_NOTHING;
+        for (int k = 0; k < contacts; k++)
+            plot_widen(&x, figure[i].contact[k][0]);
+        const double more = 0.1 * (x.high - x.low) + 0.02;
+        const size_t points =
+            plot_ground(page->c, figure[i].time, x.low - more, x.high + more, point);
+        for (size_t k = 0; k < points; k++)
+            GNUPLOT_ROW(&page->g, point[k][0] - figure[i].centre, point[k][1] - figure[i].base, 0,
+                        figure[i].time);
+        gnuplot_gap(&page->g);
+    }
+}
 
 static void put_figures(struct case_page *page)
 {
@@ -152,10 +181,10 @@ static void put_figures(struct case_page *page)
         GNUPLOT_ROW(g, page->mark[k], 1);
         gnuplot_gap(g);
     }
-    gnuplot_series(g,
-                   "using 1:(-figure_fall*($1 - x_low)/metre(0)) with lines lw 2 lc rgb 0xa0a0a0");
-    GNUPLOT_ROW(g, page->time.low, 0);
-    GNUPLOT_ROW(g, page->time.high, 0);
+    if (c->floor)
+        put_plates(page, figure);
+    else
+        put_plane(page);
     for (int part = FIGURE_SEGMENTS; part <= FIGURE_POINTS; part++) {
         gnuplot_series(g, "using " FIGURE_PLACE " with %s lc rgb variable",
                        part == FIGURE_SEGMENTS ? "lines lw 1.8" : "points pt 7 ps 0.45");

@@ -3,6 +3,7 @@
 
 #include "analysis/statistics/faces.h"
 #include "analysis/statistics/statistics.h"
+#include "runner/plan/ground_line.h"
 #include "runner/store/results_rows.h"
 
 #include <math.h>
@@ -270,12 +271,17 @@ static void add_touching(const struct summary *summary, json_t *facts)
     struct scenario_values values = s->base;
     if (s->axes > 0)
         scenario_case_values(s, r->index, &values);
-    s->scene->gaps(s->scene, values.robot, state, gap);
-    for (int c = 0; c < s->scene->contacts; c++) {
-        const bool stop = s->scene->grip[c] < 0;
-        if (gap[c] <= TOUCHES && (stop || values.contacts >> c & 1))
+    stance_case *const c = malloc(sizeof *c);
+    if (!c)
+        return;
+    ground_case(s, &values, r->index, c);
+    ground_gaps(c, state, gap);
+    free(c);
+    for (int k = 0; k < s->scene->contacts; k++) {
+        const bool stop = s->scene->grip[k] < 0;
+        if (gap[k] <= TOUCHES && (stop || values.contacts >> k & 1))
             say_add(facts, ".touching", "%s%s", json_object_get(facts, ".touching") ? ", " : "",
-                    s->scene->contact_name[c]);
+                    s->scene->contact_name[k]);
     }
 }
 

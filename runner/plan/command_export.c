@@ -20,6 +20,10 @@ static int write_model(const struct scenario *s, const stance_case *c, void *ask
     if (out)
         mjcf_write(out, s->scene, c, s->title[0] ? s->title : s->name);
     const bool written = out && !ferror(out);
+    if (s->scene->mechanism->plates > 0)
+        fputs("stance export: warning: ground.plates are left out: the model's ground is their "
+              "plane\n",
+              stderr);
     if (path && (!written | (out && fclose(out) != 0))) {
         fprintf(stderr, "stance export: cannot write %s: %s\n", path, strerror(errno));
         return EXIT_IO;
@@ -44,7 +48,7 @@ static const struct option options[] = {
              "the ground and its slope, motors with their limits, the initial state as keyframe "
              "`initial`. qpos and qvel are the scenario's coordinates and rates, by name, so that "
              "accelerations may be compared as they are; the file says what is not in it (control "
-             "laws, pushes, restitution, falls)."},
+             "laws, pushes, restitution, plates of the ground, falls)."},
     {"-o", "FILE", OPTION_TO(struct request, path), .text = "the file"},
     {.rows = asked_options},
     {0},

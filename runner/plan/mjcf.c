@@ -245,6 +245,8 @@ void mjcf_write(FILE *out, const stance_scene *scene, const stance_case *c, cons
     text(out, title);
     fputs("'>\n", out);
     fprintf(out, head, MJCF_SKIN);
+    if (o.m->plates > 0)
+        fputs("<!-- Without ground.plates: the ground is their plane. -->\n", out);
     fputs("<compiler angle='radian' inertiafromgeom='false'/>\n", out);
     fprintf(
         out,

@@ -3,7 +3,8 @@
  * The same coordinates: a body's frame, its joint and that joint's coordinate are MuJoCo's, by the
  * same names and in the same order, the plane being x, z and a hinge turning x towards z, about -y;
  * so qpos and qvel are position and velocity. What has no counterpart there (control laws, pushes,
- * restitution, what counts as a fall, contacts that are exact) is left out, and said in the file.
+ * restitution, plates of the ground, what counts as a fall, contacts that are exact) is left out,
+ * and said in the file.
  */
 #ifndef STANCE_PLAN_MJCF_H
 #define STANCE_PLAN_MJCF_H

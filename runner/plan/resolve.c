@@ -11,6 +11,7 @@
  * the run starts from, offsets included.
  */
 #include "resolve.h"
+#include "ground_line.h"
 
 #include "engine/control/design.h"
 #include "engine/tree.h"
@@ -386,7 +387,7 @@ static bool check_start(const stance_scene *scene, const struct scenario_values 
         if (!isfinite(out->velocity[i]))
             return complain(message, "the initial v%s is not a finite number", name);
     }
-    scene->gaps(scene, out->robot, out->position, gap);
+    ground_gaps(out, out->position, gap);
     for (int c = 0; c < scene->contacts; c++) {
         if (!isfinite(gap[c])) {
             return complain(message,

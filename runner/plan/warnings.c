@@ -2,6 +2,7 @@
 #include "warnings.h"
 
 #include "design.h"
+#include "ground_line.h"
 #include "instruction_set.h"
 
 #include "runner/base/problem.h"
@@ -21,7 +22,7 @@ static const double moment = 0.5; /* s */
 #define ELASTIC 0.99 /* restitution from which on little energy is meant to be lost */
 #define INSIDE 1e-9  /* m: deeper in the ground is inside */
 
-enum trouble { UNSTABLE, WEAK, SLIPPERY, UNSETTLED, NOISY, BURIED, LOSSY, TROUBLES };
+enum trouble { UNSTABLE, WEAK, SLIPPERY, UNSETTLED, NOISY, ALOFT, BURIED, LOSSY, TROUBLES };
 
 /* Of each trouble: how many cases have it, and of the first one the case and what is wrong. */
 struct troubles {
@@ -135,12 +136,21 @@ static void look_at_loop(const struct design_report *r, struct troubles *t)
         look_at_noise(r, limit, t);
 }
 
-/* Contacts that the scenario leaves out, and that begin in the ground. */
+/* Contacts that the scenario leaves out, and that begin in the ground; those that stand where there
+ * is none. */
 static void look_at_ground(const stance_scene *scene, const stance_case *c, struct troubles *t)
 {
-    double gap[STANCE_MAX_CONTACTS];
-    scene->gaps(scene, c->robot, c->position, gap);
+    double gap[STANCE_MAX_CONTACTS], plane[STANCE_MAX_CONTACTS];
+    ground_gaps(c, c->position, gap);
+    scene->gaps(scene, c->robot, c->position, plane);
     for (int k = 0; k < scene->contacts; k++) {
+        if (c->contacts >> k & 1 && gap[k] > INSIDE && fabs(plane[k]) < INSIDE) {
+            note(t, ALOFT,
+                 "%.40s begins at height 0, %.3g m above the plate that is there: starts that "
+                 "stand do so on the plane",
+                 scene->contact_name[k], gap[k]);
+            return;
+        }
         if (c->contacts >> k & 1 || scene->grip[k] < 0 || !(gap[k] < -INSIDE))
             continue;
         note(t, BURIED, "%.40s, which ground.contacts leaves out, begins %.3g m below the ground",

@@ -77,7 +77,8 @@ static void name_file(struct run *run)
         snprintf(run->file, sizeof run->file, "results/%s.shard-%" PRIu64 "-of-%" PRIu64 ".h5",
                  run->scenario->name, o->shard.number, o->shard.count);
     } else {
-        snprintf(run->file, sizeof run->file, "results/%s.h5", run->scenario->name);
+        snprintf(run->file, sizeof run->file, "results/%s%s.h5", run->scenario->name,
+                 o->ending ? o->ending : "");
     }
 }
 
@@ -436,10 +437,10 @@ static void stage_close(struct run *run)
 
 /* ---- the whole ----------------------------------------------------------------------------- */
 
-int run_run(int argc, char **argv)
+int run_all(struct run *run, int argc, char **argv, void (*stage_options)(struct run *))
 {
-    static const struct stage stages[] = {
-        {run_stage_options, "reading its options"},
+    const struct stage stages[] = {
+        {stage_options, "reading its options"},
         {stage_scenario, "reading the scenario"},
         {stage_claim, "looking into the results file"},
         {stage_plan, "making the plan"},
@@ -454,16 +455,25 @@ int run_run(int argc, char **argv)
         {stage_close, "closing the results file"},
         {NULL, NULL},
     };
+    return run_through(run, argc, argv, stages, run_conclude);
+}
+
+void run_drop(struct run *run)
+{
+    store_abandon(run->store);
+    kernels_give_back(&run->kernels);
+    plan_free(&run->plan);
+    adopt_close(&run->old);
+    store_origin_free(&run->old.origin);
+    run_end(run);
+}
+
+int run_run(int argc, char **argv)
+{
     struct run *run = calloc(1, sizeof *run);
-    const int code = run_through(run, argc, argv, stages, run_conclude);
-    if (run) {
-        store_abandon(run->store);
-        kernels_give_back(&run->kernels);
-        plan_free(&run->plan);
-        adopt_close(&run->old);
-        store_origin_free(&run->old.origin);
-        run_end(run);
-    }
+    const int code = run_all(run, argc, argv, run_stage_options);
+    if (run)
+        run_drop(run);
     free(run);
     return code;
 }

@@ -17,6 +17,7 @@
 struct options {
     struct asked asked;
     const char *output; /* NULL: the default */
+    const char *ending; /* ... of which the name ends so, before .h5; NULL: in nothing more */
     bool force, force_scenario, resume, trace, dry_run, quiet;
     bool single; /* --only, of this case */
     uint64_t single_case;
@@ -112,6 +113,12 @@ bool run_extend_copy(struct run *run);
 void run_say_stopped(const struct run *run, const char *what);
 /* Collective: adds up over the ranks, says what came out, and returns the exit code. */
 int run_conclude(struct run *run);
+
+/* Ends one, which can be released. */
+void run_drop(struct run *run);
+/* The whole of `stance run`, with options that a first stage reads; *run is all 0 before, and is
+ * for run_drop after. */
+int run_all(struct run *run, int argc, char **argv, void (*stage_options)(struct run *));
 
 extern const struct command command_run; /* run_options.c */
 int run_run(int argc, char **argv);

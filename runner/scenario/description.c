@@ -33,16 +33,17 @@ static bool misplaced(struct description *d, const struct part_key *key, int i, 
         [STANCE_SLIDE] = "what slides has no such number",
         [STANCE_FIXED] = "what is fixed has no joint",
     };
-    return problem_add(
-        description_problems(d), mark, "%s: %s", path,
-        key->part == PART_BODY    ? joint[d->m->body[i].joint]
-        : key->part == PART_POINT ? "a push has force, from and to, a stroke impulse and "
-                                    "from"
-        : key->part == PART_PLATE ? key->grounds == 1 << STANCE_ROUGH
-                                        ? "only rough ground has one; write kind: rough"
-                                        : "one plate has none; write kind: stairs, or rough"
-        : key->of_point           ? "a sole, or a capsule, has from and to"
-                                  : "a contact has at, or from and to: not both");
+    return problem_add(description_problems(d), mark, "%s: %s", path,
+                       key->part == PART_BODY ? joint[d->m->body[i].joint]
+                       : key->part == PART_POINT
+                           ? "a push has force, from and to, a stroke impulse and "
+                             "from"
+                       : key->part == PART_PLATE
+                           ? key->grounds == 1 << STANCE_ROUGH
+                                 ? "only rough ground has one: see kind"
+                                 : "one plate has none, stairs and rough ground have: see kind"
+                       : key->of_point ? "a sole, or a capsule, has from and to"
+                                       : "a contact has at, or from and to: not both");
 }
 
 static bool read_key(struct description *d, const struct part_key *key, int i,

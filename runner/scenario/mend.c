@@ -26,6 +26,7 @@ const char *mend_word(const char *word, const char *const *known, size_t count)
 {
     static const char *const others[][2] = {
         {"mu", "friction"},
+        {"friction", "friction_factor"},
         {"dt", "step"},
         {"steps", "count"},
         {"step", "count"},

@@ -183,7 +183,7 @@ const struct part_key part_keys[] = {
         .fallback = NAN, .fallback_text = "none, it is always there",
         .text = "footfall before which it is laid: of the first one is 1"}, .grounds = ALL},
     {PART_PLATE, {.path = "height", PLATE(height), .unit = "m", RANGE(-FAR, FAR),
-        .text = "of a plate above the plane of the ground, normal to it; of stairs and rough see kind"}, .grounds = ALL},
+        .text = "height above the plane of the ground, normal to it; of stairs and rough see kind"}, .grounds = ALL},
     {PART_PLATE, {.path = "width", PLATE(width), .unit = "m", RANGE(1e-6, FAR), .fallback = NAN,
         .fallback_text = "must be given", .text = "width of each plate of stairs or rough ground"},
         .grounds = SEVERAL},

@@ -458,6 +458,11 @@ const struct row schema_rows[] = {
                  "each combination a map of its own. Cases that are not simulated take the outcome "
                  "of their cell, with evidence inferred and no other answers. The same for any "
                  "number of ranks."}},
+    {0, {.path = "sweep.refine.along", .type = FIELD_TEXT, BY_HAND,
+         .fallback_text = "all axes of numbers",
+         .text = "path of the one axis that is refined",
+         .more = "Each combination of the others' values is then bisected by itself, as stance "
+                 "critical has it."}},
     {0, {.path = "sweep.refine.start", .type = FIELD_INTEGER, BY_HAND, .fallback = 32,
          RANGE(2, 1e9), .text = "most cells of the coarse lattice along an axis",
          .more = "Its stride is the smallest power of two that leaves no more; each level halves "

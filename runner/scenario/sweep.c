@@ -441,6 +441,8 @@ void sweep_read_refine(struct reader *r)
 {
     struct scenario *s = r->s;
     const struct seen *seen = reader_seen(r, "sweep.refine");
+    const struct tree_node *const along = reader_seen(r, "sweep.refine.along")->node;
+    char path[sizeof s->axis[0].name] = ""; /* of the only axis; "": all */
     bool any = false, good = true;
 
     if (!seen->node || seen->bad)
@@ -455,15 +457,22 @@ void sweep_read_refine(struct reader *r)
         reader_refuse(r, "sweep.refine", " needs sweep.grid: axes to refine");
         return;
     }
+    good = good &&
+           (!along || field_text(&r->problems, "sweep.refine.along", along, path, sizeof path));
     if (!good || r->axes_bad)
         return;
     s->refine = refine;
     for (int a = 0; a < s->axes; a++) {
         struct scenario_axis *axis = &s->axis[a];
-        axis->refined = !axis->words && !axis->sample && axis->count > s->refine.start;
+        axis->refined = !axis->words && !axis->sample && axis->count > s->refine.start &&
+                        (!along || strcmp(axis->name, path) == 0);
         any = any || axis->refined;
     }
-    if (!any)
+    if (!any && along)
+        reader_refuse(r, "sweep.refine.along",
+                      ": no axis of numbers on the grid is %s and has more points than start, %zu",
+                      path, s->refine.start);
+    else if (!any)
         reader_refuse(r, "sweep.refine", ": no axis of numbers has more points than start, %zu",
                       s->refine.start);
     else if ((double)s->cases > SCENARIO_MOST_REFINED)

@@ -141,6 +141,7 @@ export interface PlayText {
   kind: number;
   checksum: number;
   slope: number; // rad: how the ground falls along x in the frame of the figure
+  ground: { since: number | null; points: number[] }[]; // plates, if there are: x, z of a line, from a time on (null: always), s
   answers: (number | null)[];
 }
 

@@ -8,7 +8,7 @@ import { pathOf, textOf, type Store, type View } from './state';
 
 // The usual ones come first, in this order.
 const usual = [
-  /^ground\.friction$/, /^ground\.slope$/, /^controller\.sample_time$/, /^controller\.torque_limit/, /noise/, /impulse|push/, /^controller\.delay$/,
+  /^ground\.friction$/, /^ground\.slope$/, /^ground\.plates\..*\.(height|from)$/, /^controller\.sample_time$/, /^controller\.torque_limit/, /noise/, /impulse|push/, /^controller\.delay$/,
   /^controller\.lag$/, /^controller\.torque_rate$/, /^ground\.restitution$/, /^controller\.(gains|kp|kd|proportional|derivative)/, /^robot\..*(mass|length|stiffness)/,
   /^initial\.(offset|state)/, /^controller\.model/, /^method\.step$/,
 ];

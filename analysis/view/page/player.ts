@@ -4,6 +4,7 @@ import { hues } from './colours';
 import { context, eachFrame, el, style } from './dom';
 import type { PlayText, Trajectory, ViewText } from './format';
 import { discPoints, discs, footfalls, type Footfall } from './gait';
+import { height, meanHeight, plates } from './ground';
 import { numberText } from './numbers';
 
 export interface PlayedCase {
@@ -64,6 +65,7 @@ export class Player {
   // Of all cases and rows: what is in sight, and the largest force and torque.
   private box: Box = { left: 0, right: 1, low: 0, high: 1 };
   private follows = false;
+  private size = 1; // of the figures, m
   private steps = new Map<PlayedCase, Footfall[]>(); // of robots that go away, and of walkers
   private force = 0;
   private torque = 0;
@@ -156,6 +158,7 @@ export class Player {
     const forces: number[] = [];
     this.torque = 0;
     let size = 0;
+    const grounds: number[] = []; // plates' heights, under the figures
     for (const c of this.cases) {
       const { figure, force, torque } = c.rows;
       const points = c.text.figure;
@@ -169,16 +172,26 @@ export class Player {
           b.low = Math.min(b.low, z);
           b.high = Math.max(b.high, z);
         }
-        const above = z + Math.tan(this.fall(c)) * x;
-        over.low = Math.min(over.low, above);
-        over.high = Math.max(over.high, above);
       }
-      size = Math.max(size, first.right - first.left, first.high - first.low);
+      size = this.size = Math.max(size, first.right - first.left, first.high - first.low);
+      for (let k = 0; k < c.rows.time.length; k++) {
+        const { base } = this.under(c, k);
+        for (let p = k * points; p < (k + 1) * points; p++) {
+          const [x, z] = this.turned(c, figure[2 * p], figure[2 * p + 1]);
+          if (!Number.isFinite(x) || Math.abs(x) + Math.abs(z) > 1e4) continue;
+          // On even ground over it where the point is.
+          const above = z - base - (c.text.ground.length ? 0 : this.height(c, x) - base);
+          over.low = Math.min(over.low, above);
+          over.high = Math.max(over.high, above);
+        }
+      }
+      for (const { points: line } of c.text.ground)
+        for (let i = 0; i < line.length; i += 2) if (line[i] >= box.left && line[i] <= box.right) grounds.push(line[i + 1]);
       for (let k = 0; k < force.length; k += 2) if (force[k] > 0) forces.push(Math.hypot(force[k], force[k + 1]));
       for (const t of torque) if (Number.isFinite(t)) this.torque = Math.max(this.torque, Math.abs(t));
     }
     if (!(box.right >= box.left)) Object.assign(box, { left: -0.5, right: 0.5, low: 0, high: 1 });
-    size = size || 1;
+    size = this.size = size || 1;
     forces.sort((a, b) => a - b);
     // Blows aside: the force that one row in fifty exceeds.
     this.force = forces.length ? forces[Math.floor(0.98 * (forces.length - 1))] : 0;
@@ -186,7 +199,7 @@ export class Player {
     if (this.follows) Object.assign(box, { left: -size, right: size }, over);
     this.steps = new Map(this.follows || this.cases.some((c) => c.values['ground.lands'] === 'ahead') ? this.cases.map((c) => [c, footfalls(c.rows, c.scene.contacts.length, c.text.contacts)]) : []);
     const margin = 0.16 * size;
-    this.box = { left: box.left - margin, right: box.right + margin, low: Math.min(box.low, 0) - margin, high: box.high + margin };
+    this.box = { left: box.left - margin, right: box.right + margin, low: Math.min(box.low, this.follows ? 0 : Math.min(0, ...grounds)) - margin, high: box.high + margin };
   }
 
   // ---- drawing ----
@@ -225,7 +238,7 @@ export class Player {
     const { middle, base } = this.centre(first);
     const X = (x: number): number => width / 2 + (x - middle - (box.left + box.right) / 2) * scale;
     const Y = (z: number): number => height - 4 - (z - base - box.low) * scale;
-    this.ground(g, width, X, Y, this.fall(first), scale);
+    this.ground(g, width, X, Y, first, scale);
     this.footprints(g, first, X, Y);
     [...cases].reverse().forEach((c) => this.figure(g, c, X, Y, scale, c === first));
     this.legend(g, scale, cases);
@@ -233,8 +246,11 @@ export class Player {
 
   // Where the view is that moves with the first case.
   private centre(c: PlayedCase): { middle: number; base: number } {
-    if (!this.follows) return { middle: 0, base: 0 };
-    const k = rowAt(c.rows, this.time);
+    return this.follows ? this.under(c, rowAt(c.rows, this.time)) : { middle: 0, base: 0 };
+  }
+
+  // The middle of the figure in a row, and the ground there.
+  private under(c: PlayedCase, k: number): { middle: number; base: number } {
     const n = c.text.figure;
     let sum = 0;
     let count = 0;
@@ -243,17 +259,26 @@ export class Player {
       if (Number.isFinite(x)) [sum, count] = [sum + x, count + 1];
     }
     const middle = count ? sum / count : 0;
-    return { middle, base: -Math.tan(this.fall(c)) * middle };
+    const line = plates(c.text, c.rows.time[k]);
+    return { middle, base: line ? meanHeight(line, middle, this.size / 2) : this.height(c, middle) };
   }
 
-  private ground(g: CanvasRenderingContext2D, width: number, X: (x: number) => number, Y: (z: number) => number, slope: number, scale: number): void {
+  // Of the ground at x, now.
+  private height(c: PlayedCase, x: number): number {
+    const line = plates(c.text, this.time);
+    return line ? height(line, x) : -Math.tan(this.fall(c)) * x;
+  }
+
+  private ground(g: CanvasRenderingContext2D, width: number, X: (x: number) => number, Y: (z: number) => number, c: PlayedCase, scale: number): void {
     const left = (0 - X(0)) / scale;
     const right = (width - X(0)) / scale;
-    const z = (x: number): number => -Math.tan(slope) * x;
+    const z = (x: number): number => this.height(c, x);
+    const line = plates(c.text, this.time) ?? [];
     g.strokeStyle = style('--ground');
     g.lineWidth = 1.5;
     g.beginPath();
     g.moveTo(0, Y(z(left)));
+    for (let i = 0; i < line.length; i += 2) if (line[i] > left && line[i] < right) g.lineTo(X(line[i]), Y(line[i + 1]));
     g.lineTo(width, Y(z(right)));
     g.stroke();
     g.lineWidth = 0.7;

@@ -8,6 +8,7 @@
 #include "page.h"
 
 #include "runner/base/message.h"
+#include "runner/plan/ground_line.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -38,6 +39,10 @@ static struct {
     double every;
     double *number[NUMBERS];
 } played;
+
+/* How far the ground is told beyond where the figure has been: so many times its size. */
+#define AROUND 20
+enum { LINE_POINTS = 2000 };
 
 /* Into place[4]: of what turns its centre and nothing, of what slides a point and its direction. */
 static void put_actuator(const stance_scene *scene, int k, const double *position,
@@ -148,6 +153,50 @@ const double *play_numbers(int which)
     return which >= 0 && which < NUMBERS ? played.number[which] : NULL;
 }
 
+/* Where the figure has been, along x, and what its size is. */
+static double reach(double x[2])
+{
+    const double *const figure = played.number[FIGURE];
+    double low = INFINITY, high = -INFINITY, size = 0;
+    x[0] = INFINITY, x[1] = -INFINITY;
+    for (int i = 0; i < 2 * played.points * played.rows; i += 2) {
+        x[0] = fmin(x[0], figure[i]), x[1] = fmax(x[1], figure[i]);
+        if (i >= 2 * played.points)
+            continue;
+        low = fmin(low, figure[i + 1]), high = fmax(high, figure[i + 1]);
+        size = fmax(x[1] - x[0], high - low);
+    }
+    return size;
+}
+
+/* Plates: a line from each time on at which some are laid. */
+static void tell_ground(struct text *text)
+{
+    static double point[LINE_POINTS][2];
+    const stance_case *const c = &played.input;
+    double *const *const n = played.number;
+    const double slope = c->body.slope[2];
+    double x[2], since = -INFINITY;
+    struct ground_pieces pieces;
+    if (c->body.plates == 0 || played.rows == 0)
+        return;
+    ground_pieces_find(c, (size_t)played.rows, n[TIME], n[POSITION], n[VELOCITY], n[FORCE], n[GAP],
+                       &pieces);
+    const double around = AROUND * reach(x);
+    while (since < INFINITY) {
+        const size_t points = ground_line(c, &pieces, since, (x[0] - around) / slope,
+                                          (x[1] + around) / slope, point, LINE_POINTS);
+        double next = INFINITY;
+        text_json(text, "~{'since':#,'points':[", since);
+        for (size_t k = 0; k < points; k++)
+            text_json(text, "~#,#", point[k][0], point[k][1]);
+        text_json(text, "]}");
+        for (int i = 0; i < c->body.plates; i++)
+            next = pieces.laid[i] > since ? fmin(next, pieces.laid[i]) : next;
+        since = next;
+    }
+}
+
 const char *play_text(void)
 {
     static struct text text;
@@ -162,6 +211,8 @@ const char *play_text(void)
               (double)page_checksum(&played.result), played.input.robot[STANCE_ROBOT_SLOPE]);
     for (int a = 0; a < STANCE_ANSWER_COUNT; a++)
         text_json(&text, "~#", answer[a]);
+    text_json(&text, "],'ground':[");
+    tell_ground(&text);
     text_json(&text, "]}");
     return text_done(&text);
 }

@@ -51,7 +51,8 @@ struct plates {
     lanes along[SCENE_PLACES];     /* m, where a place is ... */
     lanes moved[SCENE_PLACES];     /* ... by how much it has come along in the last step ... */
     lanes low[SCENE_PLACES], high[SCENE_PLACES]; /* ... and from where to where its plate is */
-    lanes roof[CONTACTS];                        /* height of that */
+    lanes roof[CONTACTS];                        /* height of that ... */
+    lanes top[CONTACTS];                         /* ... and of the higher one of those beside it */
     lanes inside[CONTACTS];  /* 0: above it; or it stands inside, or has no ground there */
     lanes landing[CONTACTS]; /* height on which a step that is taken again is to land; NAN */
     lanes cut;               /* s, of the step: its next piece ends there, at the latest */

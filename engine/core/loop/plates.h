@@ -57,17 +57,31 @@ HOT mask plates_off(const struct bundle *b, int k, lanes x)
     return mask_less(x, b->plates.low[k] - slack) | mask_less(b->plates.high[k] + slack, x);
 }
 
-/* May a contact come to an edge in the next step, or near one? Or a point: then a step has to be
- * one that can be taken again. */
+/* May a contact that touches, or may soon, come to an edge in the next step? Then it has to be one
+ * that can be taken again. */
 HOT mask plates_near(const struct bundle *b)
 {
     mask near = MASK_NONE;
-    EACH_PLACE (k) {
-        const lanes room = lanes_min(b->plates.along[k] - b->plates.low[k],
-                                     b->plates.high[k] - b->plates.along[k]);
-        near |= mask_less(room, lanes_fma(lanes_of(2), b->plates.moved[k], lanes_of(1e-5)));
+    EACH_CONTACT (c, 0) {
+        if (contact_grip(c) < 0)
+            continue;
+        const lanes way = lanes_fma(lanes_of(2), b->plates.moved[c], lanes_of(1e-5));
+        const lanes fall = lanes_fma(2 * b->h, lanes_abs(b->now.approach[c]), lanes_of(1e-5));
+        const lanes room = lanes_min(b->plates.along[c] - b->plates.low[c],
+                                     b->plates.high[c] - b->plates.along[c]);
+        const lanes above =
+            lanes_min(b->now.gap[c], b->now.gap[c] + (b->set.body.floor[c] - b->plates.top[c]));
+        const mask narrow = mask_less(b->plates.high[c] - b->plates.low[c], way);
+        near |= mask_less(room, way) & (mask_less(above, fall) | narrow);
     }
     return b->live & near;
+}
+
+/* The lanes of m may move faster from now on than they did. */
+COLD void plates_jump(struct bundle *b, mask m)
+{
+    EACH_PLACE (k)
+        b->plates.moved[k] = choose(m, lanes_of(1), b->plates.moved[k]);
 }
 
 static void plates_at(const struct bundle *b, int lane, double x, struct ground *at)
@@ -120,20 +134,24 @@ static void plates_step_on(struct bundle *b, int lane, int k)
     plates_at(b, lane, lane_get(&b->plates.along[k], lane), &at);
     lane_set(&b->plates.low[k], lane, at.low);
     lane_set(&b->plates.high[k], lane, at.high);
-    if (k < CONTACTS)
+    if (k < CONTACTS) {
+        struct ground left, right;
+        plates_at(b, lane, nextafter(at.low, -INFINITY), &left);
+        plates_at(b, lane, at.high, &right);
+        lane_set(&b->plates.top[k], lane, fmax(left.height, right.height));
         plates_set(b, lane, k, &at);
-    else
+    } else {
         lane_set(&b->set.body.floor[k], lane, at.height);
+    }
 }
 
 /* At the beginning of the cases in `fresh`: pieces that are laid before a footfall are not there.
  */
 COLD void plates_begin(struct bundle *b, mask fresh)
 {
-    EACH_PLACE (k) {
+    EACH_PLACE (k)
         b->plates.along[k] = choose(fresh, plates_along(b, k), b->plates.along[k]);
-        b->plates.moved[k] = choose(fresh, lanes_of(1), b->plates.moved[k]);
-    }
+    plates_jump(b, fresh);
     b->plates.cut = choose(fresh, lanes_of(INFINITY), b->plates.cut);
     for (int lane = 0; lane < LANES; lane++) {
         const stance_case *const c = b->which[lane];

@@ -288,6 +288,9 @@ COLD void stream_strike(struct bundle *b, lanes from)
     b->answer.limited_impacts += choose(hit, report.limited_impacts, lanes_of(0));
     account_largest(false, hit, report.impact_friction, &b->answer.impact_friction);
     advance_forget(&b->advance, hit);
+#if SCENE_PLATES
+    plates_jump(b, hit);
+#endif
     const mask failed = hit & LANES_NOT(solved);
     b->failure = choose(failed, lanes_of(STANCE_FAILURE_CONTACT), b->failure);
     if (mask_any(failed)) {

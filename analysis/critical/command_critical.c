@@ -1,0 +1,248 @@
+/* command_critical.c - `stance critical`: a run along one number more than the scenario has, of
+ * which is simulated what brackets where the outcome is lost; and what a results file says of that.
+ */
+#include "critical_print.h"
+
+#include "analysis/table/report.h"
+#include "runner/plan/law.h"
+#include "runner/run/run.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+extern const struct command command_critical; /* below */
+
+enum { SETS = 3, SET = 400 };
+
+/* What is asked for beside what a run is. */
+struct request {
+    struct report report;
+    const char *of;
+    uint64_t count, start;
+    double probes;
+    bool log;
+    int outcome;
+    struct critical_choice choice;
+    char set[SETS][SET]; /* the scenario's, beside those that are given */
+};
+
+struct search {
+    struct run run;
+    struct request asked;
+    bool reads; /* a results file, and runs nothing */
+};
+
+/* ---- what a results file says --------------------------------------------------------------- */
+
+static int work(struct report *report, const struct results *r, stance_message *message)
+{
+    const struct request *const request = (const struct request *)report;
+    const enum results_kind of = request->outcome < RESULTS_OUTCOMES
+                                     ? (enum results_kind)request->outcome
+                                     : statistics_judged(r);
+    struct critical critical;
+    bool usage;
+    if (memchr(r->kind, RESULTS_DONE, r->cases)) {
+        complain(message, "%.150s: holds no outcomes (record.answers left them out)", r->file);
+        return EXIT_USAGE;
+    }
+    if (!critical_make(&critical, r, request->of, of, &request->choice, &usage, message))
+        return usage ? EXIT_USAGE : EXIT_IO;
+    const bool good = critical_print(&critical, report->form);
+    critical_free(&critical);
+    return good ? EXIT_DONE : EXIT_IO;
+}
+
+static int read_file(struct request *request, const char *file)
+{
+    request->report.files = (struct option_texts){&file, 1};
+    return report_run(&request->report);
+}
+
+/* ---- the run -------------------------------------------------------------------------------- */
+
+static bool is_results(const char *name)
+{
+    char head[8] = "";
+    FILE *const file = fopen(name, "rb");
+    const bool is = file && fread(head, 1, sizeof head, file) == sizeof head &&
+                    memcmp(head, "\x89HDF\r\n\x1a\n", sizeof head) == 0;
+    if (file)
+        fclose(file);
+    return is;
+}
+
+/* The place of the axis on the grid: the one that the scenario has along the path, or a further
+ * one behind all of them. */
+static int axis_place(const struct scenario *s, const char *path)
+{
+    const int axes = s->axes - s->sample.given;
+    for (int a = 0; a < axes; a++)
+        if (s->axis[a].paths == 1 && strcmp(s->axis[a].path[0], path) == 0)
+            return a;
+    return axes;
+}
+
+/* On rank 0, whose scenario the others get: the axis, and that it alone is refined. */
+static bool ask_for_axis(struct search *search)
+{
+    struct run *const run = &search->run;
+    struct request *const asked = &search->asked;
+    struct option_texts *const sets = &run->options.asked.sets;
+    char path[96];
+    double ends[2];
+    if (!asked->of || !critical_range(asked->of, path, ends))
+        return run_fail(run, EXIT_USAGE,
+                        "stance critical: --of PATH=FROM..TO says along which number of the "
+                        "scenario, FROM where the outcome is kept%s%.60s",
+                        asked->of ? ", not " : "", asked->of ? asked->of : "");
+    struct scenario *const s = run_read_scenario(run, sets->count);
+    const char **const all = calloc(sets->count + SETS, sizeof *all);
+    if (!s || !all) {
+        scenario_drop(s);
+        free(all);
+        return s ? run_fail(run, EXIT_IO, "stance critical: not enough memory") : false;
+    }
+    memcpy(all, sets->text, sets->count * sizeof *all);
+    snprintf(asked->set[0], SET,
+             "sweep.grid[%d]={path: '%s', from: %.17g, to: %.17g, count: %" PRIu64 ", spacing: %s}",
+             axis_place(s, path), path, ends[0], ends[1], asked->count,
+             asked->log ? "log" : "linear");
+    snprintf(asked->set[1], SET, "record={answers: [outcome, evidence, end_time]}");
+    snprintf(asked->set[2], SET,
+             "sweep.refine={along: '%s', start: %" PRIu64 ", margin: 0, probes: %.17g}", path,
+             asked->start + 1, asked->probes);
+    const size_t more = asked->count > asked->start + 1 ? SETS : SETS - 1;
+    for (size_t k = 0; k < more; k++)
+        all[sets->count + k] = asked->set[k];
+    *sets = (struct option_texts){all, sets->count + more};
+    scenario_drop(s);
+    return true;
+}
+
+static void stage_options(struct run *run)
+{
+    struct search *const search = (struct search *)run;
+    run->options =
+        (struct options){.single_case = OPTION_NONE, .time_limit = INFINITY, .ending = "-critical"};
+    if (!run_take_options(run, &command_critical))
+        return;
+    search->reads = run->parallel.rank == 0 && is_results(run->options.asked.file);
+    parallel_broadcast(&run->parallel, &search->reads, sizeof search->reads);
+    run->over = search->reads;
+    run->options.quiet |= search->asked.report.form != TABLE_AS_TEXT;
+    if (!search->reads && run->parallel.rank == 0)
+        ask_for_axis(search);
+}
+
+static int run_critical(int argc, char **argv)
+{
+    struct search *const search = calloc(1, sizeof *search);
+    if (!search) {
+        fputs("stance critical: not enough memory\n", stderr);
+        return EXIT_IO;
+    }
+    search->asked = (struct request){.report = {.command = &command_critical, .work = work},
+                                     .count = 1025,
+                                     .start = 32,
+                                     .probes = 0.002,
+                                     .outcome = RESULTS_OUTCOMES,
+                                     .choice = {.share = 0.9, .level = 0.95}};
+    struct run *const run = &search->run;
+    int code = run_all(run, argc, argv, stage_options);
+    const bool reports = run->parallel.rank == 0 && (search->reads || !run->over) &&
+                         (code == EXIT_DONE || code == EXIT_CASES_FAILED);
+    run_drop(run);
+    if (reports) {
+        const int read =
+            read_file(&search->asked, search->reads ? run->options.asked.file : run->file);
+        code = read == EXIT_DONE ? code : read;
+    }
+    free(search);
+    return code;
+}
+
+/* ---- the command ---------------------------------------------------------------------------- */
+
+/* Members of a run's options, and of what is asked for beside them. */
+#define RUN(member) OPTION_TO(struct options, member)
+#define TO(member) OPTION_TO(struct request, member)
+static const struct option asks[] = {
+    {"--of", "PATH=FROM..TO", TO(of),
+     .text = "the number, and between which values: from FROM, where the outcome is kept, to TO, "
+             "above or below it. Of a results file PATH of an axis of its grid will do (default: "
+             "the only one, or the one that this command made)"},
+    {"--count", "N", TO(count), .low = 2, .high = 1e7,
+     .text = "values along it, default 1025: what is found is as sharp as their spacing"},
+    {"--log", TO(log), .text = "in equal ratios, not differences"},
+    {"--start", "N", TO(start), .low = 1, .high = 1e6,
+     .text = "of these the first that are simulated, evenly spread, default 32: a pocket in which "
+             "the outcome is lost is found for certain where it is as wide as their spacing"},
+    {"--probes", "SHARE", TO(probes), .low = 0, .high = 1,
+     .text = "of all values that are simulated in search of narrower ones, default 0.002"},
+    {"--outcome", TO(outcome), .word = results_outcome_word,
+     .text = "that is to be kept: stabilised (default; or walks, where any does, or rested, where "
+             "nothing else was)"},
+    {"--share", "S", TO(choice.share), .low = 1e-6, .high = 1,
+     .text = "of a sample's points that are to keep it at once, default 0.9"},
+    {"--level", "L", TO(choice.level), .low = 0.5, .high = 0.999999,
+     .text = "of intervals, default 0.95"},
+    {REPORT_CSV, .text = "a row for each point of the other axes"},
+    {REPORT_JSON, .text = "the same as JSON, with the keys"},
+    {0},
+};
+static const struct option options[] = {
+    {"SCENARIO|FILE", RUN(asked.file), .low = 1, .text = "a scenario or a results file"},
+    {.rows = asks, .at = offsetof(struct search, asked) - offsetof(struct search, run.options)},
+    {.text = "Of a scenario, which is run:"},
+    {"-o", "FILE", RUN(output),
+     .text = "results file; default results/<scenario name>-critical.h5"},
+    {OPTION_SET(struct options, asked.sets)},
+    {OPTION_TRUST(struct options, asked.trust)},
+    {"--force", RUN(force), .text = "replace the file of that name"},
+    {"--resume", RUN(resume), .without = "--force",
+     .text = "go on with the file of the same search. Begins when there is none"},
+    {"--time-limit", "TIME", RUN(time_limit), .read = option_seconds, .takes = OPTION_DURATION,
+     .text = "stop after 90s, 55m, 1h30m ... of wall time; resumable"},
+    {"--dry-run", RUN(dry_run), .text = "plan and estimate as `check` does; write nothing"},
+    {"--quiet", RUN(quiet), .text = "no progress"},
+    {0},
+};
+
+const struct command command_critical = {
+    "critical",
+    "the largest push, the least friction ... at which the outcome is kept; alone or under mpirun",
+    run_critical,
+    options,
+    "For each point of the scenario's grid: the largest value of a number such that the outcome is "
+    "kept there and at all values before, from FROM on. A search is a run: the scenario gets one "
+    "axis more (or its axis along PATH is replaced), of which a coarse lattice is simulated first "
+    "and then what lies about changes, by halves (sweep.refine), each line by itself. So any "
+    "number "
+    "of ranks gives the same file, which is stopped, resumed, drawn and summarised as all are; it "
+    "keeps the answers outcome, evidence and end_time. A results file of any run that has PATH as "
+    "an axis will do, too.\n"
+    "\n"
+    "  kept, lost  the number lies between these neighbouring values, for certain. What could be\n"
+    "              wrong is told: pockets before it in which the outcome is lost, narrower than\n"
+    "              the gaps between values that were simulated\n"
+    "  again       values beyond, at which it is kept again: they do not count\n"
+    "  interval    with a sample (of starts, of phases of a push) the outcome is kept where at\n"
+    "              least a share of its points keep it, --share 0.9: kept and lost are of these\n"
+    "              points; the interval, at the level L, is of all points that could have been\n"
+    "              drawn, from order statistics (analysis/critical/critical.h). It needs 36 "
+    "points\n"
+    "              at 0.9, 72 at 0.95. With --share 1 there is none: least is the share of all "
+    "that\n"
+    "              keeps `kept`, at the level L (with n points about 1 - 3 / n)\n",
+    "    outcome, of, unit, from, to, share (null: no sample), level, points\n"
+    "    rows    [{at: {path: value}, end (lost; kept: up to the last value; outside: lost at the\n"
+    "            first; unknown), kept, lost, outcome_then (what most become at lost), low, high\n"
+    "            (the interval; without a sample kept and lost), exact, least_share, unknown "
+    "(values\n"
+    "            at which failed or pending cases leave it open), unseen (widest gap between\n"
+    "            values simulated), islands: [{from: [a, b], to: [a, b]}]}]; null beyond the "
+    "ends\n",
+};

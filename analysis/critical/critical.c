@@ -1,0 +1,256 @@
+/* critical.c - critical values of a results file, a row for each point of its other axes. */
+#include "critical.h"
+
+#include "analysis/basin/basin.h"
+#include "runner/base/message.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- which axis, and which of its values --------------------------------------------------- */
+
+bool critical_range(const char *text, char path[96], double ends[2])
+{
+    const char *const equals = strchr(text, '=');
+    const char *const dots = equals ? strstr(equals, "..") : NULL;
+    char first[64], *end;
+    if (!dots || equals == text || equals - text >= 96 || dots - equals > 60)
+        return false;
+    snprintf(path, 96, "%.*s", (int)(equals - text), text);
+    snprintf(first, sizeof first, "%.*s", (int)(dots - equals) - 1, equals + 1);
+    ends[0] = strtod(first, &end);
+    bool good = first[0] && !*end;
+    ends[1] = strtod(dots + 2, &end);
+    good = good && dots[2] && !*end;
+    return good && isfinite(ends[0]) && isfinite(ends[1]) && ends[0] != ends[1];
+}
+
+/* Values that rise, or fall, from the first to the last. */
+static bool is_monotone(const struct results_axis *axis)
+{
+    for (size_t i = 1; i < axis->count; i++)
+        if (axis->value[i] == axis->value[i - 1] ||
+            (axis->value[i] > axis->value[i - 1]) != (axis->value[1] > axis->value[0]))
+            return false;
+    return !axis->word && axis->count > 1;
+}
+
+/* What sweep.refine.along names, or the only axis of the grid; -1: neither. */
+static int own_axis(const struct results *r)
+{
+    struct scenario s;
+    int found = -1, axes = 0;
+    for (int a = 0; a < r->axes; a++)
+        if (a != r->sample && r->axis[a].count > 1)
+            axes++, found = a;
+    if (axes == 1 || !results_scenario(r, &s))
+        return axes == 1 ? found : -1;
+    axes = 0;
+    for (int a = 0; s.refine.given && a < s.axes && a < r->axes; a++)
+        if (s.axis[a].refined)
+            axes++, found = a;
+    scenario_free(&s);
+    return axes == 1 ? found : -1;
+}
+
+static bool find_axis(struct critical *c, const char *of, double ends[2], stance_message *message)
+{
+    const struct results *const r = c->r;
+    char path[96] = "", meant[128];
+    ends[0] = ends[1] = NAN;
+    if (of && strchr(of, '=') && !critical_range(of, path, ends))
+        return complain(message, "stance critical: --of takes PATH or PATH=FROM..TO, not '%.60s'",
+                        of);
+    if (of && !path[0])
+        snprintf(path, sizeof path, "%.95s", of);
+    c->along = of ? -1 : own_axis(r);
+    for (int a = 0; of && a < r->axes; a++)
+        if (a != r->sample && strcmp(r->axis[a].name, path) == 0)
+            c->along = a;
+    if (c->along < 0 && !of)
+        return complain(message,
+                        "stance critical: %.150s has several axes: --of PATH says along which",
+                        r->file);
+    return (c->along >= 0 && is_monotone(&r->axis[c->along])) ||
+           complain(message,
+                    "stance critical: --of needs the PATH of an axis of the grid whose values rise "
+                    "or fall, not '%.60s'%s",
+                    path, c->along < 0 ? basin_meant(r, path, meant) : "");
+}
+
+/* Those from the first to the second of two ends, in that order; NAN: all, as they stand. */
+static bool take_values(struct critical *c, const double ends[2], stance_message *message)
+{
+    const struct results_axis *const axis = &c->r->axis[c->along];
+    const bool all = isnan(ends[0]);
+    const bool turned = !all && (ends[1] > ends[0]) != (axis->value[1] > axis->value[0]);
+    c->order = malloc(axis->count * sizeof *c->order);
+    c->value = malloc(axis->count * sizeof *c->value);
+    if (!c->order || !c->value)
+        return statistics_no_memory(c->r, message);
+    for (size_t k = 0; k < axis->count; k++) {
+        const size_t i = turned ? axis->count - 1 - k : k;
+        /* An end that is given with few digits may be a hair off the value that is meant. */
+        const double hair = 1e-9 * fabs(ends[1] - ends[0]), value = axis->value[i];
+        if (!all &&
+            (value < fmin(ends[0], ends[1]) - hair || value > fmax(ends[0], ends[1]) + hair))
+            continue;
+        c->order[c->count] = i;
+        c->value[c->count++] = value;
+    }
+    return c->count > 1 || complain(message, "stance critical: --of: %s has %zu value%s there",
+                                    axis->name, c->count, c->count == 1 ? "" : "s");
+}
+
+/* ---- rows --------------------------------------------------------------------------------- */
+
+/* Room for the counts of a line, and of what became of the points at one value. */
+struct walk {
+    struct critical *c;
+    bool *inferred; /* [cases], NULL: none is */
+    struct critical_line line;
+    uint64_t first, step, next; /* case at the axis's first point; to its next one; of the sample */
+};
+
+static bool is_known(uint8_t kind)
+{
+    return kind != RESULTS_PENDING && kind != RESULTS_FAILED;
+}
+
+static void count_line(struct walk *w)
+{
+    const struct critical *const c = w->c;
+    for (size_t i = 0; i < c->count; i++) {
+        const uint64_t at = w->first + c->order[i] * w->step;
+        w->line.lost[i] = w->line.unknown[i] = 0;
+        for (uint32_t p = 0; p < c->points; p++) {
+            const uint8_t kind = c->r->kind[at + p * w->next];
+            w->line.unknown[i] += !is_known(kind);
+            w->line.lost[i] += is_known(kind) && kind != c->of;
+        }
+    }
+}
+
+static enum results_kind most_become(const struct walk *w, size_t place)
+{
+    uint32_t count[RESULTS_KIND_COUNT] = {0};
+    enum results_kind most = w->c->of;
+    for (uint32_t p = 0; place < w->c->count && p < w->c->points; p++)
+        count[w->c->r->kind[w->first + w->c->order[place] * w->step + p * w->next]]++;
+    count[w->c->of] = 0;
+    for (int k = 0; k < RESULTS_DONE; k++)
+        most = count[k] > count[most] ? (enum results_kind)k : most;
+    return most;
+}
+
+/* The widest gap between values simulated, of any point of the sample, up to a place. */
+static double widest_gap(const struct walk *w, size_t last)
+{
+    const struct critical *const c = w->c;
+    double widest = 0;
+    for (uint32_t p = 0; p < c->points; p++) {
+        size_t before = 0;
+        for (size_t i = 1; i <= last && i < c->count; i++) {
+            if (w->inferred && w->inferred[w->first + c->order[i] * w->step + p * w->next])
+                continue;
+            widest = fmax(widest, fabs(c->value[i] - c->value[before]));
+            before = i;
+        }
+    }
+    return widest;
+}
+
+static bool keep_islands(struct walk *w, struct critical_row *row)
+{
+    struct critical *const c = w->c;
+    struct critical_island island;
+    row->island = c->islands;
+    for (size_t at = row->value.after; critical_next_island(&w->line, &c->choice, &at, &island);
+         row->islands++) {
+        if ((c->islands & (c->islands + 1)) == 0) { /* full: 0, 1, 3, 7 ... */
+            void *const more = realloc(c->island, 2 * (c->islands + 1) * sizeof island);
+            if (!more)
+                return false;
+            c->island = more;
+        }
+        c->island[c->islands++] = island;
+    }
+    return true;
+}
+
+static bool find_rows(struct walk *w)
+{
+    struct critical *const c = w->c;
+    const struct results *const r = c->r;
+    for (size_t k = 0; k < c->rows; k++) {
+        struct critical_row *const row = &c->row[k];
+        size_t rest = k;
+        w->first = 0;
+        for (int b = c->by_axes - 1; b >= 0; b--) {
+            row->point[c->by[b]] = rest % r->axis[c->by[b]].count;
+            rest /= r->axis[c->by[b]].count;
+            w->first += row->point[c->by[b]] * statistics_stride(r, c->by[b]);
+        }
+        count_line(w);
+        row->value = critical_find(&w->line, &c->choice);
+        if (c->blocks)
+            row->value.low = row->value.high = row->value.least_share = NAN;
+        row->to = most_become(w, row->value.after);
+        row->unseen = widest_gap(w, row->value.after);
+        if (!keep_islands(w, row))
+            return false;
+    }
+    return true;
+}
+
+static bool make_rows(struct critical *c, stance_message *message)
+{
+    const struct results *const r = c->r;
+    uint64_t inferred;
+    struct walk w = {.c = c, .step = statistics_stride(r, c->along), .next = 1};
+    w.line = (struct critical_line){.count = c->count,
+                                    .value = c->value,
+                                    .points = c->points,
+                                    .lost = calloc(c->count, sizeof *w.line.lost),
+                                    .unknown = calloc(c->count, sizeof *w.line.unknown)};
+    c->row = calloc(c->rows, sizeof *c->row);
+    bool good = statistics_inferred(r, &inferred, &w.inferred, message);
+    if (good && !(c->row && w.line.lost && w.line.unknown && find_rows(&w)))
+        good = statistics_no_memory(r, message);
+    free(w.line.lost);
+    free(w.line.unknown);
+    free(w.inferred);
+    return good;
+}
+
+bool critical_make(struct critical *c, const struct results *r, const char *path,
+                   enum results_kind of, const struct critical_choice *choice, bool *usage,
+                   stance_message *message)
+{
+    double ends[2];
+    *c = (struct critical){.r = r,
+                           .of = of,
+                           .choice = *choice,
+                           .sampled = r->sample >= 0,
+                           .blocks = r->sample >= 0 && r->block > 1,
+                           .points = r->sample >= 0 ? (uint32_t)r->axis[r->sample].count : 1,
+                           .rows = 1};
+    *usage = !find_axis(c, path, ends, message) || !take_values(c, ends, message);
+    for (int a = 0; !*usage && a < r->axes; a++)
+        if (a != c->along && a != r->sample)
+            c->by[c->by_axes++] = a, c->rows *= r->axis[a].count;
+    if (!*usage && make_rows(c, message))
+        return true;
+    critical_free(c);
+    return false;
+}
+
+void critical_free(struct critical *c)
+{
+    free(c->order);
+    free(c->value);
+    free(c->row);
+    free(c->island);
+    *c = (struct critical){0};
+}

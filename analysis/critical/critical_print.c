@@ -1,0 +1,137 @@
+/* critical_print.c - see critical_print.h. */
+#include "critical_print.h"
+
+#include "analysis/basin/basin_print.h"
+#include "runner/base/message.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A number with its unit is too much in a column: digits that tell neighbours apart. */
+static void number_text(const struct critical *c, double value, char *text, size_t size)
+{
+    results_number_text(value, 0.5 * fabs(c->value[1] - c->value[0]), text, size);
+}
+
+/* "96 ... 110, 130 ...": from the first value kept again to the last one. */
+static void islands_text(const struct critical *c, const struct critical_row *row, char *text,
+                         size_t size)
+{
+    enum { SHOWN = 4 };
+    text[0] = '\0';
+    for (size_t k = 0; k < row->islands && k < SHOWN; k++) {
+        const struct critical_island *const island = &c->island[row->island + k];
+        char first[40], last[40] = "";
+        number_text(c, island->from[1], first, sizeof first);
+        if (!isnan(island->to[1]))
+            number_text(c, island->to[0], last, sizeof last);
+        add_text(text, size, "%s%s ...%s%s", k ? ", " : "", first, last[0] ? " " : "", last);
+    }
+    if (row->islands > SHOWN)
+        add_text(text, size, ", ... (%zu)", row->islands);
+}
+
+static json_t *pair(const double value[2])
+{
+    json_t *const list = json_array();
+    table_append(list, as_number(value[0]));
+    table_append(list, as_number(value[1]));
+    return list;
+}
+
+static json_t *islands_json(const struct critical *c, const struct critical_row *row)
+{
+    json_t *const list = json_array();
+    for (size_t k = 0; k < row->islands; k++) {
+        const struct critical_island *const island = &c->island[row->island + k];
+        TABLE_APPEND(list, {"from", as_tree(pair(island->from))},
+                     {"to", as_tree(pair(island->to))});
+    }
+    return list;
+}
+
+/* What stands in place of a value that there is none of. */
+static const char *remark(const struct critical_row *row)
+{
+    return row->value.end == CRITICAL_KEPT      ? "kept to the end"
+           : row->value.end == CRITICAL_OUTSIDE ? "lost at the first"
+           : row->value.unknown > 0             ? "some unknown"
+           : row->value.end == CRITICAL_UNKNOWN ? "unknown"
+                                                : "";
+}
+
+static void add_row(struct table *t, const struct critical *c, const struct critical_row *row)
+{
+    const struct critical_value *const v = &row->value;
+    const bool exact = !c->sampled && v->unknown == 0 && v->end != CRITICAL_UNKNOWN;
+    char again[240];
+    islands_text(c, row, again, sizeof again);
+    table_axes(t, c->r, c->by, c->by_axes, row->point);
+    TABLE_FACTS(
+        t, {{.name = "end"}, as_text(critical_end_words[v->end])},
+        {{"kept", "kept", "%.6g", .width = 11}, as_number(v->kept)},
+        {{"lost", "lost", "%.6g", .width = 11}, as_number(v->lost)},
+        {{"outcome_then", "then", .width = 10, .left = true, .before = "  "},
+         row->to == c->of ? as_nothing(NULL) : as_text(results_kind_names[row->to])},
+        {{"low", "interval", "%.6g", .width = 25, .left = true, .before = "  "}, as_number(v->low)},
+        {{.name = "high", .format = "%.6g", .joined = true, .before = " ... "}, as_number(v->high)},
+        {{"least_share", "least", "%.2f %%", .width = 9, .percent = true},
+         as_number(v->least_share)},
+        {{.name = "exact", .hidden = TABLE_NO_CSV}, as_truth(exact)},
+        {{.name = "unknown"}, as_whole(v->unknown)}, {{.name = "unseen"}, as_number(row->unseen)},
+        {{"again", "again", .left = true, .before = "  ", .hidden = TABLE_NO_JSON},
+         as_text(again[0] ? again : NULL)},
+        {{"remark", "", .left = true, .before = "  ", .empty = "", .hidden = TABLE_VIEW_ONLY},
+         as_text(remark(row))},
+        {{.name = "islands", .hidden = TABLE_NO_CSV}, as_tree(islands_json(c, row))});
+    table_end_row(t);
+}
+
+static const char text[] = BASIN_TITLE
+    "[.rising:Largest|Smallest] {of} such that from {..from} on [share:at least {share*%.4g} % of "
+    "the {points} points of the sample|cases] end as {outcome}\n(looked for up to "
+    "{..to})\n\n{.rows}"
+    "[!share:  (the number lies between kept and lost: exact|  (kept, lost: of these points"
+    "[.interval:; interval: of all that could be drawn, at {level*%.4g} %]"
+    "[.least:; least: of all that could be drawn at least this share keeps it, at {level*%.4g} %]"
+    "[.blocks:; no interval, as its points hang together in blocks]]"
+    "[.again:; again: values beyond that are kept, too, and do not count])\n"
+    "  (a pocket in which it is lost before that may have been missed where it is narrower than "
+    "{.unseen%.4g}[.unit: {.unit}])\n";
+
+bool critical_print(const struct critical *c, enum table_form form)
+{
+    const struct results_axis *const axis = &c->r->axis[c->along];
+    struct table t = {0};
+    double unseen = 0;
+    bool again = false, remarks = false;
+    char view[120];
+    for (size_t k = 0; k < c->rows; k++) {
+        const struct critical_row *const row = &c->row[k];
+        add_row(&t, c, row);
+        unseen = fmax(unseen, row->unseen);
+        again = again || row->islands > 0;
+        remarks = remarks || remark(row)[0];
+    }
+    const bool whole = c->sampled && !(c->choice.share < 1);
+    snprintf(view, sizeof view, "at/ kept lost outcome_then%s%s%s",
+             !c->sampled || c->blocks ? ""
+             : whole                  ? " least_share"
+                                      : " low high",
+             again ? " again" : "", remarks ? " remark" : "");
+    json_t *const facts = TABLE_OBJECT(
+        {"outcome", as_text(results_kind_names[c->of])}, {"of", as_text(axis->name)},
+        {"unit", as_text(axis->unit)}, {"from", as_number(c->value[0])},
+        {"to", as_number(c->value[c->count - 1])},
+        {"share", c->sampled ? as_number(c->choice.share) : as_nothing(NULL)},
+        {"level", as_number(c->choice.level)}, {"points", as_whole(c->points)},
+        {".from", as_place(axis, c->order[0])}, {".to", as_place(axis, c->order[c->count - 1])},
+        {".rising", as_truth(c->value[1] > c->value[0])},
+        {".interval", as_truth(c->sampled && !c->blocks && !whole)},
+        {".least", as_truth(whole && !c->blocks)}, {".blocks", as_truth(c->blocks)},
+        {".again", as_truth(again)}, {".unseen", as_number(unseen)},
+        {".unit", as_text(strcmp(axis->unit, "1") == 0 ? "" : axis->unit)});
+    return table_say(form, table_show(basin_titled(c->r, facts), "rows", &t, view, CRITICAL_SHOWN),
+                     text, &t);
+}

@@ -1,0 +1,14 @@
+/* critical_print.h - critical values as text, JSON and CSV. */
+#ifndef STANCE_CRITICAL_CRITICAL_PRINT_H
+#define STANCE_CRITICAL_CRITICAL_PRINT_H
+
+#include "critical.h"
+
+#include "analysis/table/table.h"
+
+enum { CRITICAL_SHOWN = 60 }; /* rows that people see */
+
+/* False: memory or the output fails. */
+bool critical_print(const struct critical *critical, enum table_form form);
+
+#endif
