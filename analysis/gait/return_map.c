@@ -334,9 +334,11 @@ static bool check(const stance_case *c, const stance_kernel *kernel, int steps,
     if (c->restitution > 0)
         return refuse(message, "a foot that rebounds is not on the ground after its footfall: set "
                                "ground.restitution to 0");
-    if (c->body.plates > 0)
-        return refuse(message, "on uneven ground no step is as the one before: leave out "
-                               "ground.plates");
+    for (int k = 0; k < c->body.plates; k++)
+        if (c->body.plate[k].footfall == 0 && c->body.plate[k].height != 0)
+            return refuse(message, "on uneven ground no step is as the one before: leave out "
+                                   "ground.plates, but for one with footfall: 1 and height: 0 that "
+                                   "--sensitivity varies");
     if (timed(c))
         return refuse(message,
                       "a gait has no time of its own: pushes, ramps and integrals of a run "
