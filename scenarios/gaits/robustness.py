@@ -24,7 +24,7 @@ import stance
 HERE = Path(__file__).resolve().parent
 QUICK = "--quick" in sys.argv
 RESULTS = Path(next((word for word in sys.argv[1:] if word[:2] != "--"), "results"))
-DRAWN, GROUNDS, COUNT, STEPS = (6, 4, 65, 20) if QUICK else (96, 100, 1025, 100)
+DRAWN, GROUNDS, COUNT, STEPS = (6, 4, 33, 20) if QUICK else (40, 100, 1025, 100)
 FOLDER = Path(tempfile.mkdtemp())
 random = np.random.default_rng(38)
 Y = "controller.outputs."
@@ -56,14 +56,13 @@ if not QUICK:
                    "RABBIT": (of("rabbit_walks.yaml", **PUSHED), "hip", 40)})
 
 
-def critical(name, s, of, grid=(), count=COUNT, **more):
+def critical(name, s, of, grid=(), count=COUNT, start=8 if QUICK else 32):
     """The largest value, from 0 or its first one on, at which it walks, at each point of the grid."""
     path = FOLDER / f"{name}.yaml"
     s.copy().set({"sweep.grid": list(grid)} if grid else {}).save(path)
-    words = [word for option, value in more.items() for word in (f"--{option}", str(value))]
-    return json.loads(subprocess.run([stance.program(), "critical", path, "--of", of, "--count", str(count), *words, "--json",
-                                      "--quiet", "--force", "-o", FOLDER / f"{name}.h5"], check=True, capture_output=True,
-                                     text=True).stdout)["rows"]
+    words = "--of", of, "--count", str(count), "--start", str(start), "--json", "--quiet", "--force"
+    return json.loads(subprocess.run([stance.program(), "critical", path, *words, "-o", FOLDER / f"{name}.h5"], check=True,
+                                     capture_output=True, text=True).stdout)["rows"]
 
 
 def wilson(k, n, z=1.96):
@@ -71,17 +70,24 @@ def wilson(k, n, z=1.96):
     return max(0, middle - half), min(1, middle + half)
 
 
-def rough(s, length, heights, grounds, grid=()):
+def rough(s, length, heights, grounds, grid=(), steps=STEPS):
     """Which of the grounds, in plates a third of a step wide, are walked: by member of the grid, height and ground."""
     s = s.copy().set({"ground.plates": {"field": {"kind": "rough", "from": length / 2, "width": length / 3, "height": 0}},
-                      "stop.walks.steps": 1000, "record.answers": ["outcome"], "sweep.grid": [
+                      "stop.walks": {"steps": 1000, "enough": steps}, "record.answers": ["outcome"], "sweep.grid": [
                           *grid, {"path": "ground.plates.field.height", "values": list(heights)},
                           stance.axis("ground.plates.field.seed", 0, grounds - 1, grounds)]})
-    return s.run(output=FOLDER / f"rough{id(s)}.h5").outcome.values == "walks"
+    return s.run(output=FOLDER / f"rough{id(s)}.h5", force=True).outcome.values == "walks"
 
 
 def steps_of(length):
     return {"ground.plates": {"step": {"footfall": 3, "from": length / 2, "height": 0}}}
+
+
+def in_step(s, period):
+    """The same, begun after a third of a step, so that no foot is in a ground that slopes."""
+    state = s.copy().set({"record.answers": ["final_state"], "stop.time": round(period / 3, 3)}).run(
+        output=FOLDER / f"in{id(s)}.h5", force=True).final_state[0]
+    return s.copy().set({"initial.state": {name: float(state.sel(state=name)) for name in s["initial.state"]}})
 
 
 def table(name):
@@ -103,10 +109,10 @@ def table(name):
         one, = critical(name, s.copy().set(steps_of(length)), f"ground.plates.step.height=0..{0.1 * sign}")
         row(f"step {way}", "mm", one, 1000)
     for way, sign in (("down", 1), ("up", -1)):
-        row(f"slope {way}", "rad", critical(name, s, f"ground.slope=0..{0.12 * sign}")[0])
+        row(f"slope {way}", "rad", critical(name, in_step(s, period), f"ground.slope=0..{0.12 * sign}")[0])
     row("least friction", "", critical(name, s, f"ground.friction={s['ground.friction']}..0")[0])
     rate = next(key for key in gait["state"] if key[0] == "v")
-    draws = {"method": "random", "count": 8 if QUICK else 64, "vary": [
+    draws = {"method": "random", "count": 8 if QUICK else 40, "vary": [
         {"path": f"initial.state.{rate}", "from": gait["state"][rate] - 1e-9, "to": gait["state"][rate] + 1e-9}]}
     row("noise, 90 % walk", "N m", critical(name, s.copy().set({"sweep.sample": draws, "stop.walks.steps": 1000}),
                                             f"controller.noise=0..{2 * mass}", count=33, start=8)[0])
@@ -177,12 +183,13 @@ def family(name, changes):
     gaits = [(c, g) for c, g in gaits if g and g["multiplier"] < 1]
     if not gaits:
         return []
+    print(f"{name}: {len(gaits)} of {len(changes)} laws walk", file=sys.stderr, flush=True)
     members = [{**numbers(c), **{f"initial.state.{key}": v for key, v in g["state"].items()}} for c, g in gaits]
     axis = {"paths": list(members[0]), "values": [list(m.values()) for m in members]}
     length = float(np.median([g["length"] for _, g in gaits]))
-    score = rough(s, length, [0.0005, 0.001, 0.002, 0.004, 0.008], 4 if QUICK else 20, [axis]).mean(axis=(1, 2))
+    score = rough(s, length, [0.001, 0.002, 0.004, 0.008], 2 if QUICK else 12, [axis], 30).mean(axis=(1, 2))
     steps = [critical(f"{name}-{sign}", s.copy().set(steps_of(length)), f"ground.plates.step.height=0..{0.1 * sign}", [axis],
-                      count=257) for sign in (-1, 1)]
+                      min(COUNT, 257)) for sign in (-1, 1)]
     return [{"family": name, **{key: v for key, v in g.items() if key != "state"}, "down": -1e3 * (down["kept"] or 0),
              "up": 1e3 * (up["kept"] or 0), "both": 1e3 * min(-(down["kept"] or 0), up["kept"] or 0), "rough": rough_share}
             for (_, g), rough_share, down, up in zip(gaits, score, *steps)]
@@ -208,20 +215,35 @@ def main():
     names = list(ROBOTS)
     laws = [[drawn(name) for _ in range(DRAWN)] for name in names]
     with ThreadPoolExecutor(2) as two:
-        gaits = two.map(family, names, laws)
-        rows = [row for rows in two.map(table, names) for row in rows]
-        gaits = pd.DataFrame([member for members in gaits for member in members])
+        rows = two.map(table, names)
+        gaits = pd.DataFrame([member for members in two.map(family, names, laws) for member in members])
+        rows = [row for of_robot in rows for row in of_robot]
+    gaits.to_csv(RESULTS / "robust_gaits.csv", index=False)
     with open(RESULTS / "robustness.csv", "w", newline="", encoding="utf-8") as out:
         csv.writer(out).writerows([["robot", "what", "unit", "value", "low", "high"], *rows])
     print(pd.DataFrame(rows, columns=["robot", "what", "unit", "value", "low", "high"]).pivot(
         index="what", columns="robot", values="value").reindex(dict.fromkeys(r[1] for r in rows)).to_string())
-    gaits.to_csv(RESULTS / "robust_gaits.csv", index=False)
-    for name, of_name in gaits.groupby("family"):
-        print(f"\n{name}: {len(of_name)} gaits; Spearman's rank correlation, 95 %")
+    found = [[name, predictor, measure, len(of_name), *correlation(of_name[predictor].to_numpy(), of_name[measure].to_numpy())]
+             for name, of_name in gaits.groupby("family", sort=False) for predictor in PREDICTORS for measure in MEASURES]
+    found = pd.DataFrame(found, columns=["family", "predictor", "measure", "gaits", "rho", "low", "high"])
+    found.to_csv(RESULTS / "robust_correlations.csv", index=False)
+    for (name, n), of_name in found.groupby(["family", "gaits"], sort=False):
+        print(f"\n{name}: {n} gaits; Spearman's rank correlation with how robust they are, 95 %\n{'':27}"
+              + "".join(f"{says:25}" for says in MEASURES.values()))
         for predictor, says in PREDICTORS.items():
-            cells = [correlation(of_name[predictor].to_numpy(), of_name[measure].to_numpy()) for measure in MEASURES]
-            print(f"  {says:26}", "  ".join(f"{m} {r:+.2f} ({low:+.2f} ... {high:+.2f})"
-                                            for m, (r, low, high) in zip(MEASURES, cells)))
+            cells = of_name[of_name["predictor"] == predictor].itertuples()
+            print(f"  {says:25}" + "".join(f"{c.rho:+.2f} ({c.low:+.2f} ... {c.high:+.2f})  " for c in cells))
+    draw(found)
 
 
-main()
+def draw(found):
+    lines = [f"folder = '{RESULTS}'; style = '{HERE.parents[1] / 'analysis/draw/style.gp'}'", "array said[2]"]
+    for k, predictor in enumerate(("norm_period", "multiplier")):
+        of_it = found[(found["predictor"] == predictor) & (found["measure"] == "rough")].itertuples()
+        says = [f"{c.family}: {c.rho:+.2f} ({c.low:+.2f} ... {c.high:+.2f})".replace(" ", "\u00a0") for c in of_it]
+        lines.append(f"said[{k + 1}] = '{' '.join(says)}'")
+    subprocess.run(["gnuplot", "-", HERE / "robustness.gp"], input="\n".join(lines), check=True, text=True)
+
+
+if __name__ == "__main__":
+    main()
