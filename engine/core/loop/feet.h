@@ -32,7 +32,7 @@ static inline mask feet_landed(const struct bundle *b, int c)
 HOT int feet_of(int c)
 {
     return contact_grip(c) >= 0 && scene_other[c] >= 0 && scene_other[c] < c ? scene_other[c]
-                                                                            : contact_grip(c);
+                                                                             : contact_grip(c);
 }
 
 /* The leg that contact c belongs to stands from now on, in the lanes of `where`. */
