@@ -133,7 +133,8 @@ expect "one rank" 0 "${search[@]}" -o one.h5
 cp log one
 for n in 2 3; do
     expect "$n ranks" 0 mpirun -n $n "${search[@]}" -o ranks.h5 --force
-    [ "$(grep -c '^How far' log)" = 1 ] && [ "$(sed 1,3d one | md5sum)" = "$("$stance" critical ranks.h5 | sed 1,2d | md5sum)" ]
+    [ "$(grep -c '^How far' log)" = 1 ] && # what a slow run says of its progress stands before that
+        [ "$(sed -n '/^How far/,$p' one)" = "$("$stance" critical ranks.h5 | sed -n '/^How far/,$p')" ]
     result $? "... the same numbers, said once"
     identical one.h5 ranks.h5
 done
