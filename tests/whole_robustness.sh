@@ -3,7 +3,9 @@
 # and of gaits like its own what is cheap to compute beside what they walk over; and steps of the ground in `stance gait`.
 # Speaks TAP.
 # about: analysis/gait analysis/critical analysis/python runner/run
+# shellcheck disable=SC2154
 set -u
+# shellcheck source=tests/scratch.sh
 . "$(dirname "$0")/scratch.sh"
 walks=$shipped/gaits/walk_pushes.yaml
 
