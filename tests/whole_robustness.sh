@@ -3,7 +3,9 @@
 # and of gaits like its own what is cheap to compute beside what they walk over; and steps of the ground in `stance gait`.
 # Speaks TAP.
 # about: analysis/gait analysis/critical analysis/python runner/run
+# shellcheck disable=SC2154
 set -u
+# shellcheck source=tests/scratch.sh
 . "$(dirname "$0")/scratch.sh"
 walks=$shipped/gaits/walk_pushes.yaml
 
@@ -28,10 +30,10 @@ else
     "$python" - >log 2>&1 <<'END_'
 import csv
 rows = {row["what"]: [float(row[end] or "nan") for end in ("value", "low", "high")] for row in csv.DictReader(open("study/robustness.csv"))}
-brackets = {"push forwards at 0/4": (2.3, 2.9), "push backwards at 0/4": (0.6, 1.4), "step down": (25, 32), "step up": (3, 10),
-            "slope down": (0.04, 0.07), "least friction": (0.46, 0.51)}
-for what, (low, high) in brackets.items():
-    assert low <= rows[what][1] <= rows[what][2] <= high, (what, rows[what])
+fine = {"push forwards at 0/4": 2.489, "push backwards at 0/4": 0.759, "step down": 28.61, "step up": 6.35,
+        "slope down": 0.04934, "least friction": 0.4844}
+for what, value in fine.items():
+    assert rows[what][1] <= value <= rows[what][2], (what, value, rows[what])
 share, low, high = rows["share of grounds of 1 mm"]
 assert low < share == 1 <= high, rows
 gaits = list(csv.DictReader(open("study/robust_gaits.csv")))

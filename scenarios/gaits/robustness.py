@@ -40,7 +40,7 @@ def of(file, state=None, **change):
     """A scenario whose robot can be pushed at its hip, on its cycle."""
     s = stance.scenario(HERE / file).set({
         "sweep": {}, "method.tolerance": 1e-8, "record.answers": ["outcome", "evidence", "end_time"],
-        "stop.walks": {"steps": 10, "enough": STEPS}, "stop.time": 3 * STEPS, **change})
+        "stop.walks": {"steps": 10}, "stop.time": 30, **change})
     if state:
         s.set({"initial.state": state})
     return s.set({"initial.state": s.gait()["state"]})
@@ -70,10 +70,15 @@ def wilson(k, n, z=1.96):
     return max(0, middle - half), min(1, middle + half)
 
 
+def goes_on(steps):
+    """What walks where no step is like another: so many of them."""
+    return {"stop.walks": {"steps": 1000, "enough": steps}, "stop.time": 1.2 * steps}
+
+
 def rough(s, length, heights, grounds, grid=(), steps=STEPS):
     """Which of the grounds, in plates a third of a step wide, are walked: by member of the grid, height and ground."""
     s = s.copy().set({"ground.plates": {"field": {"kind": "rough", "from": length / 2, "width": length / 3, "height": 0}},
-                      "stop.walks": {"steps": 1000, "enough": steps}, "record.answers": ["outcome"], "sweep.grid": [
+                      **goes_on(steps), "record.answers": ["outcome"], "sweep.grid": [
                           *grid, {"path": "ground.plates.field.height", "values": list(heights)},
                           stance.axis("ground.plates.field.seed", 0, grounds - 1, grounds)]})
     return s.run(output=FOLDER / f"rough{id(s)}.h5", force=True).outcome.values == "walks"
@@ -96,8 +101,8 @@ def table(name):
     period, length, rows = gait["period"], gait["step_length"], []
 
     def row(what, unit, found, factor=1):
-        low, high = sorted(abs(factor * found[end]) if found[end] is not None else np.nan for end in ("kept", "lost"))
-        rows.append([name, what, unit, abs(factor * found["kept"]) if found["kept"] is not None else np.nan, low, high])
+        value, *ends = (np.nan if found[end] is None else abs(factor * found[end]) for end in ("kept", "low", "high"))
+        rows.append([name, what, unit, value, *sorted(ends)])
 
     phases = [{"paths": [f"robot.points.{hip}.{end}" for end in ("from", "to")],
                "values": [[k / 4 * period, k / 4 * period + 0.1] for k in range(4)]}]
@@ -114,10 +119,11 @@ def table(name):
     rate = next(key for key in gait["state"] if key[0] == "v")
     draws = {"method": "random", "count": 8 if QUICK else 40, "vary": [
         {"path": f"initial.state.{rate}", "from": gait["state"][rate] - 1e-9, "to": gait["state"][rate] + 1e-9}]}
-    row("noise, 90 % walk", "N m", critical(name, s.copy().set({"sweep.sample": draws, "stop.walks.steps": 1000}),
+    row("noise, 90 % walk", "N m", critical(name, s.copy().set({"sweep.sample": draws, **goes_on(STEPS)}),
                                             f"controller.noise=0..{2 * mass}", count=33, start=8)[0])
-    row("delay", "ms", critical(name, s, "controller.delay=0..16", count=17, start=16)[0])
-    heights = (0.001, 0.002, 0.005)
+    late = s.copy().set({"controller.sample_time": 0.005})
+    row("delay of samples of 5 ms", "ms", critical(name, late, "controller.delay=0..16", count=17, start=16)[0], 5)
+    heights = (0.001, 0.002, 0.005, 0.01, 0.02)
     for height, walked in zip(heights, rough(s, length, heights, GROUNDS)):
         rows.append([name, f"share of grounds of {1000 * height:g} mm", "", walked.mean(), *wilson(walked.sum(), GROUNDS)])
     spread = norms(s, length)
@@ -187,9 +193,9 @@ def family(name, changes):
     members = [{**numbers(c), **{f"initial.state.{key}": v for key, v in g["state"].items()}} for c, g in gaits]
     axis = {"paths": list(members[0]), "values": [list(m.values()) for m in members]}
     length = float(np.median([g["length"] for _, g in gaits]))
-    score = rough(s, length, [0.001, 0.002, 0.004, 0.008], 2 if QUICK else 12, [axis], 30).mean(axis=(1, 2))
+    score = rough(s, length, [0.001, 0.002, 0.004, 0.008, 0.016, 0.032], 2 if QUICK else 16, [axis], 30).mean(axis=(1, 2))
     steps = [critical(f"{name}-{sign}", s.copy().set(steps_of(length)), f"ground.plates.step.height=0..{0.1 * sign}", [axis],
-                      min(COUNT, 257)) for sign in (-1, 1)]
+                      COUNT) for sign in (-1, 1)]
     return [{"family": name, **{key: v for key, v in g.items() if key != "state"}, "down": -1e3 * (down["kept"] or 0),
              "up": 1e3 * (up["kept"] or 0), "both": 1e3 * min(-(down["kept"] or 0), up["kept"] or 0), "rough": rough_share}
             for (_, g), rough_share, down, up in zip(gaits, score, *steps)]
@@ -198,7 +204,7 @@ def family(name, changes):
 def correlation(x, y, draws=2000):
     """Spearman's, with its bootstrap interval."""
     def rho(pick):
-        a, b = (pd.Series(v[pick]).rank().to_numpy() for v in (x, y))
+        a, b = ((v[:, None] > v).sum(1) + (v[:, None] == v).sum(1) / 2 for v in (x[pick], y[pick]))
         return np.corrcoef(a, b)[0, 1] if a.std() > 0 and b.std() > 0 else np.nan
     n = len(x)
     found = [rho(random.integers(0, n, n)) for _ in range(draws)]
@@ -239,7 +245,7 @@ def main():
 def draw(found):
     lines = [f"folder = '{RESULTS}'; style = '{HERE.parents[1] / 'analysis/draw/style.gp'}'", "array said[2]"]
     for k, predictor in enumerate(("norm_period", "multiplier")):
-        of_it = found[(found["predictor"] == predictor) & (found["measure"] == "rough")].itertuples()
+        of_it = found[(found["predictor"] == predictor) & (found["measure"] == "both")].itertuples()
         says = [f"{c.family}: {c.rho:+.2f} ({c.low:+.2f} ... {c.high:+.2f})".replace(" ", "\u00a0") for c in of_it]
         lines.append(f"said[{k + 1}] = '{' '.join(says)}'")
     subprocess.run(["gnuplot", "-", HERE / "robustness.gp"], input="\n".join(lines), check=True, text=True)
