@@ -1,5 +1,5 @@
 /* ground.c - ground in plates, for those who draw it. */
-#include "engine/core/loop/ground.h"
+#include "ground.h"
 
 void stance_ground_at(const stance_case *c, const double *from, double x, double *height,
                       double *high)

@@ -446,9 +446,8 @@ static bool tables_contacts(const stance_mechanism *m, const stance_mechanism_nu
 {
     static const double none[2] = {0, 0};
     bool fits = true, rough = false;
-    tree->plates = m->plates;
-    for (int p = 0; p < m->plates; p++)
-        rough |= m->plate[p].rough;
+    for (; tree->plates < m->plates; tree->plates++)
+        rough |= m->plate[tree->plates].rough;
     for (int e = 0; e < m->elements; e++) {
         const int b = m->element[e].body, c = tree->contacts;
         const stance_element_numbers *const at = &v->element[e];
@@ -461,7 +460,7 @@ static bool tables_contacts(const stance_mechanism *m, const stance_mechanism_nu
         fits =
             fits && add_contact(m, f, tree, l, kind, b, end[0], m->element[e].sole ? c + 1 : -1, c);
         if (m->element[e].sole)
-            fits = fits && add_contact(m, f, tree, l, kind, b, end[1], c, c);
+            fits = fits && add_contact(m, f, tree, l, kind, b, end[1], c, m->plates ? c + 1 : c);
         for (int k = c; k < tree->contacts; k++)
             tree->rough[k] = rough || m->element[e].rough;
     }

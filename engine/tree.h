@@ -46,7 +46,9 @@ typedef struct stance_tree {
     int kind[STANCE_MAX_CONTACTS], body[STANCE_MAX_CONTACTS];
     int straight_end[STANCE_MAX_CONTACTS];
     int other[STANCE_MAX_CONTACTS]; /* contact: the other end of the sole */
-    int grip[STANCE_MAX_CONTACTS];  /* contact that holds its friction; -1: a stop */
+    /* Contact that holds its friction; -1: a stop. On plates, which may be of different height,
+     * each end of a sole holds its own. */
+    int grip[STANCE_MAX_CONTACTS];
     int rough[STANCE_MAX_CONTACTS]; /* its coefficient is not the ground's */
     /* How frames carry a point, by the arm in each: -1: it has none; STANCE_TREE_OWN: to the point;
      * else to the joint of that angle; of what slides, >= 0: it moves the point. */

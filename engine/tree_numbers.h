@@ -14,7 +14,7 @@ typedef struct stance_plate_numbers {
     double footfall;     /* that lands on it or beyond: a number from 1; 0: it is at `from` */
     double height;       /* m above the plane of the ground; of stairs and rough ground as above */
     double width, count; /* of them: m, > 0, of each; how many, may be INFINITY */
-    double seed;         /* of rough ground: which, < 0: another in each case */
+    double seed;         /* of rough ground: which, < 0: another at each point of a sample */
     double friction_factor; /* of its coefficient of friction by the ground's, > 0 */
 } stance_plate_numbers;
 

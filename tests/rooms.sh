@@ -36,11 +36,11 @@ analysis/critical: $numbers analysis/draw analysis/basin
 analysis/sensitivity: $numbers analysis/draw analysis/optimise analysis/summary
 analysis/compare: $numbers analysis/draw
 analysis/gait: $numbers analysis/draw
-analysis/plot: $numbers analysis/draw analysis/optimise analysis/summary analysis/basin analysis/sensitivity
+analysis/plot: $numbers analysis/draw analysis/optimise analysis/summary analysis/basin analysis/critical analysis/sensitivity
 analysis/bench: $numbers analysis/draw analysis/optimise analysis/summary analysis/basin analysis/sensitivity analysis/plot
 analysis/view: $numbers analysis/draw analysis/optimise analysis/summary analysis/basin analysis/sensitivity analysis/plot analysis/bench
 analysis/view/wasm: $runner
-analysis/python/stance: $numbers analysis/draw analysis/optimise analysis/summary analysis/basin analysis/sensitivity analysis/compare analysis/gait analysis/plot analysis/view
+analysis/python/stance: $numbers analysis/draw analysis/optimise analysis/summary analysis/basin analysis/critical analysis/sensitivity analysis/compare analysis/gait analysis/plot analysis/view
 runner: $runner"
 if (($# > 0)); then
     awk -v wanted="$*" '{ name = $1; sub(/:$/, "", name); $1 = ""; may[name] = $0 }

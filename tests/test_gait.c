@@ -297,10 +297,133 @@ static void slopes_at_random_vary_a_gait_as_the_norm_says(void **state)
     free(w);
 }
 
+#define STEP(name, n) #name ": {footfall: " #n ", from: 0.1, height: 0}"
+#define GROUND(more) "ground.plates={" STEP(a, 1) more "}"
+#define RANDOM                                                                                     \
+    GROUND(", " STEP(b, 2) ", " STEP(c, 3) ", " STEP(d, 4) ", " STEP(e, 5) ", " STEP(f, 6))
+static const struct along step_of_ground = {
+    .path = "ground.plates.a.height", .from = -2e-4, .to = 2e-4};
+
+/* Of w's gait, over steps of the ground so high, cases[2]: one step less than `steps`, and all. */
+static void step_over(const struct walker *w, const double *height, int steps, stance_case *cases)
+{
+    cases[0] = w->map.base;
+    assert_true(return_map_state(&w->map, w->gait.z, cases[0].position, cases[0].velocity));
+    for (int n = 0; n < w->map.base.body.plates; n++)
+        cases[0].body.plate[n].height = height[n];
+    cases[1] = cases[0];
+    cases[0].footfalls = steps - 1;
+    cases[1].footfalls = steps;
+}
+
+/* Time and length of the last step, by which the two cases differ, less the gait's own. */
+static void last_step(const struct walker *w, int steps, const stance_result *r, double g[2])
+{
+    double place[2][2], speed[2];
+    for (int n = 0; n < 2; n++) {
+        assert_true(r[n].status == STANCE_DONE && r[n].footfalls == steps - 1 + n);
+        return_map_foot(&w->map, r[n].position, r[n].velocity, (steps - 1 + n) % 2, place[n],
+                        speed);
+    }
+    g[0] = r[1].end_time - r[0].end_time - w->gait.at.time;
+    g[1] = place[1][0] - place[0][0] - w->gait.at.length;
+}
+
+/* Of steps of the ground at random, each up or down from the one before by one of two heights, laid
+ * as the robot comes to them: the last ones vary over cases as the norm says, to what so many tell.
+ */
+static void steps_of_the_ground_vary_a_gait_as_the_norm_says(void **state)
+{
+    enum { LAID = 6, CASES = 600 };
+    static const char *const set[] = {"method.step=0.005", "sweep={}", RANDOM};
+    struct walker *const w = calloc(1, sizeof *w);
+    stance_case *const c = calloc(2 * CASES, sizeof *c);
+    stance_result *const r = calloc(2 * CASES, sizeof *r);
+    struct gait_sensitivity is;
+    double sum[2] = {0}, square[2] = {0};
+    uint64_t random = 12345;
+    (void)state;
+    assert_true(w && c && r);
+    walk(w, "scenarios/gaits/walk_pushes.yaml", 1, 40, SET(set));
+    assert_true(w->found);
+    assert_true(
+        gait_sensitivity_find(&w->scenario, &w->map, &w->gait, &step_of_ground, &is, &w->message));
+    for (size_t k = 0; k < CASES; k++) {
+        double height[LAID], before = 0;
+        for (int n = 0; n < LAID; n++) {
+            random = random * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
+            height[n] = before += random >> 63 ? step_of_ground.to : step_of_ground.from;
+        }
+        step_over(w, height, LAID, &c[2 * k]);
+    }
+    w->map.kernel->run(c, r, 2 * CASES);
+    for (size_t k = 0; k < CASES; k++) {
+        double g[2];
+        last_step(w, LAID, &r[2 * k], g);
+        for (int m = 0; m < 2; m++)
+            sum[m] += g[m], square[m] += g[m] * g[m];
+    }
+    for (int m = 0; m < 2; m++) {
+        const double mean = sum[m] / CASES, variance = square[m] / CASES - mean * mean;
+        const double says = sqrt(3) * (m == 0 ? is.time : is.length);
+        print_message("# measure %d: %g, the norm %g\n", m, sqrt(variance), says);
+        assert_true(fabs(sqrt(variance) / says - 1) < 0.09);
+    }
+    leave(w);
+    free(c);
+    free(r);
+    free(w);
+}
+
+/* A step of the ground under RABBIT, whose feet touch wherever they are: what comes of one, in each
+ * step from there on, squared and added up is the norm, too. */
+static void what_a_step_of_the_ground_does_adds_up_to_the_norm(void **state)
+{
+    enum { STEPS = 12 };
+    static const char *const set[] = {"method.tolerance=1e-10", "method.step=0.005", "sweep={}",
+                                      "controller.sample_time=0", GROUND("")};
+    struct walker *const w = calloc(1, sizeof *w);
+    stance_case *const c = calloc(4 * STEPS, sizeof *c);
+    stance_result *const r = calloc(4 * STEPS, sizeof *r);
+    struct gait_sensitivity is;
+    double square[2] = {0};
+    (void)state;
+    assert_true(w && c && r);
+    walk(w, "scenarios/gaits/rabbit_walks.yaml", 1, 40, SET(set));
+    assert_true(w->found);
+    assert_true(
+        gait_sensitivity_find(&w->scenario, &w->map, &w->gait, &step_of_ground, &is, &w->message));
+    for (size_t k = 0; k < 2 * STEPS; k++)
+        step_over(w, k % 2 ? &step_of_ground.to : &step_of_ground.from, (int)k / 2 + 1, &c[2 * k]);
+    for (size_t k = 0; k < 2; k++) /* what has not stepped is where it began: not simulated */
+        c[2 * k].footfalls = 1;
+    w->map.kernel->run(c, r, 4 * STEPS);
+    for (size_t k = 0; k < 2; k++) {
+        memcpy(r[2 * k].position, c[2 * k].position, sizeof r[2 * k].position);
+        memcpy(r[2 * k].velocity, c[2 * k].velocity, sizeof r[2 * k].velocity);
+        r[2 * k].end_time = r[2 * k].footfalls = 0;
+    }
+    for (size_t k = 0; k < STEPS; k++) {
+        double g[2][2];
+        for (size_t side = 0; side < 2; side++)
+            last_step(w, (int)k + 1, &r[4 * k + 2 * side], g[side]);
+        for (int m = 0; m < 2; m++)
+            square[m] += (g[1][m] - g[0][m]) * (g[1][m] - g[0][m]);
+    }
+    assert_near(sqrt(square[0] / 12) / is.time, 1, 2e-3, "time");
+    assert_near(sqrt(square[1] / 12) / is.length, 1, 2e-3, "length");
+    leave(w);
+    free(c);
+    free(r);
+    free(w);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(gaits_have_margins),
+        cmocka_unit_test(steps_of_the_ground_vary_a_gait_as_the_norm_says),
+        cmocka_unit_test(what_a_step_of_the_ground_does_adds_up_to_the_norm),
         cmocka_unit_test(slopes_at_random_vary_a_gait_as_the_norm_says),
         cmocka_unit_test(gaits_are_those_of_another_program),
         cmocka_unit_test(by_the_clock_it_does_not_hold),

@@ -499,22 +499,24 @@ static void sets_edit(void **state)
 /* Long axes of numbers are refined, words and short lists are not. */
 static void refinement(void **state)
 {
-    static const bool refined[] = {false, false, false, false, true};
     struct scenario s;
     (void)state;
     read_good(&s, full, NULL, 0);
     assert_false(s.refine.given);
     scenario_free(&s);
-    read_good(&s, full,
-              (const char *[]){"sweep.refine={start: 4}",
-                               "sweep.grid[4]={path: stop.time, from: 1, to: 3, count: 5}",
-                               "record={}"},
-              3);
-    assert_true(s.refine.given && s.refine.start == 4 && s.refine.margin == 1);
-    assert_true(s.refine.probes == 0.01);
-    for (int a = 0; a < s.axes; a++)
-        assert_int_equal(s.axis[a].refined, refined[a]);
-    scenario_free(&s);
+    for (int along = 0; along < 2; along++) { /* all that are, or one of them */
+        read_good(
+            &s, full,
+            (const char *[]){
+                along ? "sweep.refine={start: 4, along: stop.time}" : "sweep.refine={start: 4}",
+                "sweep.grid[4]={path: stop.time, from: 1, to: 3, count: 5}",
+                "sweep.grid[5]={path: ground.restitution, from: 0, to: 1, count: 9}", "record={}"},
+            4);
+        assert_true(s.refine.start == 4 && s.refine.margin == 1 && s.refine.probes == 0.01);
+        for (int a = 0; a < s.axes; a++)
+            assert_int_equal(s.axis[a].refined, along ? a == 4 : a >= 4);
+        scenario_free(&s);
+    }
 }
 
 static void bad_sets_are_refused(void **state)

@@ -60,6 +60,26 @@ check('a map: counts, colours, and the case under the pointer', () =>
     for (const word of ['initial.offset.theta = ', 'rad/s', 'settle_time', 'friction_used']) assert(told.includes(word), `the readout says ${word}: ${told}`);
   }));
 
+check('how far a number may go before the case that is played ends otherwise', () =>
+  on('map.html', { motion: false }, async (p) => {
+    const row = '[data-path="controller.torque_limit"]';
+    await p.until(fields);
+    await p.evaluate(`document.querySelector('${row} button').click()`);
+    same(await p.text(`${row} .critical`), 'of which case? Click one.', 'without a case');
+    await p.click(...(await p.spot('#map', 0.5, 0.5)));
+    await p.until(played);
+    await p.evaluate(`document.querySelector('${row} button').click()`);
+    await p.until(`document.querySelector('${row} .critical').textContent.includes('down to')`);
+    const told = await p.text(`${row} .critical`);
+    const [, kept, then] = /is stabilised up to 20 and perhaps beyond, down to ([\d.]+) \(then (\w+)\)$/.exec(told) ?? [];
+    const found = JSON.parse(readFileSync(at('critical.json'), 'utf8')).rows[0];
+    assert(then === found.outcome_then && Number(kept) <= found.kept + 1e-4 && Number(kept) >= found.lost - 1e-4, `${told}: ${JSON.stringify(found)}`);
+    // Of a mass the design stays.
+    const mass = '[data-path="robot.trunk_mass"]';
+    await p.evaluate(`document.querySelector('${mass} button').click()`);
+    await p.until(`/up to/.test(document.querySelector('${mass} .critical').textContent)`);
+  }));
+
 check('a click plays the case: identical to the file, courses, command', () =>
   on('map.html', { motion: false }, async (p) => {
     await p.until(painted);

@@ -13,6 +13,10 @@ critical() { # file, scenario, PATH=FROM..TO, option ...: its JSON
     local code=$?
     ((code == 0)) || { echo "exit code $code: $file" >>log; cat log >&2; }
 }
+identical() { # file, file
+    "$stance" compare "$1" "$2" >log 2>&1 && grep -qx identical log
+    result $? "... and the same bits"
+}
 printed() { # name, pattern: somewhere in what was printed
     grep -qE -- "$2" log
     result $? "$1"
@@ -87,3 +91,149 @@ print(count)
 assert count >= 200, count
 END
 result $? "brackets of 200 values with known answers hold"
+
+# ---- a pocket ---------------------------------------------------------------------------------------
+# A mass on a spring, swung: near its own 1.59 Hz it is lost, and from 1.78 Hz on kept again. 1.39 Hz is the number.
+cat >swing.yaml <<'END'
+stance: 1
+title: A mass on a spring, swung
+scene: mechanism
+robot:
+  bodies: {mass: {joint: slide, axis: [0, 1], mass: 1, inertia: 0, stiffness: 100, damping: 1, rest: 0}}
+  points: {tip: {body: mass, lowest: -0.2, force: [0, 4], frequency: 1, from: 0, to: 6}}
+ground: {gravity: 0}
+initial: {state: {mass: 0}}
+method: {name: midpoint, step: 0.002}
+stop: {time: 20, settle: {rate: 0.01, hold: 0.5}}
+END
+hz=robot.points.tip.frequency
+expect "a swing that a resonance makes too much" 0 "$stance" critical swing.yaml --of $hz=0.2..4 -o swing.h5
+printed "... has its number below the resonance" '^ +1\.38[0-9]+ +1\.39[0-9]+  fell +1\.7[0-9]+ \.\.\.$'
+printed "... values beyond do not count, it is said" 'again: values beyond at which it is kept, too, which do not count'
+printed "... and how narrow a pocket may have been missed" 'narrower than 0\.1188 Hz\)'
+expect "in full" 0 "$stance" run swing.yaml --set "sweep={grid: [{path: $hz, from: 0.2, to: 4, count: 1025}]}" -o full.h5 --quiet
+for file in swing full; do "$stance" critical $file.h5 --csv | cut -d, -f 2-4,10 >$file.csv; done
+cmp -s swing.csv full.csv
+result $? "... it is the same"
+# A strength that grows: at no frequency is one above a lost one kept.
+critical strengths swing.yaml 'robot.points.tip.force[1]=0..10' --set "sweep={grid: [{path: $hz, from: 0.5, to: 3, count: 11}]}"
+"$python" - >log 2>&1 <<'END'
+import json
+rows = json.load(open("strengths.json"))["rows"]
+lost = [row["lost"] or 99 for row in rows]
+assert lost.index(min(lost)) == 4 and lost[:5] == sorted(lost[:5], reverse=True) and lost[4:] == sorted(lost[4:]), lost
+assert [row["end"] for row in rows].count("kept") == 6 and not any(row["islands"] for row in rows), rows
+END
+result $? "strengths are a curve with its least at the resonance"
+
+# ---- the same file ------------------------------------------------------------------------------------
+search=("$stance" critical block.yaml --of ground.friction=1..0 --set
+    'sweep={grid: [{path: robot.slope, from: 0.02, to: 0.6, count: 400}]}')
+expect "one rank" 0 "${search[@]}" -o one.h5
+cp log one
+for n in 2 3; do
+    expect "$n ranks" 0 mpirun -n $n "${search[@]}" -o ranks.h5 --force
+    [ "$(grep -c '^How far' log)" = 1 ] && [ "$(sed 1,3d one | md5sum)" = "$("$stance" critical ranks.h5 | sed 1,2d | md5sum)" ]
+    result $? "... the same numbers, said once"
+    identical one.h5 ranks.h5
+done
+expect "a time that is too short" 4 "${search[@]}" -o resumed.h5 --time-limit 0.001
+says "... is told, and how to go on" "^stance critical: stopped.*; go on with: .*stance critical block.yaml --of ground.friction=1..0 .* --resume$"
+expect "is gone on with" 0 "${search[@]}" -o resumed.h5 --resume
+identical one.h5 resumed.h5
+expect "a file that is there is left alone" 3 "${search[@]}" -o one.h5
+{
+    cat block.yaml
+    echo 'sweep: {grid: [{path: ground.friction, from: 1, to: 0, count: 1025}, {path: robot.slope, from: 0.02, to: 0.6, count: 9}],'
+    echo '  refine: {along: ground.friction, start: 33, margin: 0}}'
+} >own.yaml
+expect "a scenario that says along which number by itself" 0 "$stance" critical own.yaml
+[ -e results/own.h5 ] && [ "$(grep -c ' undecided$' log)" = 9 ]
+result $? "... has its file and numbers"
+expect "its axis is replaced" 0 "$stance" critical own.yaml --of ground.friction=1..0 --count 33 -o replaced.h5
+printed "... by a lattice of which all is simulated" '^replaced.h5: 297 cases: .* undecided; [0-9.]* s on'
+
+# ---- samples ----------------------------------------------------------------------------------------
+# Slopes of evenly distributed angles: of all of them nine in ten hold down to tan(0.1 + 0.9 * 0.4).
+sample='sweep={sample: {method: random, count: 64, vary: [{path: robot.slope, from: 0.1, to: 0.5}]}}'
+for seed in $(seq 25); do
+    critical "sample$seed" block.yaml ground.friction=1..0 --set "$sample" --set "seed=$seed"
+done
+"$python" - >log 2>&1 <<'END'
+import json
+from math import tan
+held = 0
+for seed in range(1, 26):
+    study = json.load(open(f"sample{seed}.json"))
+    (row,) = study["rows"]
+    assert study["share"] == 0.9 and study["points"] == 64 and not row["exact"], study
+    assert row["high"] < row["low"] and row["lost"] < row["kept"], row
+    held += row["high"] <= tan(0.46) <= row["low"]
+print(held)
+assert 21 <= held, held
+END
+result $? "intervals of samples hold"
+cp sample1.h5 sample.h5
+expect "its text" 0 "$stance" critical sample.h5
+printed "... tells of whom" 'at least 90 % of the 64 points'
+printed "... and the interval" '^ +0\.[0-9]+ +0\.[0-9]+  undecided +0\.[0-9]+ \.\.\. 0\.[0-9]+ *$'
+expect "of all points" 0 "$stance" critical sample.h5 --share 1
+printed "... what it says of others" '^ +0\.5[0-9]+ +0\.5[0-9]+  undecided +95\.43 %$'
+expect "of so many that few points tell nothing" 0 "$stance" critical sample.h5 --share 0.95
+printed "... an open end" '  - \.\.\. 0\.[0-9]+'
+critical blocks block.yaml ground.friction=1..0 --set "${sample/random, count: 64/saltelli, count: 8}"
+grep -q '"low": null' blocks.json && "$stance" critical blocks.h5 | grep -q 'no interval: points hang together in blocks'
+result $? "points in blocks have none"
+
+# ---- what is not known ------------------------------------------------------------------------------
+expect "another outcome, another way" 0 "$stance" critical one.h5 --of robot.slope=0.6..0.02 --outcome undecided
+printed "... along another axis" '^How far robot.slope may go from 0.6 rad towards 0.02 rad, up to which cases end as undecided'
+"$python" - >log 2>&1 <<'END'
+import h5py
+f = h5py.File("full.h5", "r+")
+f["status"][30] = 0  # pending
+f["status"][322:330] = 0
+END
+"$stance" critical full.h5 >log 2>&1
+printed "values that are not known widen the bracket" '^ +0\.307[0-9]* +1\.3[0-9]+  fell .* some unknown$'
+expect "a number that a case has beside its outcome" 0 "$stance" critical full.h5 --within end_time=10
+printed "... narrows it" 'end as rested with end_time <= 10$'
+
+# ---- pictures -----------------------------------------------------------------------------------------
+drawn() { # file, what the script has
+    mkdir -p scripts
+    STANCE_SCRIPTS=$scratch/scripts "$stance" plot "$1" --picture critical >log 2>&1 &&
+        grep -qE -- "$2" "$scratch/scripts/${1%.h5}-critical/"*
+    result $? "$1 is drawn"
+    head -c 8 "${1%.h5}-critical.png" | grep -q PNG
+    result $? "... as a picture"
+}
+critical curves block.yaml ground.friction=1..0 --set "$sample" --set robot.pull=1 \
+    --set 'sweep.grid=[{path: robot.mass, values: [1, 2, 3]}]'
+critical plane block.yaml ground.friction=1..0 --set 'sweep={grid: [{path: robot.mass, from: 1, to: 3, count: 8},
+    {path: robot.slope, from: 0, to: 0.5, count: 8}]}' --set robot.pull=1
+drawn friction.h5 'Up to which ground.friction, from 1 on, cases end as rested'
+drawn strengths.h5 'from 0 N on, cases end as rested'
+drawn curves.h5 'band: interval \(95 %\)'
+drawn plane.h5 "measure = 'ground.friction'"
+critical rows swing.yaml "$hz=0.2..4" --set 'sweep={grid: [{path: "robot.points.tip.force[1]", from: 2, to: 6, count: 9}]}'
+drawn rows.h5 'light: rested again beyond it'
+
+# ---- what is wrong ----------------------------------------------------------------------------------
+wrong() { # name, pattern, argument ...: exit code 2 and one line
+    local name=$1 pattern=$2
+    shift 2
+    timeout "$patience" "$stance" critical "$@" >out 2>log </dev/null
+    local code=$?
+    [ $code = 2 ] && [ ! -s out ] && [ "$(wc -l <log)" = 1 ] && grep -qE -- "$pattern" log
+    result $? "$name"
+}
+wrong "a scenario without a number" 'block.yaml does not say along which number \(sweep.refine.along\): --of PATH=FROM..TO' block.yaml
+wrong "a number without a range" "of a scenario --of takes PATH=FROM..TO, .*, not 'ground.friction'" block.yaml --of ground.friction
+wrong "a number that there is not" "unknown field 'ground.frction'; did you mean 'ground.friction'" block.yaml --of ground.frction=1..0
+wrong "a range of nothing" "not 'ground.friction=1..1'" block.yaml --of ground.friction=1..1
+wrong "an axis that a file has not" "whose values rise or fall, not 'robot.slop'" one.h5 --of robot.slop
+wrong "a range without values" 'robot.slope has 0 values there' one.h5 --of robot.slope=1..2
+wrong "a share above 1" '--share takes' one.h5 --share 2
+wrong "an axis to refine that there is not" "sweep.refine.along: no axis of numbers on the grid is robot.mass" own.yaml \
+    --set sweep.refine.along=robot.mass

@@ -12,6 +12,9 @@ make_page() { # name, scenario, --set ...
 }
 make_page map basin_one_foot.yaml --set 'sweep.grid[0].count=41' --set 'sweep.grid[1].count=41' ||
     { skip "pages in a browser" "the program was built without the page: make web"; echo "1..1"; exit 0; }
+# Of the case in the middle of that map: what the page is to find.
+"$stance" critical "$shipped/basin_one_foot.yaml" --of controller.torque_limit=10..0.01 --count 16385 --set 'sweep={}' --set 'initial.offset={theta: -0.03}' \
+    -o middle.h5 --json >critical.json 2>/dev/null
 make_page refined basin_refined.yaml --set 'sweep.grid[0].count=129' --set 'sweep.grid[1].count=129'
 make_page sample sampled.yaml --set sweep.sample.count=64
 make_page single balance_recovers.yaml

@@ -28,6 +28,19 @@ struct basin_lack {
 bool basin_lacks(const struct results *r, enum results_kind of, const double *value,
                  struct basin_lack *lack, stance_message *message);
 
+/* What --within asks for: ANSWER=BOUND, each of the outcome `of`, of which `command` speaks. */
+struct basin_within {
+    const char *command;
+    const struct option_texts *asked;
+    enum results_kind of;
+};
+/* A file in which cases with the outcome but with another number become undecided: they are not
+ * what was asked for. How that is said goes to said[size]. Returns an exit code; own->kind is freed
+ * by the caller in any case. */
+int basin_within_make(struct results *own, const struct results *r,
+                      const struct basin_within *within, char *said, size_t size,
+                      stance_message *message);
+
 /* Answers to single questions. *usage: it is the request that is at fault; *message says why. */
 bool basin_print_threshold(const struct basin *basin, const char *path, double threshold,
                            enum table_form form, bool *usage, stance_message *message);

@@ -20,16 +20,6 @@ json_t *basin_titled(const struct results *r, json_t *facts)
 
 /* ---- thresholds --------------------------------------------------------------------------- */
 
-/* Values that rise, or fall, from the first to the last. */
-static bool is_monotone(const struct results_axis *axis)
-{
-    for (size_t i = 1; i < axis->count; i++)
-        if (axis->value[i] == axis->value[i - 1] ||
-            (axis->value[i] > axis->value[i - 1]) != (axis->value[1] > axis->value[0]))
-            return false;
-    return !axis->word && axis->count > 1;
-}
-
 static void add_threshold(struct table *t, const struct basin *b, size_t row, int along,
                           double threshold)
 {
@@ -67,7 +57,7 @@ bool basin_print_threshold(const struct basin *b, const char *path, double thres
     int along = -1;
     for (int k = 0; k < b->by_axes; k++)
         along = strcmp(b->r->axis[b->by[k]].name, path) == 0 ? k : along;
-    *usage = along < 0 || !is_monotone(&b->r->axis[b->by[along]]);
+    *usage = along < 0 || !statistics_is_monotone(&b->r->axis[b->by[along]]);
     if (*usage)
         return complain(message,
                         "stance basin: --threshold needs --of PATH of a parameter whose values "

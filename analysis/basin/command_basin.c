@@ -104,96 +104,15 @@ static int show(struct report *report, const struct results *r, stance_message *
     return (basin_is_rays(r, &sample) ? show_rays : show_basin)(report, r, &sample, message);
 }
 
-/* "2", "2..", "1..2": the largest, the least, both; false: none of these. */
-static bool read_bounds(const char *text, double bound[2])
-{
-    const char *const dots = strstr(text, "..");
-    char least[64], *end = least;
-    bound[0] = -INFINITY, bound[1] = INFINITY;
-    snprintf(least, sizeof least, "%.*s", dots ? (int)(dots - text) : 0, text);
-    if (least[0])
-        bound[0] = strtod(least, &end);
-    bool good = *end == '\0' && !isnan(bound[0]);
-    text = dots ? dots + 2 : text;
-    if (*text) {
-        char *stop;
-        bound[1] = strtod(text, &stop);
-        good = good && stop > text && *stop == '\0' && !isnan(bound[1]);
-    }
-    return good && (isfinite(bound[0]) || isfinite(bound[1])) && bound[0] <= bound[1];
-}
-
-/* "settle_time <= 2", "0.1 <= ...": how it is said. */
-static void bounds_text(const char *name, const double bound[2], char *text, size_t size)
-{
-    if (!isfinite(bound[1]))
-        snprintf(text, size, "%s >= %g", name, bound[0]);
-    else if (!isfinite(bound[0]))
-        snprintf(text, size, "%s <= %g", name, bound[1]);
-    else
-        snprintf(text, size, "%g <= %s <= %g", bound[0], name, bound[1]);
-}
-
-/* Cases with the outcome but with another number than --within allows become undecided: they are
- * not what was asked for. */
-static int keep_within(struct results *r, struct request *request, stance_message *message)
-{
-    size_t used = 0;
-    for (size_t k = 0; k < request->within.count; k++) {
-        const char *equals = strchr(request->within.text[k], '=');
-        char name[96], text[180];
-        double *value = NULL, bound[2];
-        snprintf(name, sizeof name, "%.*s", equals ? (int)(equals - request->within.text[k]) : 0,
-                 request->within.text[k]);
-        if (!equals || !read_bounds(equals + 1, bound) ||
-            !basin_numbers(r, name, &value, message) || !value) {
-            complain(message,
-                     "stance basin: --within takes ANSWER=MOST or ANSWER=LEAST.. of a number that "
-                     "the file stores, as settle_time=2, not '%.60s'",
-                     request->within.text[k]);
-            return EXIT_USAGE;
-        }
-        struct basin_lack lack;
-        const bool good = basin_lacks(r, request->choice.of, value, &lack, message);
-        if (good && lack.inferred > 0)
-            complain(message,
-                     "stance basin: --within %.60s: %" PRIu64 " cases were inferred and have no "
-                     "such number: it takes a map without sweep.refine",
-                     name, lack.inferred);
-        if (!good || lack.inferred > 0) {
-            free(value);
-            return good ? EXIT_USAGE : EXIT_IO;
-        }
-        if (lack.others > 0)
-            fprintf(stderr,
-                    "stance basin: warning: %" PRIu64 " cases have no %s, and count as outside\n",
-                    lack.others, name);
-        for (uint64_t i = 0; i < r->cases; i++)
-            if (r->kind[i] == request->choice.of && !(bound[0] <= value[i] && value[i] <= bound[1]))
-                r->kind[i] =
-                    request->choice.of == RESULTS_UNDECIDED ? RESULTS_FELL : RESULTS_UNDECIDED;
-        free(value);
-        bounds_text(name, bound, text, sizeof text);
-        if (used < sizeof request->within_text)
-            used +=
-                (size_t)snprintf(request->within_text + used, sizeof request->within_text - used,
-                                 "%s%s", k ? ", " : "", text);
-    }
-    request->choice.within = request->within_text;
-    return EXIT_DONE;
-}
-
 /* On a copy of what became of the cases. */
 static int work_within(struct report *report, const struct results *r, stance_message *message)
 {
-    struct results own = *r;
-    own.kind = malloc(r->cases + 1);
-    if (!own.kind) {
-        statistics_no_memory(r, message);
-        return EXIT_IO;
-    }
-    memcpy(own.kind, r->kind, r->cases);
-    int code = keep_within(&own, (struct request *)report, message);
+    struct request *const request = (struct request *)report;
+    const struct basin_within within = {"basin", &request->within, request->choice.of};
+    struct results own;
+    int code = basin_within_make(&own, r, &within, request->within_text,
+                                 sizeof request->within_text, message);
+    request->choice.within = request->within_text;
     if (code == EXIT_DONE)
         code = show(report, &own, message);
     free(own.kind);

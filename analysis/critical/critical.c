@@ -26,32 +26,33 @@ bool critical_range(const char *text, char path[96], double ends[2])
     return good && isfinite(ends[0]) && isfinite(ends[1]) && ends[0] != ends[1];
 }
 
-/* Values that rise, or fall, from the first to the last. */
-static bool is_monotone(const struct results_axis *axis)
-{
-    for (size_t i = 1; i < axis->count; i++)
-        if (axis->value[i] == axis->value[i - 1] ||
-            (axis->value[i] > axis->value[i - 1]) != (axis->value[1] > axis->value[0]))
-            return false;
-    return !axis->word && axis->count > 1;
-}
-
-/* What sweep.refine.along names, or the only axis of the grid; -1: neither. */
-static int own_axis(const struct results *r)
+/* The one axis that sweep.refine refines; -1: none, or several. */
+static int refined_axis(const struct results *r)
 {
     struct scenario s;
     int found = -1, axes = 0;
-    for (int a = 0; a < r->axes; a++)
-        if (a != r->sample && r->axis[a].count > 1)
-            axes++, found = a;
-    if (axes == 1 || !results_scenario(r, &s))
-        return axes == 1 ? found : -1;
-    axes = 0;
+    if (r->single || !results_scenario(r, &s))
+        return -1;
     for (int a = 0; s.refine.given && a < s.axes && a < r->axes; a++)
         if (s.axis[a].refined)
             axes++, found = a;
     scenario_free(&s);
     return axes == 1 ? found : -1;
+}
+
+bool critical_is_refined(const struct results *r)
+{
+    return refined_axis(r) >= 0;
+}
+
+/* That one, or the only axis of the grid; -1: neither. */
+static int own_axis(const struct results *r)
+{
+    int found = -1, axes = 0;
+    for (int a = 0; a < r->axes; a++)
+        if (a != r->sample && r->axis[a].count > 1)
+            axes++, found = a;
+    return axes == 1 ? found : refined_axis(r);
 }
 
 static bool find_axis(struct critical *c, const char *of, double ends[2], stance_message *message)
@@ -72,7 +73,7 @@ static bool find_axis(struct critical *c, const char *of, double ends[2], stance
         return complain(message,
                         "stance critical: %.150s has several axes: --of PATH says along which",
                         r->file);
-    return (c->along >= 0 && is_monotone(&r->axis[c->along])) ||
+    return (c->along >= 0 && statistics_is_monotone(&r->axis[c->along])) ||
            complain(message,
                     "stance critical: --of needs the PATH of an axis of the grid whose values rise "
                     "or fall, not '%.60s'%s",
@@ -113,21 +114,25 @@ struct walk {
     uint64_t first, step, next; /* case at the axis's first point; to its next one; of the sample */
 };
 
-static bool is_known(uint8_t kind)
-{
-    return kind != RESULTS_PENDING && kind != RESULTS_FAILED;
-}
-
 static void count_line(struct walk *w)
 {
     const struct critical *const c = w->c;
-    for (size_t i = 0; i < c->count; i++) {
-        const uint64_t at = w->first + c->order[i] * w->step;
-        w->line.lost[i] = w->line.unknown[i] = 0;
-        for (uint32_t p = 0; p < c->points; p++) {
-            const uint8_t kind = c->r->kind[at + p * w->next];
-            w->line.unknown[i] += !is_known(kind);
-            w->line.lost[i] += is_known(kind) && kind != c->of;
+    const struct critical_line *const line = &w->line;
+    const size_t size = c->count * sizeof *line->gone;
+    memset(line->gone, 0, size);
+    memset(line->maybe, 0, size);
+    memset(line->out, 0, size);
+    for (uint32_t p = 0; p < c->points; p++) {
+        bool gone = false, maybe = false;
+        for (size_t i = 0; i < c->count; i++) {
+            const uint8_t kind = c->r->kind[w->first + c->order[i] * w->step + p * w->next];
+            const bool out = kind != c->of,
+                       known = kind != RESULTS_PENDING && kind != RESULTS_FAILED;
+            gone = gone || (out && known);
+            maybe = maybe || out;
+            line->gone[i] += gone;
+            line->maybe[i] += maybe;
+            line->out[i] += out;
         }
     }
 }
@@ -212,14 +217,16 @@ static bool make_rows(struct critical *c, stance_message *message)
     w.line = (struct critical_line){.count = c->count,
                                     .value = c->value,
                                     .points = c->points,
-                                    .lost = calloc(c->count, sizeof *w.line.lost),
-                                    .unknown = calloc(c->count, sizeof *w.line.unknown)};
+                                    .gone = calloc(c->count, sizeof *w.line.gone),
+                                    .maybe = calloc(c->count, sizeof *w.line.maybe),
+                                    .out = calloc(c->count, sizeof *w.line.out)};
     c->row = calloc(c->rows, sizeof *c->row);
     bool good = statistics_inferred(r, &inferred, &w.inferred, message);
-    if (good && !(c->row && w.line.lost && w.line.unknown && find_rows(&w)))
+    if (good && !(c->row && w.line.gone && w.line.maybe && w.line.out && find_rows(&w)))
         good = statistics_no_memory(r, message);
-    free(w.line.lost);
-    free(w.line.unknown);
+    free(w.line.gone);
+    free(w.line.maybe);
+    free(w.line.out);
     free(w.inferred);
     return good;
 }

@@ -5,14 +5,12 @@
  * neighbouring values, the last one kept and the first one lost. Values beyond at which it is kept
  * again are islands, and do not count.
  *
- * Of a sample (of starts, of phases of a push) the outcome is kept at a value where at least a
- * share of its points keep it. For the population that the points are drawn from there is an
- * interval: the number is the quantile 1 - share of the points' own critical values, whose order
- * statistics bound it whatever their distribution; between two of them the ends are interpolated so
- * that the level is met (J. Nyblom, Stat. Probab. Lett. 14, 1992, after T. P. Hettmansperger and S.
- * J. Sheather, ibid. 4, 1986). Where points are lost and kept again, the k-th order statistic
- * stands for the first value at which k points are lost at once, which is the same where none is
- * kept again.
+ * Each point of a sample (of starts, of phases of a push) has a number of its own. That of a share
+ * of them is the largest value which, with all before it, at least so many keep. For the population
+ * that the points are drawn from it is a quantile of their numbers, 1 - share, which order
+ * statistics bound whatever the distribution is; between two of them the ends of the interval are
+ * interpolated so that the level is met (J. Nyblom, Stat. Probab. Lett. 14, 1992, after T. P.
+ * Hettmansperger and S. J. Sheather, ibid. 4, 1986).
  */
 #ifndef STANCE_CRITICAL_CRITICAL_H
 #define STANCE_CRITICAL_CRITICAL_H
@@ -25,8 +23,10 @@
 struct critical_line {
     size_t count;
     const double *value;
-    uint32_t points;          /* of the sample; 1 without one */
-    uint32_t *lost, *unknown; /* [count] of them: with another outcome; failed or pending */
+    uint32_t points; /* of the sample; 1 without one */
+    /* [count] Of the points: those that have lost the outcome at or before a value, those that have
+     * or may have, as a case failed or is pending, and those that do not have it at that value. */
+    uint32_t *gone, *maybe, *out;
 };
 
 enum critical_end {
@@ -39,7 +39,7 @@ enum critical_end {
 extern const char *const critical_end_words[CRITICAL_ENDS];
 
 struct critical_choice {
-    double share; /* of the points that keep it, above 0, at most 1 */
+    double share; /* of the points, above 0, at most 1 */
     double level; /* of the interval */
 };
 
@@ -91,6 +91,8 @@ struct critical {
     struct critical_island *island;
 };
 
+/* Whether sweep.refine refines one axis alone of several. */
+bool critical_is_refined(const struct results *r);
 /* Along an axis of the grid: `path` NULL: the one that sweep.refine.along names, or the only one;
  * "PATH=FROM..TO": from FROM on, to TO at the most. *usage: it is the request that is at fault. */
 bool critical_make(struct critical *critical, const struct results *r, const char *path,

@@ -13,11 +13,11 @@ static uint32_t needed(const struct critical_line *line, const struct critical_c
     return (uint32_t)floor((1 - choice->share) * line->points + 1e-9) + 1;
 }
 
-/* The first place where so many are lost, or may be; count: there is none. */
+/* The first place by which so many are lost, or may be; count: there is none. */
 static size_t first_lost(const struct critical_line *line, uint32_t points, bool surely)
 {
     size_t i = 0;
-    while (i < line->count && line->lost[i] + (surely ? 0 : line->unknown[i]) < points)
+    while (i < line->count && (surely ? line->gone : line->maybe)[i] < points)
         i++;
     return i;
 }
@@ -95,11 +95,10 @@ struct critical_value critical_find(const struct critical_line *line,
     struct critical_value found = {.kept = value_before(line, before),
                                    .lost = value_at(line, after),
                                    .after = after,
+                                   .unknown = after - before,
                                    .low = NAN,
                                    .high = NAN,
                                    .least_share = NAN};
-    for (size_t i = before; i < after; i++)
-        found.unknown += line->lost[i] + line->unknown[i] >= points;
     found.end = after == line->count ? (before > 0 ? CRITICAL_KEPT : CRITICAL_UNKNOWN)
                 : after == 0         ? CRITICAL_OUTSIDE
                                      : CRITICAL_LOST;
@@ -117,9 +116,9 @@ bool critical_next_island(const struct critical_line *line, const struct critica
 {
     const uint32_t points = needed(line, choice);
     size_t i = *at, end;
-    while (i < line->count && line->lost[i] + line->unknown[i] >= points)
+    while (i < line->count && line->out[i] >= points)
         i++;
-    for (end = i; end < line->count && line->lost[end] + line->unknown[end] < points;)
+    for (end = i; end < line->count && line->out[end] < points;)
         end++;
     *at = end;
     if (i == line->count)

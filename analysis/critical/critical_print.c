@@ -89,29 +89,33 @@ static void add_row(struct table *t, const struct critical *c, const struct crit
 }
 
 static const char text[] = BASIN_TITLE
-    "[.rising:Largest|Smallest] {of} such that from {..from} on [share:at least {share*%.4g} % of "
-    "the {points} points of the sample|cases] end as {outcome}\n(looked for up to "
-    "{..to})\n\n{.rows}"
-    "[!share:  (the number lies between kept and lost: exact|  (kept, lost: of these points"
+    "How far {of} may go from {..from} towards {..to}, up to which [share:at least {share*%.4g} % "
+    "of the {points} points\nof the sample|cases] end as {outcome}[within: with "
+    "{within}]\n\n{.rows}"
+    "  (the number lies between kept and lost: [share:of these points|exact[.unsure:, wider where "
+    "some are unknown]]"
     "[.interval:; interval: of all that could be drawn, at {level*%.4g} %]"
-    "[.least:; least: of all that could be drawn at least this share keeps it, at {level*%.4g} %]"
-    "[.blocks:; no interval, as its points hang together in blocks]]"
-    "[.again:; again: values beyond that are kept, too, and do not count])\n"
-    "  (a pocket in which it is lost before that may have been missed where it is narrower than "
+    "[.least:; least: of all that could\n  be drawn at least this share keeps it, at {level*%.4g} "
+    "%]"
+    "[.blocks:; no interval: points hang together in blocks]"
+    "[.again:;\n  again: values beyond at which [share:so many keep it|it is kept], too, which do "
+    "not count])\n"
+    "  (before it, pockets in which it is lost may have been missed where they are narrower than "
     "{.unseen%.4g}[.unit: {.unit}])\n";
 
-bool critical_print(const struct critical *c, enum table_form form)
+bool critical_print(const struct critical *c, const char *within, enum table_form form)
 {
     const struct results_axis *const axis = &c->r->axis[c->along];
     struct table t = {0};
     double unseen = 0;
-    bool again = false, remarks = false;
+    bool again = false, remarks = false, unsure = false;
     char view[120];
     for (size_t k = 0; k < c->rows; k++) {
         const struct critical_row *const row = &c->row[k];
         add_row(&t, c, row);
         unseen = fmax(unseen, row->unseen);
         again = again || row->islands > 0;
+        unsure = unsure || row->value.unknown > 0;
         remarks = remarks || remark(row)[0];
     }
     const bool whole = c->sampled && !(c->choice.share < 1);
@@ -121,16 +125,16 @@ bool critical_print(const struct critical *c, enum table_form form)
                                       : " low high",
              again ? " again" : "", remarks ? " remark" : "");
     json_t *const facts = TABLE_OBJECT(
-        {"outcome", as_text(results_kind_names[c->of])}, {"of", as_text(axis->name)},
+        {"outcome", as_text(results_kind_names[c->of])},
+        {"within", as_text(within[0] ? within : NULL)}, {"of", as_text(axis->name)},
         {"unit", as_text(axis->unit)}, {"from", as_number(c->value[0])},
         {"to", as_number(c->value[c->count - 1])},
         {"share", c->sampled ? as_number(c->choice.share) : as_nothing(NULL)},
         {"level", as_number(c->choice.level)}, {"points", as_whole(c->points)},
         {".from", as_place(axis, c->order[0])}, {".to", as_place(axis, c->order[c->count - 1])},
-        {".rising", as_truth(c->value[1] > c->value[0])},
         {".interval", as_truth(c->sampled && !c->blocks && !whole)},
         {".least", as_truth(whole && !c->blocks)}, {".blocks", as_truth(c->blocks)},
-        {".again", as_truth(again)}, {".unseen", as_number(unseen)},
+        {".again", as_truth(again)}, {".unsure", as_truth(unsure)}, {".unseen", as_number(unseen)},
         {".unit", as_text(strcmp(axis->unit, "1") == 0 ? "" : axis->unit)});
     return table_say(form, table_show(basin_titled(c->r, facts), "rows", &t, view, CRITICAL_SHOWN),
                      text, &t);

@@ -8,7 +8,7 @@
 
 enum { CRITICAL_SHOWN = 60 }; /* rows that people see */
 
-/* False: memory or the output fails. */
-bool critical_print(const struct critical *critical, enum table_form form);
+/* `within`: what the outcome was narrowed to, "" for nothing. False: memory or the output fails. */
+bool critical_print(const struct critical *critical, const char *within, enum table_form form);
 
 #endif

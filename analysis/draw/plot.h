@@ -93,6 +93,10 @@ void plot_say_answer(struct gnuplot *g, const struct plot_answer *answer);
       "  ... of rays         NAME-rays: where rays from the equilibrium lose the outcome, over\n"  \
       "                      two factors as a curve around it, over more the share of\n"           \
       "                      directions by scale\n")                                               \
+    X(critical,                                                                                    \
+      "  one refined axis    NAME-critical: up to where along it the outcome is kept, over one\n"  \
+      "                      other axis as a curve, with what is kept again beyond, over two as\n" \
+      "                      a map (stance critical -h)\n")                                        \
     X(maps,                                                                                        \
       "  two axes or more    NAME-map: the outcome of every case over the last two axes of\n"      \
       "                      numbers, one panel per point of the others; NAME-settle_time: when\n" \

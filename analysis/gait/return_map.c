@@ -10,6 +10,7 @@
 
 #define LONGEST 100    /* s, until the last footfall */
 #define NEAR 1e-7      /* m: a foot on the ground */
+#define FAR 1e6        /* m: behind all feet */
 #define SYMMETRIC 1e-9 /* of the energy, and so on: legs that are alike */
 #define SLIDES 1e-6    /* m/s */
 
@@ -67,7 +68,7 @@ bool return_map_state(const struct return_map *map, const double *z, double *pos
     }
     double gap = 1;
     for (int round = 0; round < 30 && fabs(gap) > 1e-15; round++) {
-        gap = gap_of(map, position);
+        gap = gap_of(map, position) - map->behind;
         const double slope = slope_of(map, position, left);
         if (!(fabs(slope) > 1e-6))
             return false;
@@ -144,6 +145,34 @@ static bool returned(const struct return_map *map, const stance_case *c, const s
     return false;
 }
 
+/* Ground under the foot behind, where it is not that under the other one: before all pieces that
+ * there are, up to half-way between the feet. */
+static bool lay_behind(const struct return_map *map, stance_case *c, stance_message *message)
+{
+    stance_tree_numbers *const body = &c->body;
+    double place[2][2], speed[2];
+    if (map->behind == 0 || body->plates == 0)
+        return true;
+    if (body->plates > STANCE_MAX_PLATES - 2)
+        return refuse(message, "ground.plates has too many pieces: two more are laid, for the foot "
+                               "behind");
+    for (int k = 0; k < 2; k++)
+        return_map_foot(map, c->position, c->velocity, k, place[k], speed);
+    memmove(body->plate + 2, body->plate, (size_t)body->plates * sizeof *body->plate);
+    memmove(body->plate_kind + 2, body->plate_kind,
+            (size_t)body->plates * sizeof *body->plate_kind);
+    const double from[2] = {-FAR, 0.5 * (place[0][0] + place[1][0])};
+    const bool ahead = place[1][0] < place[0][0];
+    for (int k = 0; k < 2; k++) {
+        const double height = (k == 0) == ahead ? map->behind : 0;
+        body->plate_kind[k] = STANCE_PLATE;
+        body->plate[k] =
+            (stance_plate_numbers){.from = from[k], .height = height, .friction_factor = 1};
+    }
+    body->plates += 2;
+    return true;
+}
+
 static bool take(const struct return_map *map, size_t count, const double (*z)[RETURN_MAP_MOST],
                  long before, struct return_point *point, stance_message *message)
 {
@@ -155,6 +184,7 @@ static bool take(const struct return_map *map, size_t count, const double (*z)[R
         cases[i].footfalls = map->steps;
         good = return_map_state(map, z[i], cases[i].position, cases[i].velocity) ||
                refuse(message, "both feet are not on the ground at once: no such posture is near");
+        good = good && lay_behind(map, &cases[i], message);
     }
     if (good)
         map->kernel->run(cases, results, count);
@@ -164,7 +194,9 @@ static bool take(const struct return_map *map, size_t count, const double (*z)[R
         if (!good)
             break;
         const bool second = map->steps % 2;
-        section_of(map, results[i].position, results[i].velocity, second, point[i].z, NULL);
+        double posture[STANCE_MAX_COORDINATES];
+        section_of(map, results[i].position, results[i].velocity, second, point[i].z, posture);
+        point[i].behind = gap_of(map, posture);
         return_map_foot(map, results[i].position, results[i].velocity, second, end, speed);
         if (hypot(speed[0], speed[1]) > SLIDES) {
             good =
@@ -302,9 +334,11 @@ static bool check(const stance_case *c, const stance_kernel *kernel, int steps,
     if (c->restitution > 0)
         return refuse(message, "a foot that rebounds is not on the ground after its footfall: set "
                                "ground.restitution to 0");
-    if (c->body.plates > 0)
-        return refuse(message, "on uneven ground no step is as the one before: leave out "
-                               "ground.plates");
+    for (int k = 0; k < c->body.plates; k++)
+        if (c->body.plate[k].footfall == 0 && c->body.plate[k].height != 0)
+            return refuse(message, "on uneven ground no step is as the one before: leave out "
+                                   "ground.plates, but for one with footfall: 1 and height: 0 that "
+                                   "--sensitivity varies");
     if (timed(c))
         return refuse(message,
                       "a gait has no time of its own: pushes, ramps and integrals of a run "
@@ -390,7 +424,7 @@ bool return_map_begin(struct return_map *map, const stance_case *c, const stance
         if (map->foot[leg] < 0)
             return refuse(message,
                           "at a footfall one contact of each leg, no more, has to be on the "
-                          "ground");
+                          "ground, which is the same plane in each step of a gait");
     }
     const bool second = lands_second(scene, c, &r);
     map->n = 2 * scene->postures - 1;

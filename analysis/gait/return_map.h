@@ -22,12 +22,15 @@ struct return_map {
     int n;       /* coordinates of the section */
     stance_case base;
     double posture[STANCE_MAX_COORDINATES]; /* where the angle that follows is looked for */
+    double behind; /* m: height of the foot behind over the ground under the other one, where a
+                    * return begins; 0 in a gait */
 };
 
 /* What became of a point: where it returned to, after how long and how far along the ground. */
 struct return_point {
     double z[RETURN_MAP_MOST];
     double time, length; /* s, m */
+    double behind;       /* m, as above, where it ends: not 0 on ground that is not even */
     stance_result result;
 };
 

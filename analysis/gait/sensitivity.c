@@ -1,11 +1,18 @@
 /* sensitivity.c - the gait sensitivity norm of Hobbelen and Wisse (IEEE Trans. Robotics 23 (2007)
  * 1213): the H2 norm from a disturbance of each step to how the gait answers.
  *
- * With the return map's derivative A, and the returns' changes B and D by the disturbance e, C by
- * the section's coordinates z,
- *     z' = A z + B e,  g = C z + D e:    var g = var e (D^2 + sum over k >= 0 of (C A^k B)^2)
- * for e that are independent of each other. B and D are central differences over the whole range of
- * the number and over half of it, extrapolated; how far these are apart is the error that is told.
+ * A return begins at the section's coordinates z and with the foot behind at a height f over the
+ * ground of the one in front, which is not 0 where a step of the ground lies between them. With the
+ * derivatives of the map by them and by the disturbance e, to first order
+ *     z' = A z + F f + B e,  f' = G e,  g = C z + H f + D e
+ * (a foot behind has been the one that stands, so that f' is what e did, no more). Of an e in one
+ * return g is D e there, (C B + H G) e in the next one, and C A^k (A B + F G) e from the one after
+ * that on, k = 0, 1, ...; of such e that are independent of each other
+ *     var g = var e (D^2 + (C B + H G)^2 + sum over k >= 0 of (C A^k (A B + F G))^2)
+ * The first two returns are simulated, one after the other, the second with e = 0 from where the
+ * first one ended: central differences over the whole range of the number and over half of it,
+ * extrapolated; how far these are apart is the error that is told. On even ground f is 0, and this
+ * is the sum of C A^k B.
  */
 #include "sensitivity.h"
 
@@ -19,13 +26,15 @@
 extern const struct command command_gait;
 
 enum { MEASURES = 3, STEPS_MOST = 100000 }; /* time, length, speed */
+/* After two returns: the section's coordinates, then time and length of both returns. */
+enum { ANSWERS_MOST = RETURN_MAP_MOST + 4 };
 #define MIDDLE 0.05 /* of what the range changes: so far off may the middle's return be */
 #define EXACT 1e-6  /* as gait.c admits */
 
 struct change {
     struct return_map map;
     const double *z;
-    struct return_point point;
+    struct return_point point[2];
     stance_message *message;
 };
 
@@ -35,21 +44,36 @@ static int take(const struct scenario *s, const stance_case *c, void *context)
     (void)s;
     return return_map_change(&change->map, c, change->message) &&
                    return_map_take(&change->map, 1, (const double(*)[RETURN_MAP_MOST])change->z,
-                                   &change->point, change->message)
+                                   change->point, change->message)
                ? EXIT_DONE
                : EXIT_USAGE;
 }
 
-/* Where the gait returns to when the number has a value. */
-static bool at(const struct scenario *s, const char *path, double value, struct change *change)
+/* What comes of a gait whose next return has a value of the number, and the one after it none. */
+static bool at(const struct scenario *s, const char *path, double value,
+               const struct return_map *map, struct change *change, double *answer)
 {
-    struct scenario *const changed =
-        along_at(s->file, s->text, path, value, &change->map, change->z);
-    const bool good = changed && asked_first(&command_gait, changed, take, change) == EXIT_DONE;
+    change->map = *map;
+    struct scenario *const changed = along_at(s->file, s->text, path, value, map, change->z);
+    bool good = changed && asked_first(&command_gait, changed, take, change) == EXIT_DONE;
     scenario_drop(changed);
-    if (!good)
+    if (good) {
+        change->map = *map;
+        change->map.behind = change->point[0].behind;
+        good =
+            return_map_take(&change->map, 1, (const double(*)[RETURN_MAP_MOST])change->point[0].z,
+                            &change->point[1], change->message);
+    }
+    if (!good) {
         along_blame(path, value, change->message);
-    return good;
+        return false;
+    }
+    memcpy(answer, change->point[1].z, (size_t)map->n * sizeof *answer);
+    for (int k = 0; k < 2; k++) {
+        answer[map->n + 2 * k] = change->point[k].time;
+        answer[map->n + 2 * k + 1] = change->point[k].length;
+    }
+    return true;
 }
 
 /* Of measures g by time T and length L: T, L, L / T. */
@@ -60,15 +84,21 @@ static void measures(const struct gait *gait, double time, double length, double
     g[2] = (length - gait->at.length / gait->at.time * time) / gait->at.time;
 }
 
-/* Variances of the measures, by e of variance 1. */
-static void add_up(const struct return_map *map, const struct gait *gait, const double *B,
-                   const double *D, double variance[MEASURES])
+/* Variances of the measures, by e of variance 1 and what the answers are by it. */
+static void add_up(const struct return_map *map, const struct gait *gait, const double *by,
+                   double variance[MEASURES])
 {
     const int n = map->n;
     double z[RETURN_MAP_MOST], next[RETURN_MAP_MOST] = {0}, least = 0;
-    memcpy(z, B, sizeof z);
+    memcpy(z, by, (size_t)n * sizeof *z);
     for (int m = 0; m < MEASURES; m++)
-        variance[m] = D[m] * D[m];
+        variance[m] = 0;
+    for (int k = 0; k < 2; k++) {
+        double g[MEASURES];
+        measures(gait, by[n + 2 * k], by[n + 2 * k + 1], g);
+        for (int m = 0; m < MEASURES; m++)
+            variance[m] += g[m] * g[m];
+    }
     for (int k = 0; k < STEPS_MOST; k++) {
         double time = 0, length = 0, g[MEASURES], size = 0;
         for (int j = 0; j < n; j++) {
@@ -97,39 +127,36 @@ bool gait_sensitivity_find(const struct scenario *s, const struct return_map *ma
                            struct gait_sensitivity *sensitivity, stance_message *message)
 {
     const double middle = 0.5 * (along->from + along->to), range = along->to - along->from;
-    double by[2][RETURN_MAP_MOST + 2], B[RETURN_MAP_MOST], D[MEASURES], variance[MEASURES];
+    double by[2][ANSWERS_MOST], answer[2][ANSWERS_MOST], variance[MEASURES];
     double largest = 0, off = 0, aside = 0;
-    struct change *const change = malloc(2 * sizeof *change);
+    const int answers = map->n + 4;
+    struct change *const change = malloc(sizeof *change);
     bool good = change != NULL;
     if (!gait->stable) {
         snprintf(message->text, sizeof message->text,
                  "what each step adds grows without bound in a gait that does not hold");
         good = false;
     }
+    if (change)
+        *change = (struct change){.z = gait->z, .message = message};
     for (int k = 0; good && k < 2; k++) {
         const double width = k == 0 ? range : 0.5 * range;
-        for (int side = 0; good && side < 2; side++) {
-            change[side] = (struct change){.map = *map, .z = gait->z, .message = message};
-            good = at(s, along->path, middle + (side - 0.5) * width, &change[side]);
-        }
-        const struct return_point *const p = &change[0].point, *const q = &change[1].point;
-        for (int i = 0; good && i < map->n; i++)
-            by[k][i] = (q->z[i] - p->z[i]) / width;
-        by[k][map->n] = good ? (q->time - p->time) / width : 0;
-        by[k][map->n + 1] = good ? (q->length - p->length) / width : 0;
+        for (int side = 0; good && side < 2; side++)
+            good = at(s, along->path, middle + (side - 0.5) * width, map, change, answer[side]);
+        for (int i = 0; good && i < answers; i++)
+            by[k][i] = (answer[1][i] - answer[0][i]) / width;
     }
-    good = good && at(s, along->path, middle, &change[0]);
-    for (int i = 0; good && i < map->n + 2; i++) {
-        const struct return_point *const p = &change[0].point;
-        const double here = i < map->n    ? p->z[i] - gait->z[i]
-                            : i == map->n ? p->time - gait->at.time
-                                          : p->length - gait->at.length;
-        aside = fmax(aside, fabs(here));
+    good = good && at(s, along->path, middle, map, change, answer[0]);
+    free(change);
+    for (int i = 0; good && i < answers; i++) {
+        const double is = i < map->n              ? gait->z[i]
+                          : (i - map->n) % 2 == 0 ? gait->at.time
+                                                  : gait->at.length;
+        aside = fmax(aside, fabs(answer[0][i] - is));
         largest = fmax(largest, fabs(by[1][i]));
         off = fmax(off, fabs(by[1][i] - by[0][i]));
         by[1][i] += (by[1][i] - by[0][i]) / 3;
     }
-    free(change);
     if (good && aside > fmax(MIDDLE * largest * fabs(range), EXACT)) {
         snprintf(message->text, sizeof message->text,
                  "the gait is not one of the middle, %.60s=%.6g: give a range about the scenario's "
@@ -139,9 +166,7 @@ bool gait_sensitivity_find(const struct scenario *s, const struct return_map *ma
     }
     if (!good)
         return false;
-    memcpy(B, by[1], sizeof B);
-    measures(gait, by[1][map->n], by[1][map->n + 1], D);
-    add_up(map, gait, B, D, variance);
+    add_up(map, gait, by[1], variance);
     const double deviation = fabs(range) / sqrt(12); /* of what is even */
     *sensitivity = (struct gait_sensitivity){.time = deviation * sqrt(variance[0]),
                                              .length = deviation * sqrt(variance[1]),

@@ -37,6 +37,13 @@ bool plot_layout_is_table(const struct plot_layout *layout);
  */
 void plot_layout_note(const struct plot_layout *layout, struct gnuplot *g);
 
+/* A map of numbers, one for each of the plot's cases, NAN: none. False: see plot.h. */
+struct plot_number {
+    const char *picture, *said, *name, *unit, *none; /* none: the legend of cells without one */
+};
+bool plot_number_map(const struct plot *plot, const struct plot_number *number,
+                     const double *values);
+
 /* Place of zero on an axis of offsets; false when it is not on the map. */
 bool plot_zero_place(const struct plot_axis *along, double *place);
 /* A path as the titles of panels have it. */

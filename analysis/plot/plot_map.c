@@ -221,3 +221,16 @@ bool plot_answer_map(const struct plot *plot, const struct plot_answer *answer)
              answer->of == RESULTS_KIND_COUNT ? "" : results_kind_names[answer->of]);
     return end_measure(&map, answer->name, answer->unit, values, range, none);
 }
+
+bool plot_number_map(const struct plot *plot, const struct plot_number *number,
+                     const double *values)
+{
+    struct map map;
+    struct plot_range range;
+    if (!plot_range_of(&range, values, plot->r->cases))
+        return true; /* there is nothing to be drawn */
+    if (!begin(&map, plot, number->picture))
+        return false;
+    gnuplot_say(&map.g, "%s", number->said);
+    return end_measure(&map, number->name, number->unit, values, range, number->none);
+}

@@ -147,13 +147,13 @@ size_t statistics_nearest_zero(const struct results_axis *axis)
     return nearest;
 }
 
-/* Rising or falling from end to end. */
-static bool is_monotone(const struct results_axis *axis)
+bool statistics_is_monotone(const struct results_axis *axis)
 {
-    for (size_t i = 2; i < axis->count; i++)
-        if ((axis->value[i] > axis->value[i - 1]) != (axis->value[1] > axis->value[0]))
+    for (size_t i = 1; i < axis->count && !axis->word; i++)
+        if (axis->value[i] == axis->value[i - 1] ||
+            (axis->value[i] > axis->value[i - 1]) != (axis->value[1] > axis->value[0]))
             return false;
-    return true;
+    return !axis->word && axis->count > 1;
 }
 
 /* An end of an extent. */
@@ -186,7 +186,7 @@ bool statistics_extent(const struct results *r, int axis, const size_t *point,
     uint64_t base = 0;
 
     *extent = (struct statistics_extent){.low = NAN, .high = NAN};
-    if (!along->offset || along->word || along->count < 2 || !is_monotone(along))
+    if (!along->offset || !statistics_is_monotone(along))
         return false;
     for (int a = 0; a < r->axes; a++) {
         extent->point[a] = r->axis[a].offset ? statistics_nearest_zero(&r->axis[a]) : point[a];

@@ -78,6 +78,9 @@ struct statistics_extent {
 bool statistics_extent(const struct results *r, int axis, const size_t *point,
                        struct statistics_extent *extent);
 
+/* Whether it has numbers, several, that rise or fall from the first to the last. */
+bool statistics_is_monotone(const struct results_axis *axis);
+
 /* How many cases lie between neighbours along an axis. */
 uint64_t statistics_stride(const struct results *r, int axis);
 

@@ -204,9 +204,7 @@ static void advance_load(struct advance *a, int lane, const stance_case *c)
     advance_free(a);
     a->tolerance = c->tolerance;
     a->next = EVENT_LONGEST;
-    a->stops = c->follows || c->footfalls > 0 || c->walk_steps > 0;
-    for (int k = 0; k < c->body.plates; k++)
-        a->stops = a->stops || c->body.plate[k].footfall > 0;
+    a->stops = c->follows || c->footfalls > 0 || c->walk_steps > 0 || c->body.plates > 0;
     a->within = false;
     for (int i = 0; i < OWN_CONTACTS; i++)
         a->stood[i] = 0;

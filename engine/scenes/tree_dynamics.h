@@ -238,17 +238,14 @@ HOT void tree_reach(const scene_body *b, const scene_trig *trig, int c, int j, b
         return;
     }
     tree_arm(b, trig, tree_straight_end[c], b->end[c], j, tree_path[c], out);
-    if (!tangential || scene_other[c] < 0)
+    if (!tangential || scene_other[c] < 0 || scene_grip[c] != scene_grip[scene_other[c]])
         return;
     lanes other[2];
     tree_arm(b, trig, tree_straight_end[scene_other[c]], b->end[scene_other[c]], j, tree_path[c],
              other);
     /* Of ends that are level the first one; both contacts see the same. */
-    lanes height[2] = {out[1], other[1]};
-    if (tree_plates > 0)
-        height[0] = height[0] - b->floor[c], height[1] = height[1] - b->floor[scene_other[c]];
-    const mask lower = scene_other[c] < c ? mask_less(height[0], height[1])
-                                          : mask_less_equal(height[0], height[1]);
+    const mask lower =
+        scene_other[c] < c ? mask_less(out[1], other[1]) : mask_less_equal(out[1], other[1]);
     out[0] = choose(lower, out[0], other[0]);
     out[1] = choose(lower, out[1], other[1]);
 }

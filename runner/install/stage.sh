@@ -13,7 +13,7 @@ put() { # mode, where, files ...
 }
 rm -rf "$folder"
 put 755 bin "$stance"
-put 644 include/stance/engine engine/stance.h engine/mechanism.h engine/tree.h
+put 644 include/stance/engine engine/stance.h engine/tree_numbers.h engine/mechanism.h engine/tree.h
 put 644 include/stance/engine/control engine/control/design.h
 put 644 include/stance runner/objects/law/*.h
 put 644 lib "$build/libstance.a" "$build/libstance_control.a"

@@ -193,10 +193,10 @@ const struct part_key part_keys[] = {
         .more = "Behind them the last stair goes on; behind rough ground what was before it."},
         .grounds = SEVERAL},
     {PART_PLATE, {.path = "seed", PLATE(seed), .whole = true, .unit = "1", RANGE(0, 1e15),
-        .fallback = NAN, .fallback_text = "none, another ground in each case",
+        .fallback = NAN, .fallback_text = "none, another ground at each point of sweep.sample",
         .text = "which rough ground",
         .more = "The same in every case that has it. Else it follows from the study's seed and the "
-                "place of the case in the study."}, .grounds = ROUGH},
+                "number of the sample's point: the same along axes of the grid."}, .grounds = ROUGH},
     {PART_PLATE, {.path = "friction_factor", PLATE(friction_factor), .unit = "1",
         RANGE(0.01, 100), .fallback = 1, .text = "coefficient of friction there: so many times ground.friction",
         .more = "By the contact's own friction_factor, too."}, .grounds = ALL},

@@ -169,6 +169,10 @@ class Results(File_):
         """How large the basin is, and how sure that is: as of summary (`stance basin -h`)."""
         return answer(call, "basin", given, self.file)
 
+    def critical(self, **given: Any) -> Any:
+        """How far along a number the outcome is kept: as of summary (`stance critical -h`)."""
+        return answer(call, "critical", given, self.file)
+
     def sensitivity(self, **given: Any) -> Any:
         """Which factor of a sampled study decides: as of summary (`stance sensitivity -h`)."""
         return answer(call, "sensitivity", given, self.file)

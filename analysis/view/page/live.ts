@@ -1,5 +1,6 @@
 // live.ts - the panel of changes: every number and word of the scenario that may be changed, what is changed, and how the
 // map is computed anew.
+import { critical } from './critical';
 import { el } from './dom';
 import type { Field, ViewText } from './format';
 import { numberText } from './numbers';
@@ -23,6 +24,8 @@ export interface LiveEvents {
   describe(view: View): Promise<ViewText>; // throws with the reader's complaint
   stop(): void;
   command(): HTMLElement | null; // that computes the map in sight
+  kind(view: View, index: number): Promise<number>; // how a case ends
+  kindName(kind: number): string;
 }
 
 export class Live {
@@ -172,6 +175,28 @@ export class Live {
     return rest && this.text?.designed && this.base.has(model) ? model : null;
   }
 
+  // How far a number may go either way before the first case that is played ends otherwise.
+  private async seek(f: Field, ends: [number, number], told: HTMLElement): Promise<void> {
+    const ref = this.store.state.cases[0];
+    if (!ref) throw new Error('of which case? Click one.');
+    const model = this.designModel(f.path);
+    const others = ref.view.filter((c) => pathOf(c) !== f.path);
+    if (model && !others.some((c) => pathOf(c) === model)) others.push(`${model}=${this.fileText(f.path)}`);
+    const from = Number(ref.view.filter((c) => pathOf(c) === f.path).map(textOf).pop() ?? this.fileText(f.path));
+    if (!Number.isFinite(from)) throw new Error('it is no number to begin with');
+    const simulate = (x: number): Promise<number> => this.events.kind([...others, `${f.path}=${x}`], ref.index);
+    told.textContent = '\u2026';
+    const of = await simulate(from);
+    const say: string[] = [];
+    for (const [word, to] of [['up to', ends[1]], ['down to', ends[0]]] as const) {
+      if (word === 'up to' ? to <= from : to >= from) continue;
+      const c = await critical(simulate, of, from, to);
+      const again = c.again.map(([a, b]) => `${numberText(a, 4)} \u2026 ${numberText(b, 4)}`).join(', ');
+      say.push(`${word} ${numberText(c.kept, 5)}${c.lost === null ? ' and perhaps beyond' : ` (then ${this.events.kindName(c.kind)}${again ? `; again ${again}` : ''})`}`);
+    }
+    told.textContent = `case ${ref.index} is ${this.events.kindName(of)} ${say.join(', ')}`;
+  }
+
   // The map is computed anew: with another resolution, or of the window in sight.
   private request(resize: boolean): void {
     const { state } = this.store;
@@ -227,6 +252,12 @@ export class Live {
       this.change(f, slider.value);
     } });
     top.append(slider, input);
+    if (f.type === 'number' && !f.swept) {
+      const told = el('p', { class: 'muted critical', role: 'status' });
+      const ask = (): void => void this.seek(f, [Number(slider.min), Number(slider.max)], told).catch((problem: Error) => (told.textContent = problem.message));
+      top.append(el('button', { type: 'button', class: 'small', title: 'how far this number may go, within the slider, before the case that is played ends otherwise', onclick: ask }, 'how far?'));
+      row.append(told);
+    }
     this.fit(slider, f, Number(f.value ?? NaN));
     this.rows.set(f.path, { row, error, set: (v) => {
       if (document.activeElement !== input) input.value = v;

@@ -3,6 +3,7 @@ import { Cases } from './cases';
 import { chartsPage } from './charts';
 import { Data, isCut, whole } from './data';
 import { byId, complain, el } from './dom';
+import type { Results } from './engine';
 import type { ViewText } from './format';
 import { Live } from './live';
 import { MapPart } from './map_part';
@@ -123,6 +124,8 @@ function cases(data: Data, store: Store, parts: (() => void)[]): void {
       },
       stop: () => map.stop(),
       command: () => map.command(),
+      kind: async (view, index) => (await (await pool)!.ask<Results>(view, 'run', [Float64Array.of(single ? 0 : index)], true)).kinds[0],
+      kindName: (kind) => data.head.kinds[kind].name,
     });
   parts.push(() => map.redraw(), () => play.redraw());
   let steps = 0;

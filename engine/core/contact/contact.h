@@ -77,7 +77,7 @@ HOT int contact_unknowns(int c)
 /* The second end of the sole whose friction contact c holds; -1: it holds none's. */
 HOT int contact_second(int c)
 {
-    return scene_other[c] > c ? scene_other[c] : -1;
+    return scene_other[c] > c && contact_grip(scene_other[c]) == c ? scene_other[c] : -1;
 }
 /* A point or a disc: nothing else has part in its friction. */
 HOT bool contact_is_point(int c)

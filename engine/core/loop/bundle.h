@@ -52,8 +52,10 @@ struct plates {
     lanes moved[SCENE_PLACES];     /* ... by how much it has come along in the last step ... */
     lanes low[SCENE_PLACES], high[SCENE_PLACES]; /* ... and from where to where its plate is */
     lanes roof[CONTACTS];                        /* height of that ... */
-    lanes top[CONTACTS];                         /* ... and of the higher one of those beside it */
+    lanes top[CONTACTS],
+        bottom[CONTACTS];    /* ... and of the highest and lowest of it and those beside it */
     lanes inside[CONTACTS];  /* 0: above it; or it stands inside, or has no ground there */
+    lanes dropped[CONTACTS]; /* height from which it drops off an edge; -INFINITY: it does not */
     lanes landing[CONTACTS]; /* height on which a step that is taken again is to land; NAN */
     lanes cut;               /* s, of the step: its next piece ends there, at the latest */
 };

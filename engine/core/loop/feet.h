@@ -28,6 +28,13 @@ static inline mask feet_landed(const struct bundle *b, int c)
     return feet_down(b, c) & mask_less_equal(lanes_of(-FEET_REST), b->now.approach[c]);
 }
 
+/* The foot that contact c belongs to: a sole is one. */
+HOT int feet_of(int c)
+{
+    return contact_grip(c) >= 0 && scene_other[c] >= 0 && scene_other[c] < c ? scene_other[c]
+                                                                             : contact_grip(c);
+}
+
 /* The leg that contact c belongs to stands from now on, in the lanes of `where`. */
 COLD void feet_stand(struct bundle *b, mask where, int c)
 {
@@ -99,7 +106,7 @@ HOT void feet_choose(struct bundle *b, mask live)
     EACH_CONTACT (c, 0) {
         mask behind = MASK_NONE;
         EACH_CONTACT (k, 0)
-            if (contact_grip(k) != contact_grip(c))
+            if (feet_of(k) != feet_of(c))
                 behind |= down[k] & mask_less_equal(along[c], along[k]);
         const mask lands = mask_less(lanes_of(STEP_CLOSED), b->now.gap[c]) & LANES_NOT(behind);
         b->set.may_touch[c] =
@@ -112,7 +119,7 @@ HOT void feet_choose(struct bundle *b, mask live)
 COLD void feet_count(struct bundle *b, mask live, const mask *before)
 {
     EACH_CONTACT (c, 0) {
-        const int foot = contact_grip(c);
+        const int foot = feet_of(c);
         if (foot < 0)
             continue;
         const mask other =

@@ -3,9 +3,12 @@
  * A contact is above the plate that it is over, its gap is from there, and the plate does not
  * change within a step: nothing else of a step knows that there are any. At the end of one it is
  * seen which contacts have come over another plate. An edge is no wall. What is above the new plate
- * has that from now on: what slid over an edge has lost what it stood on. What is not, as it was
- * pushed against a riser, goes on at its height while it stays on it; in the air, or once it lifts
- * off, it has no ground, until it is above the surface again.
+ * has that from now on: what slid over an edge has lost what it stood on. What stands, and is
+ * pushed against a riser, keeps the plate that it stood on, on which it comes down again should it
+ * lift off, until it is above the surface; so does what drops off an edge and meets a riser before
+ * it has landed, or it would lose all ground on steps of no height. What comes into a riser through
+ * the air, as a foot that was not lifted high enough, has no ground until it is above the surface.
+ * Floors are left for lower ones only, by which nothing gains energy.
  *
  * Where that makes a difference (it stands, or may have met the higher of both plates in the step)
  * the crossing has to be the end of a step. With methods whose steps may be of any length the step
@@ -19,7 +22,7 @@
 #define STANCE_CORE_LOOP_PLATES_H
 
 #include "bundle.h"
-#include "ground.h"
+#include "engine/ground.h"
 
 #if SCENE_PLATES
 
@@ -69,10 +72,12 @@ HOT mask plates_near(const struct bundle *b)
         const lanes fall = lanes_fma(2 * b->h, lanes_abs(b->now.approach[c]), lanes_of(1e-5));
         const lanes room = lanes_min(b->plates.along[c] - b->plates.low[c],
                                      b->plates.high[c] - b->plates.along[c]);
-        const lanes above =
-            lanes_min(b->now.gap[c], b->now.gap[c] + (b->set.body.floor[c] - b->plates.top[c]));
+        const lanes z = b->now.gap[c] + b->set.body.floor[c];
+        const mask under = mask_less(z + fall, b->plates.bottom[c]) &
+                           mask_less(b->now.gap[c], lanes_of(-STEP_CLOSED));
+        const mask clear = under | mask_less(b->plates.top[c] + fall, z);
         const mask narrow = mask_less(b->plates.high[c] - b->plates.low[c], way);
-        near |= mask_less(room, way) & (mask_less(above, fall) | narrow);
+        near |= mask_less(room, way) & (narrow | LANES_NOT(clear));
     }
     return b->live & near;
 }
@@ -103,21 +108,26 @@ static void plates_floor(struct bundle *b, int lane, int c, double z, double flo
     lane_set(&b->now.gap[c], lane, z - floor);
 }
 
-/* What a contact has for ground that is over `at`: see above. */
-static void plates_set(struct bundle *b, int lane, int c, const struct ground *at)
+/* What a contact has for ground that is over `at`: see above. Whether it is another one than it
+ * stood on, or stands on now. */
+static bool plates_set(struct bundle *b, int lane, int c, const struct ground *at)
 {
     const double z = lane_get(&b->now.gap[c], lane) + lane_get(&b->set.body.floor[c], lane);
     const bool above = z >= at->height - PLATES_NEAR;
     const bool stands = lane_get(&b->set.may_touch[c], lane) > 0 &&
                         lane_get(&b->plates.inside[c], lane) < PLATES_NO_GROUND &&
                         lane_get(&b->now.gap[c], lane) <= STEP_CLOSED;
+    const double floor = lane_get(&b->set.body.floor[c], lane);
+    const bool drops = z <= lane_get(&b->plates.dropped[c], lane) + PLATES_NEAR;
     lane_set(&b->plates.roof[c], lane, at->height);
-    if (!above && stands) {
+    if (!above && (stands || drops || lane_get(&b->plates.inside[c], lane) == PLATES_STANDS)) {
         lane_set(&b->plates.inside[c], lane, PLATES_STANDS);
-        return;
+        return false;
     }
     const bool inside = lane_get(&b->plates.inside[c], lane) >= PLATES_NO_GROUND;
     plates_floor(b, lane, c, z, at->height);
+    if (stands && at->height < floor - PLATES_NEAR)
+        lane_set(&b->plates.dropped[c], lane, floor);
     lane_set(&b->plates.inside[c], lane, above ? 0 : PLATES_NO_GROUND);
     if (!above)
         lane_set(&b->set.may_touch[c], lane, 0);
@@ -125,10 +135,11 @@ static void plates_set(struct bundle *b, int lane, int c, const struct ground *a
         lane_set(&b->set.may_touch[c], lane, 1);
     if (tree_rough[c])
         lane_set(&b->set.body.rough[c], lane, b->which[lane]->body.rough[c] * at->factor);
+    return stands || lane_get(&b->now.gap[c], lane) <= STEP_CLOSED;
 }
 
-/* Place k is where it is over another plate. */
-static void plates_step_on(struct bundle *b, int lane, int k)
+/* Place k is where it is over another plate. Whether that changes what it stands on. */
+static bool plates_step_on(struct bundle *b, int lane, int k)
 {
     struct ground at;
     plates_at(b, lane, lane_get(&b->plates.along[k], lane), &at);
@@ -138,11 +149,12 @@ static void plates_step_on(struct bundle *b, int lane, int k)
         struct ground left, right;
         plates_at(b, lane, nextafter(at.low, -INFINITY), &left);
         plates_at(b, lane, at.high, &right);
-        lane_set(&b->plates.top[k], lane, fmax(left.height, right.height));
-        plates_set(b, lane, k, &at);
-    } else {
-        lane_set(&b->set.body.floor[k], lane, at.height);
+        lane_set(&b->plates.top[k], lane, fmax(at.height, fmax(left.height, right.height)));
+        lane_set(&b->plates.bottom[k], lane, fmin(at.height, fmin(left.height, right.height)));
+        return plates_set(b, lane, k, &at);
     }
+    lane_set(&b->set.body.floor[k], lane, at.height);
+    return false;
 }
 
 /* At the beginning of the cases in `fresh`: pieces that are laid before a footfall are not there.
@@ -165,6 +177,7 @@ COLD void plates_begin(struct bundle *b, mask fresh)
             if (k < CONTACTS) {
                 lane_set(&b->plates.inside[k], lane, 0);
                 lane_set(&b->plates.landing[k], lane, NAN);
+                lane_set(&b->plates.dropped[k], lane, -INFINITY);
             }
             plates_step_on(b, lane, k);
         }
@@ -186,7 +199,7 @@ COLD void plates_footfall(struct bundle *b, int lane, double footfalls, double x
             plates_step_on(b, lane, k);
 }
 
-/* What lifts off inside a plate has no ground from now on; what comes out of one has. */
+/* What comes out of a plate is above it. What has landed drops no more, nor what has risen. */
 HOT void plates_inside(struct bundle *b, mask ok)
 {
     mask changes = MASK_NONE;
@@ -195,7 +208,10 @@ HOT void plates_inside(struct bundle *b, mask ok)
             continue;
         const lanes z = b->now.gap[c] + b->set.body.floor[c];
         const mask in = ok & mask_less(lanes_of(0), b->plates.inside[c]);
-        changes |= in & mask_less(lanes_of(STEP_CLOSED), b->now.gap[c]);
+        const mask ends = ok & (mask_less_equal(b->now.gap[c], lanes_of(STEP_CLOSED)) |
+                                mask_less(b->plates.dropped[c] + PLATES_NEAR, z));
+        b->plates.dropped[c] = choose(ends, lanes_of(-INFINITY), b->plates.dropped[c]);
+        changes |= in & mask_less(b->plates.roof[c] + STEP_CLOSED, z);
         b->answer.through_ground =
             choose(in, lanes_max(b->plates.roof[c] - z, b->answer.through_ground),
                    b->answer.through_ground);
@@ -205,8 +221,7 @@ HOT void plates_inside(struct bundle *b, mask ok)
     for (int lane = 0; lane < LANES; lane++)
         for (int c = 0; c < CONTACTS && b->which[lane] && mask_get(changes, lane); c++) {
             SCENE_BEGIN(b->which[lane]);
-            if (plates_has(c) && lane_get(&b->plates.inside[c], lane) > 0 &&
-                lane_get(&b->now.gap[c], lane) > STEP_CLOSED)
+            if (plates_has(c) && lane_get(&b->plates.inside[c], lane) > 0)
                 plates_step_on(b, lane, c);
         }
 }
@@ -214,7 +229,7 @@ HOT void plates_inside(struct bundle *b, mask ok)
 /* The lanes of `ok` have moved on; some places may be over other plates now. */
 HOT void plates_follow(struct bundle *b, mask ok)
 {
-    mask off = MASK_NONE;
+    mask off = MASK_NONE, taken[CONTACTS];
     EACH_PLACE (k) {
         const lanes x = plates_along(b, k);
         b->plates.moved[k] = choose(ok, lanes_abs(x - b->plates.along[k]), b->plates.moved[k]);
@@ -222,7 +237,8 @@ HOT void plates_follow(struct bundle *b, mask ok)
         off |= ok & plates_off(b, k, x);
     }
     EACH_CONTACT (c, 0) { /* a step that was taken again began on what it was to land on */
-        off |= ok & mask_less(b->plates.landing[c], lanes_of(INFINITY));
+        taken[c] = ok & mask_less(b->plates.landing[c], lanes_of(INFINITY));
+        off |= taken[c];
         b->plates.landing[c] = choose(ok, lanes_of(NAN), b->plates.landing[c]);
     }
     plates_inside(b, ok);
@@ -232,10 +248,15 @@ HOT void plates_follow(struct bundle *b, mask ok)
         if (!b->which[lane] || !mask_get(off, lane))
             continue;
         SCENE_BEGIN(b->which[lane]);
-        EACH_PLACE (k)
-            plates_step_on(b, lane, k);
+        bool changes = false;
+        EACH_PLACE (k) {
+            const mask gone = plates_off(b, k, b->plates.along[k]);
+            if (mask_get(gone, lane) || (k < CONTACTS && mask_get(taken[k], lane)))
+                changes |= plates_step_on(b, lane, k);
+        }
+        if (changes)
+            advance_forget(&b->advance, mask_of_lane(lane));
     }
-    advance_forget(&b->advance, off);
 }
 
 /* The highest and the lowest plate between two places, ends included; 1: more than are looked at.

@@ -3,13 +3,14 @@
  * Along the ground, from left to right, it is the plane, of height 0, and from where a piece begins
  * what that says: of those that begin at x or before it the last in the list holds. Heights are
  * normal to the plane, which a slope tilts with all that is on it. Rough ground is a function of
- * its seed, or of the case's place in its study, and of the number of the plate alone: Philox
- * (Salmon et al., SC11), so that it is the same whoever asks, in whatever order.
+ * its seed, or of the study's and of the number of the sample's point (not of the place in the
+ * grid: along an axis nothing differs but what it says), and of the number of the plate alone:
+ * Philox (Salmon et al., SC11), so that it is the same whoever asks, in whatever order.
  */
-#ifndef STANCE_CORE_LOOP_GROUND_H
-#define STANCE_CORE_LOOP_GROUND_H
+#ifndef STANCE_GROUND_H
+#define STANCE_GROUND_H
 
-#include "engine/stance.h"
+#include "stance.h"
 
 #include <Random123/philox.h>
 #include <math.h>
@@ -27,9 +28,8 @@ static inline double ground_random(const stance_case *c, int piece, double numbe
 {
     const double seed = c->body.plate[piece].seed;
     const bool own = seed < 0;
-    const philox4x64_ctr_t counter = {{own ? c->grid_index : (uint64_t)seed,
-                                       own ? c->sample_index : 0, (uint64_t)(int64_t)number,
-                                       (uint64_t)piece + (own ? 0 : STANCE_MAX_PLATES)}};
+    const philox4x64_ctr_t counter = {
+        {own ? c->sample_index : (uint64_t)seed, own, (uint64_t)(int64_t)number, (uint64_t)piece}};
     const philox4x64_key_t key = {{c->seed, GROUND_KEY}};
     return ldexp((double)(philox4x64(counter, key).v[0] >> 11), -52) - 1;
 }

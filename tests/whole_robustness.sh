@@ -1,0 +1,44 @@
+#!/usr/bin/env bash
+# How robust a gait is, in a study's reduced form: pushes, steps, slopes, floors, noise and rough ground of the paper's biped,
+# and of gaits like its own what is cheap to compute beside what they walk over; and steps of the ground in `stance gait`.
+# Speaks TAP.
+# about: analysis/gait analysis/critical analysis/python runner/run
+set -u
+. "$(dirname "$0")/scratch.sh"
+walks=$shipped/gaits/walk_pushes.yaml
+
+# ---- steps of the ground -------------------------------------------------------------------------
+step='ground.plates={step: {footfall: 1, from: 0.1, height: 0}}'
+by=(--sensitivity ground.plates.step.height=-0.001..0.001)
+expect "by how much steps of the ground vary a gait" 0 "$stance" gait "$walks" --set "$step" "${by[@]}"
+grep -qE '^  ground.plates.step.height +-0.001 +0.001 +1\.8[12][0-9]*e-02 +1\.5[67][0-9]*e-03 ' log
+result $? "... counts what they do to the step after"
+expect "a step that is there each time" 2 "$stance" gait "$walks" --set "${step/height: 0/height: 0.01}"
+grep -q 'the same plane in each step' log
+result $? "... is of no gait"
+expect "nor is ground that is uneven where it is" 2 "$stance" gait "$walks" --set 'ground.plates={up: {from: 0.4, height: 0.01}}'
+grep -q 'but for one with footfall: 1' log
+result $? "... which says which ground is"
+
+# ---- the study -----------------------------------------------------------------------------------
+if ! "$python" -c 'import h5py, xarray, yaml' 2>/dev/null || ! command -v gnuplot >/dev/null; then
+    skip "a study of robustness" "no python3-h5py, python3-xarray, python3-yaml or gnuplot"
+else
+    expect "a study of robustness" 0 env PYTHONPATH="$tests/../analysis/python" "$python" "$shipped/gaits/robustness.py" --quick study
+    "$python" - >log 2>&1 <<'END_'
+import csv
+rows = {row["what"]: [float(row[end] or "nan") for end in ("value", "low", "high")] for row in csv.DictReader(open("study/robustness.csv"))}
+brackets = {"push forwards at 0/4": (2.3, 2.9), "push backwards at 0/4": (0.6, 1.4), "step down": (25, 32), "step up": (3, 10),
+            "slope down": (0.04, 0.07), "least friction": (0.46, 0.51)}
+for what, (low, high) in brackets.items():
+    assert low <= rows[what][1] <= rows[what][2] <= high, (what, rows[what])
+share, low, high = rows["share of grounds of 1 mm"]
+assert low < share == 1 <= high, rows
+gaits = list(csv.DictReader(open("study/robust_gaits.csv")))
+assert len(gaits) >= 2 and all(float(g["multiplier"]) < 1 and float(g["norm_period"]) > 0 for g in gaits), gaits
+END_
+    result $? "... has brackets, shares and gaits that hold"
+    [ "$(head -c 4 study/robustness.png | tail -c 3)" = PNG ]
+    result $? "... and a picture"
+fi
+echo "1..$count"
