@@ -143,10 +143,11 @@ def balls_bounce_on_any_ground():
             if (turned(slope).T @ [0, case[2], 0, 0])[1] > Ground(ground).height(case[2] * -sin(slope)):
                 cases, grounds, known = cases + [case], grounds + [ground], known + [bounce(ground, *case, 0.9, slope)]
         state, lay = np.array([k[0] for k in known]), np.array([k[1].lay for k in known])
+        clear = np.array([not k[1].inside for k in known])  # what bounces on inside a riser is not followed here
         assert 0.1 < lay.mean() < 0.6 and max(k[1].inside for k in known) > 0.05
         for method, close in ("event-driven", 1e-10), ("capturing", 2e-6), ("lagrange", 1e-8):
             found = bouncing(grounds[0], method, 0.005, 0.9, cases, slope, numbers_of(grounds))
-            gives_up, counts = found["failure"] == 6, ~lay | (method == "capturing")
+            gives_up, counts = found["failure"] == 6, ~lay | (method == "capturing") & clear
             assert (gives_up & counts).sum() <= (0 if method == "capturing" else len(cases) / 100)
             whole = counts & ~gives_up
             near(states(found, "x", "z", "vx", "vz")[whole], state[whole], close, f"{method}, slope {slope}")
