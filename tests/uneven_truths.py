@@ -28,22 +28,22 @@ def philox(counter, key):
     return c
 
 
-MOST_PIECES, PLATES = 8, 0x706C6174
+PLATES = 0x706C6174
 
 
 class Ground:
     """Pieces as a scenario has them, a dict by name. `begins`: where those before a footfall begin."""
-    def __init__(self, plates=None, seed=1, grid=0, sample=0, begins=None):
+    def __init__(self, plates=None, seed=1, sample=0, begins=None):
         self.pieces = list((plates or {}).values())
-        self.place = seed, grid, sample
+        self.place = seed, sample
         given = iter(begins or [])
         self.begin = [next(given, inf) if p.get("footfall") else p["from"] for p in self.pieces]
 
     def random(self, k, number):
         """-1 ... 1, of a plate of piece k."""
-        seed, grid, sample = self.place
+        seed, sample = self.place
         own = self.pieces[k].get("seed")
-        counter = (grid, sample, number % 2**64, k) if own is None else (int(own), 0, number % 2**64, k + MOST_PIECES)
+        counter = (sample if own is None else int(own), own is None, number % 2**64, k)
         return (philox(counter, (seed, PLATES))[0] >> 11) / 2**52 - 1
 
     def at(self, x, pieces=None):
@@ -119,27 +119,29 @@ class Point:
         self.state[0] = end
 
     def fly(self):
-        """To the next landing, or to the end."""
-        has = self.state[1] >= self.over()[0] - 1e-15
+        """To the next landing, or to the end. A floor that it has it keeps below a surface, if it dropped off an edge."""
+        if self.floor is None and self.state[1] >= self.over()[0] - 1e-15:
+            self.floor = self.over()[0]
         while self.left > 0:
             height, _, low, high = self.over()
             there, end = self.edge(self.pull, low, high)
             _, z, _, vz = self.state
-            fall = (vz + sqrt(vz * vz + 2 * self.weight * (z - height))) / self.weight if has else root(-self.weight / 2, vz, z - height)
-            if min(there, fall) >= self.left:
-                self.deeper(has, height, self.left)
-                return self.move(self.left, self.pull, -self.weight)
-            if fall <= there:
-                self.move(fall, self.pull, -self.weight)
-                self.state[1] = height
-                if has:
-                    return self.land(height)
-                has = True
-                continue
-            self.deeper(has, height, there)
-            self.move(there, self.pull, -self.weight)
-            self.come_to(end)
-            has = self.state[1] >= self.over()[0]
+            fall = inf if self.floor is None else (vz + sqrt(vz * vz + 2 * self.weight * (z - self.floor))) / self.weight
+            rise = root(-self.weight / 2, vz, z - height) if z < height and vz > 0 else inf
+            t = min(there, fall, rise, self.left)
+            self.deeper(self.floor is not None, height, t)
+            self.move(t, self.pull, -self.weight)
+            if t == there:
+                self.come_to(end)
+                if self.state[1] >= self.over()[0]:
+                    self.floor = self.over()[0]
+                elif not self.drops:
+                    self.floor = None
+            elif t == rise:
+                self.state[1] = self.floor = height
+            elif t == fall:
+                self.state[1] = self.floor
+                return self.land(self.floor)
         return None
 
     def deeper(self, has, height, t):
@@ -149,6 +151,7 @@ class Point:
 
     def land(self, height):
         x, _, vx, vz = self.state
+        self.drops = self.floor < self.over()[0]  # what has come down in a riser keeps that floor there
         self.landings.append((self.now, x, height))
         factor = self.over()[1]
         self.state[2] = vx - (1 if vx > 0 else -1) * min(abs(vx), -self.mu * factor * vz)
@@ -156,7 +159,7 @@ class Point:
 
     def rest_of_bounces(self):
         """All that are left, where they end before the next edge and the end; else None."""
-        height, _, low, high = self.over()
+        height, (_, _, low, high) = self.floor, self.over()
         seconds = 2 * self.state[3] / (self.weight * (1 - self.e)) if self.e < 1 else inf
         if not (self.state[1] == height and self.state[3] > 0 and seconds < min(self.left, self.edge(self.pull, low, high)[0])):
             return False
@@ -167,7 +170,7 @@ class Point:
 
     def slide(self):
         """To where it has no ground any more, or to the end."""
-        height, factor, low, high = self.over()
+        height, (_, factor, low, high) = self.floor, self.over()
         while self.left > 0:
             vx = self.state[2]
             way = (vx > 0) - (vx < 0)
@@ -189,6 +192,7 @@ class Point:
                 self.come_to(end)
                 new, _, low, high = self.over()
                 if new < height:
+                    self.floor, self.drops = new, True
                     return
                 if new > height:
                     self.inside = max(self.inside, new - height)
@@ -198,8 +202,11 @@ class Point:
     def go(self, state, seconds):
         """The state after so many seconds."""
         self.state, self.left, self.now = list(map(float, state)), float(seconds), 0.0
+        self.floor, self.drops = self.ground.height(self.state[0]), False
+        if self.state[1] < self.floor - 1e-15:
+            self.floor = None
         while self.left > 0:
-            lies = self.state[1] == self.over()[0] and self.state[3] == 0
+            lies = self.state[1] == self.floor and self.state[3] == 0
             if lies or self.rest_of_bounces():
                 self.slide()
             else:

@@ -60,6 +60,8 @@ for isa in $isas; do
         one=(--set "sweep.grid[0].values=[$method]")
         expect "the kernel for it, $method, $isa" 0 "$stance" build rough.yaml "${one[@]}" --isa "$isa"
         STANCE_ISA=$isa expect "... computes" 0 "$stance" run rough.yaml "${one[@]}" -o "$method-$isa.h5" --quiet
+        "$python" -c "import h5py, sys; assert h5py.File(sys.argv[1]).attrs['instruction_set'] == sys.argv[2].encode()" "$method-$isa.h5" "$isa" >log 2>&1
+        result $? "... itself"
         CC=false STANCE_CACHE=$scratch/none expect "... that which is built in, too" 0 "$stance" run rough.yaml "${one[@]}" -o built-in.h5 --quiet --force
         expect "... the same bits" 0 "$stance" compare "$method-$isa.h5" built-in.h5
     done
