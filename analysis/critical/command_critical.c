@@ -16,6 +16,8 @@
 extern const struct command command_critical; /* below */
 
 enum { SETS = 3, SET = 400 };
+enum { COUNT = 1025, START = 32 };
+#define PROBES 0.002
 
 /* What is asked for beside what a run is. */
 struct request {
@@ -135,6 +137,18 @@ static bool add_sets(struct search *search, const struct scenario *s, const char
     return true;
 }
 
+/* Asks for what only a run has, or an axis of its own. */
+static bool asks_for_run(const struct search *search)
+{
+    const struct options *const o = &search->run.options;
+    return o->asked.sets.count > 0 || o->output || o->force || o->resume || o->dry_run ||
+           isfinite(o->time_limit);
+}
+static bool asks_for_values(const struct request *asked)
+{
+    return asked->log || asked->count != COUNT || asked->start != START || asked->probes != PROBES;
+}
+
 /* On rank 0, whose scenario the others get. */
 static bool ask_for_axis(struct search *search)
 {
@@ -171,7 +185,18 @@ static void stage_options(struct run *run)
     parallel_broadcast(&run->parallel, &search->reads, sizeof search->reads);
     run->over = search->reads;
     run->options.quiet |= search->asked.report.form != TABLE_AS_TEXT;
-    if (!search->reads && run->parallel.rank == 0)
+    if (run->parallel.rank != 0)
+        return;
+    if (search->reads && (asks_for_run(search) || asks_for_values(&search->asked)))
+        run_fail(run, EXIT_USAGE,
+                 "stance critical: %.150s holds results, which is read: only --of, --outcome, "
+                 "--within, --share, --level and the form count",
+                 run->options.asked.file);
+    else if (!search->reads && !search->asked.of && asks_for_values(&search->asked))
+        run_fail(run, EXIT_USAGE,
+                 "stance critical: --count, --log, --start and --probes are of the axis that --of "
+                 "asks for");
+    else if (!search->reads)
         ask_for_axis(search);
 }
 
@@ -183,9 +208,9 @@ static int run_critical(int argc, char **argv)
         return EXIT_IO;
     }
     search->asked = (struct request){.report = {.command = &command_critical, .work = work},
-                                     .count = 1025,
-                                     .start = 32,
-                                     .probes = 0.002,
+                                     .count = COUNT,
+                                     .start = START,
+                                     .probes = PROBES,
                                      .outcome = RESULTS_OUTCOMES,
                                      .choice = {.share = 0.9, .level = 0.95}};
     struct run *const run = &search->run;

@@ -61,7 +61,9 @@ static bool find_axis(struct critical *c, const char *of, double ends[2], stance
     char path[96] = "", meant[128];
     ends[0] = ends[1] = NAN;
     if (of && strchr(of, '=') && !critical_range(of, path, ends))
-        return complain(message, "stance critical: --of takes PATH or PATH=FROM..TO, not '%.60s'",
+        return complain(message,
+                        "stance critical: --of takes PATH or PATH=FROM..TO, two different finite "
+                        "numbers, not '%.60s'",
                         of);
     if (of && !path[0])
         snprintf(path, sizeof path, "%.95s", of);
@@ -71,7 +73,9 @@ static bool find_axis(struct critical *c, const char *of, double ends[2], stance
             c->along = a;
     if (c->along < 0 && !of)
         return complain(message,
-                        "stance critical: %.150s has several axes: --of PATH says along which",
+                        r->axes > (r->sample >= 0)
+                            ? "stance critical: %.150s has several axes: --of PATH says along which"
+                            : "stance critical: %.150s has no axis of a grid to go along",
                         r->file);
     return (c->along >= 0 && statistics_is_monotone(&r->axis[c->along])) ||
            complain(message,
@@ -86,6 +90,11 @@ static bool take_values(struct critical *c, const double ends[2], stance_message
     const struct results_axis *const axis = &c->r->axis[c->along];
     const bool all = isnan(ends[0]);
     const bool turned = !all && (ends[1] > ends[0]) != (axis->value[1] > axis->value[0]);
+    const double last = axis->value[axis->count - 1], least = fmin(axis->value[0], last),
+                 most = fmax(axis->value[0], last), over = 1e-9 * (most - least);
+    if (!all && (fmin(ends[0], ends[1]) < least - over || fmax(ends[0], ends[1]) > most + over))
+        return complain(message, "stance critical: --of: %s goes from %.6g to %.6g in this file",
+                        axis->name, axis->value[0], last);
     c->order = malloc(axis->count * sizeof *c->order);
     c->value = malloc(axis->count * sizeof *c->value);
     if (!c->order || !c->value)
@@ -157,7 +166,8 @@ static double widest_gap(const struct walk *w, size_t last)
     for (uint32_t p = 0; p < c->points; p++) {
         size_t before = 0;
         for (size_t i = 1; i <= last && i < c->count; i++) {
-            if (w->inferred && w->inferred[w->first + c->order[i] * w->step + p * w->next])
+            const uint64_t k = w->first + c->order[i] * w->step + p * w->next;
+            if ((w->inferred && w->inferred[k]) || c->r->kind[k] == RESULTS_PENDING)
                 continue;
             widest = fmax(widest, fabs(c->value[i] - c->value[before]));
             before = i;

@@ -33,7 +33,7 @@ enum critical_end {
     CRITICAL_LOST,    /* between `kept` and `lost` */
     CRITICAL_KEPT,    /* up to the last value; `lost` is NAN */
     CRITICAL_OUTSIDE, /* lost at the first value already; `kept` is NAN */
-    CRITICAL_UNKNOWN, /* no value is known to be kept, none to be lost */
+    CRITICAL_UNKNOWN, /* none is known to be lost, and not all are known */
     CRITICAL_ENDS
 };
 extern const char *const critical_end_words[CRITICAL_ENDS];

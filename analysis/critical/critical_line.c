@@ -99,9 +99,10 @@ struct critical_value critical_find(const struct critical_line *line,
                                    .low = NAN,
                                    .high = NAN,
                                    .least_share = NAN};
-    found.end = after == line->count ? (before > 0 ? CRITICAL_KEPT : CRITICAL_UNKNOWN)
-                : after == 0         ? CRITICAL_OUTSIDE
-                                     : CRITICAL_LOST;
+    found.end = before == line->count  ? CRITICAL_KEPT
+                : after == line->count ? CRITICAL_UNKNOWN
+                : after == 0           ? CRITICAL_OUTSIDE
+                                       : CRITICAL_LOST;
     if (line->points > 1) {
         find_interval(line, choice, &found);
     } else {

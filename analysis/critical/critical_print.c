@@ -56,15 +56,15 @@ static const char *remark(const struct critical_row *row)
 {
     return row->value.end == CRITICAL_KEPT      ? "kept to the end"
            : row->value.end == CRITICAL_OUTSIDE ? "lost at the first"
+           : row->value.end == CRITICAL_UNKNOWN ? "unknown beyond"
            : row->value.unknown > 0             ? "some unknown"
-           : row->value.end == CRITICAL_UNKNOWN ? "unknown"
                                                 : "";
 }
 
 static void add_row(struct table *t, const struct critical *c, const struct critical_row *row)
 {
     const struct critical_value *const v = &row->value;
-    const bool exact = !c->sampled && v->unknown == 0 && v->end != CRITICAL_UNKNOWN;
+    const bool exact = !c->sampled && v->unknown == 0 && v->end == CRITICAL_LOST;
     char again[240];
     islands_text(c, row, again, sizeof again);
     table_axes(t, c->r, c->by, c->by_axes, row->point);
@@ -75,7 +75,8 @@ static void add_row(struct table *t, const struct critical *c, const struct crit
         {{"outcome_then", "then", .width = 10, .left = true, .before = "  "},
          row->to == c->of ? as_nothing(NULL) : as_text(results_kind_names[row->to])},
         {{"low", "interval", "%.6g", .width = 25, .left = true, .before = "  "}, as_number(v->low)},
-        {{.name = "high", .format = "%.6g", .joined = true, .before = " ... "}, as_number(v->high)},
+        {{.name = "high", .format = "%.6g", .joined = true, .before = " ... ", .empty = "-"},
+         as_number(v->high)},
         {{"least_share", "least", "%.2f %%", .width = 9, .percent = true},
          as_number(v->least_share)},
         {{.name = "exact", .hidden = TABLE_NO_CSV}, as_truth(exact)},
@@ -92,8 +93,9 @@ static const char text[] = BASIN_TITLE
     "How far {of} may go from {..from} towards {..to}, up to which [share:at least {share*%.4g} % "
     "of the {points} points\nof the sample|cases] end as {outcome}[within: with "
     "{within}]\n\n{.rows}"
-    "  (the number lies between kept and lost: [share:of these points|exact[.unsure:, wider where "
-    "some are unknown]]"
+    "[.number:  (the number lies between kept and lost: [share:of these points|exact[.unsure:, "
+    "wider "
+    "where some are unknown]]"
     "[.interval:; interval: of all that could be drawn, at {level*%.4g} %]"
     "[.least:; least: of all that could\n  be drawn at least this share keeps it, at {level*%.4g} "
     "%]"
@@ -101,23 +103,28 @@ static const char text[] = BASIN_TITLE
     "[.again:;\n  again: values beyond at which [share:so many keep it|it is kept], too, which do "
     "not count])\n"
     "  (before it, pockets in which it is lost may have been missed where they are narrower than "
-    "{.unseen%.4g}[.unit: {.unit}])\n";
+    "{.unseen%.4g}[.unit: {.unit}])\n]"
+    "[.pending:  ({.pending} cases are not done: go on with --resume)\n]";
 
 bool critical_print(const struct critical *c, const char *within, enum table_form form)
 {
     const struct results_axis *const axis = &c->r->axis[c->along];
     struct table t = {0};
     double unseen = 0;
-    bool again = false, remarks = false, unsure = false;
+    bool again = false, remarks = false, unsure = false, number = false;
+    uint64_t pending = 0;
     char view[120];
     for (size_t k = 0; k < c->rows; k++) {
         const struct critical_row *const row = &c->row[k];
         add_row(&t, c, row);
-        unseen = fmax(unseen, row->unseen);
+        number = number || row->value.end == CRITICAL_LOST;
+        unseen = row->value.end == CRITICAL_OUTSIDE ? unseen : fmax(unseen, row->unseen);
         again = again || row->islands > 0;
         unsure = unsure || row->value.unknown > 0;
         remarks = remarks || remark(row)[0];
     }
+    for (uint64_t i = 0; i < c->r->cases; i++)
+        pending += c->r->kind[i] == RESULTS_PENDING;
     const bool whole = c->sampled && !(c->choice.share < 1);
     snprintf(view, sizeof view, "at/ kept lost outcome_then%s%s%s",
              !c->sampled || c->blocks ? ""
@@ -135,6 +142,7 @@ bool critical_print(const struct critical *c, const char *within, enum table_for
         {".interval", as_truth(c->sampled && !c->blocks && !whole)},
         {".least", as_truth(whole && !c->blocks)}, {".blocks", as_truth(c->blocks)},
         {".again", as_truth(again)}, {".unsure", as_truth(unsure)}, {".unseen", as_number(unseen)},
+        {".number", as_truth(number)}, {".pending", pending ? as_whole(pending) : as_nothing(NULL)},
         {".unit", as_text(strcmp(axis->unit, "1") == 0 ? "" : axis->unit)});
     return table_say(form, table_show(basin_titled(c->r, facts), "rows", &t, view, CRITICAL_SHOWN),
                      text, &t);

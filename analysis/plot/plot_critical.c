@@ -44,13 +44,15 @@ static double last_of(const struct page *page)
     return place(page, page->c->value[page->c->count - 1]);
 }
 
-/* Midway between the last value kept and the first one lost; at an end where it is beyond. */
+/* Midway between the last value kept and the first one lost, which are neighbours; the last one
+ * where it is beyond; else there is none. */
 static double number_of(const struct page *page, const struct critical_row *row)
 {
     const struct critical_value *const v = &row->value;
-    return v->end == CRITICAL_KEPT      ? last_of(page)
-           : v->end == CRITICAL_OUTSIDE ? first_of(page)
-                                        : 0.5 * (place(page, v->kept) + place(page, v->lost));
+    const bool found = v->end == CRITICAL_LOST && v->unknown == 0;
+    return v->end == CRITICAL_KEPT ? last_of(page)
+           : found                 ? 0.5 * (place(page, v->kept) + place(page, v->lost))
+                                   : NAN;
 }
 
 /* ---- a curve ------------------------------------------------------------------------------ */
@@ -84,8 +86,9 @@ static void put_band(struct page *page, size_t curve, const char *colour)
     for (size_t k = 0; k < page->across.axis->count; k++) {
         const struct critical_row *const row = row_of(page, curve, k);
         const double low = place(page, row->value.low), high = place(page, row->value.high);
+        const double number = number_of(page, row), kept = place(page, row->value.kept);
         GNUPLOT_ROW(&page->g, page->points[k].value, !interval || isnan(low) ? first_of(page) : low,
-                    !interval     ? number_of(page, row)
+                    !interval     ? (isnan(number) ? fmax(kept, first_of(page)) : number)
                     : isnan(high) ? last_of(page)
                                   : high);
     }
