@@ -131,7 +131,8 @@ static bool plates_set(struct bundle *b, int lane, int c, const struct ground *a
     lane_set(&b->plates.inside[c], lane, above ? 0 : PLATES_NO_GROUND);
     if (!above)
         lane_set(&b->set.may_touch[c], lane, 0);
-    else if (inside && b->which[lane]->contacts >> c & 1) /* if ahead feet_choose has a say */
+    else if (inside && b->which[lane]->contacts >> c & 1 &&
+             !(lane_get(&b->ahead[c], lane) > 0)) /* of those feet_choose says it */
         lane_set(&b->set.may_touch[c], lane, 1);
     if (tree_rough[c])
         lane_set(&b->set.body.rough[c], lane, b->which[lane]->body.rough[c] * at->factor);
@@ -297,7 +298,9 @@ static bool plates_matters(const struct bundle *b, int lane, int c, const struct
         return false;
     if (plates_between(b, lane, lane_get(&b->plates.along[c], lane), x1, &high, &low))
         return true;
-    if (high == low && floor == high && !tree_rough[c])
+    high = fmax(floor, high);
+    low = fmin(floor, low);
+    if (high == low && !tree_rough[c])
         return false;
     const bool touches =
         lane_get(&b->set.may_touch[c], lane) > 0 && fmin(gap[0], gap[1]) <= STEP_CLOSED;
