@@ -176,7 +176,7 @@ static void resolve(const char *text, const char *const *sets, size_t set_count,
     stance_message message = {""};
     read_good(&s, text, sets, set_count);
     if (!resolve_design(s.scene, &s.base, design, &message) ||
-        !resolve_case(s.scene, &s.base, design, 1, 0, c, &message))
+        !resolve_case(&s, &s.base, design, 0, c, &message))
         assert_string_equal(message.text, wanted ? wanted : "");
     else
         assert_null(wanted);
@@ -250,7 +250,7 @@ static void targets_stand_on_both_feet(void **state)
     (void)state;
     read_good(&s, good, sets, 6);
     assert_true(resolve_design(s.scene, &s.base, &design, &message));
-    assert_true(resolve_case(s.scene, &s.base, &design, 1, 0, &c, &message));
+    assert_true(resolve_case(&s, &s.base, &design, 0, &c, &message));
     assert_int_equal(c.supports, 3);
     c.step = 1e-3, c.sample_every = 1;
     stance_kernel_find(c.scene, stance_method_find("midpoint"), NULL)->run(&c, &end, 1);
@@ -275,7 +275,7 @@ static void states_stand(void **state)
     stance_message message;
     double gap[STANCE_MAX_CONTACTS];
     assert_true(resolve_design(s.scene, &s.base, &design, &message) &&
-                resolve_case(s.scene, &s.base, &design, 1, 0, &c, &message));
+                resolve_case(&s, &s.base, &design, 0, &c, &message));
     s.scene->gaps(s.scene, c.robot, c.position, gap);
     assert_near(gap[0], 0, 1e-15);
     scenario_free(&s);

@@ -70,7 +70,7 @@ static void leads_to(const struct scenario *s, uint64_t index, const double *K, 
     stance_case c;
     scenario_case_values(s, index, &v);
     if (!resolve_design(s->scene, &v, &design, &message) ||
-        !resolve_case(s->scene, &v, &design, 1, index, &c, &message))
+        !resolve_case(s, &v, &design, index, &c, &message))
         fail_msg("%s", message.text);
     double gain[12];
     get_gain(&c, gain);

@@ -223,6 +223,8 @@ gait "a start that falls" "it falls after 0 footfalls, by hip; give a start that
 gait "a number that is drawn, without an end" "--sensitivity takes PATH=FROM..TO" --sensitivity ground.slope=1
 gait "one that ends the gait" "with ground.friction" --sensitivity ground.friction=0.02..0.06
 gait "a range about another value" "the gait is not one of the middle, ground.slope=0.011" --sensitivity ground.slope=0.01..0.012
+gait "a number that the gait never meets" "from 0.7 to 0.9 changes nothing in the gait's returns" --sensitivity ground.friction=0.7..0.9
+gait "a range below what is known" "changes nothing in the gait's returns beyond" --sensitivity ground.slope=-1e-13..1e-13
 gait "a path that is none" "unknown key 'slop'" --along ground.slop=0..1
 gait "a picture of no kind" "a file that ends in svg, png or pdf" --along ground.slope=0..0.1 -o along.txt
 gait "how a picture looks of none" "pictures are drawn by -o FILE with --along" --for column

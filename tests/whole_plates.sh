@@ -71,6 +71,21 @@ expect "or else it is" 2 "$stance" check wheel.yaml --set 'ground.contacts=[whee
 expect "at the end of an axis, too" 2 "$stance" check rod.yaml \
     --set 'sweep.grid=[{path: ground.plates.step.from, from: 0, to: 2, count: 3}]'
 says "... which is named" 'with ground.plates.step.from = 2 ground.plates.stairs.from: 2 m is not beyond step'
+printf 'stance: 1\nscene: rod\nground: {plates: {a: {from: 1, height: -0.1}, b: {from: 2, height: 0.1}}}\n' >two.yaml
+printf 'initial: {state: {z: 1}}\nstop: {time: 0.2}\n' >>two.yaml
+a='path: ground.plates.a.from' b='path: ground.plates.b.from'
+expect "where two axes meet, too" 2 "$stance" check two.yaml \
+    --set "sweep.grid=[{$a, values: [0, 1.5]}, {$b, values: [3, 1]}]"
+says "... which are both named" 'with ground.plates.a.from = 1.5 and ground.plates.b.from = 1 ground.plates.b.from: 1 m is not beyond a'
+expect "by --of as well" 2 "$stance" critical two.yaml --set "sweep={grid: [{$b, values: [3, 1.5]}]}" \
+    --of ground.plates.a.from=-1..2 -o two.h5
+expect "and within an axis" 2 "$stance" check two.yaml \
+    --set 'sweep.grid=[{paths: [ground.plates.a.from, ground.plates.b.from], values: [[0, 1], [2, 1.9], [3, 4]]}]'
+says "... at its point" 'with ground.plates.a.from = 2 and ground.plates.b.from = 1.9'
+expect "axes that keep the order" 0 "$stance" check two.yaml \
+    --set "sweep.grid=[{$a, values: [0, 1.5]}, {$b, values: [3, 1.6]}]"
+expect "and one along which they move together" 0 "$stance" check two.yaml \
+    --set 'sweep.grid=[{paths: [ground.plates.a.from, ground.plates.b.from], values: [[0, 1], [2, 3], [3, 4]]}]'
 expect "whole numbers are asked of axes" 2 "$stance" check rod.yaml \
     --set 'sweep.grid=[{path: ground.plates.stairs.count, from: 1, to: 2, count: 3}]'
 says "... and said to be" 'values that are not whole numbers'
@@ -83,6 +98,14 @@ expect "a start above a plate" 0 "$stance" check "$walks" --set 'sweep={}' --set
 says "... is warned of" 'warning: foot1 begins at height 0, 0.05 m above the plate that is there'
 expect "one inside a plate is refused" 2 "$stance" check "$walks" --set 'sweep={}' --set 'ground.plates={high: {from: -0.1, height: 0.05}}'
 says "... with its depth" 'foot1 would start 0.05 m inside the ground'
+printf 'stance: 1\nscene: block\nrobot: {mass: 1}\ninitial: {state: {x: 0}}\nstop: {time: 0.1}\n' >block.yaml
+printf 'ground: {plates: {a: {kind: rough, from: -1, height: 0.05, width: 0.1}}}\n' >>block.yaml
+printf 'sweep: {sample: {method: random, count: 10, vary: [{path: robot.mass, from: 1, to: 2}]}}\n' >>block.yaml
+for seed in 1 3; do
+    expect "at any point of a sample, on its own ground, seed $seed" 2 "$stance" run block.yaml --set seed=$seed -o block.h5
+    says "... which is told" 'case [0-9]: .* would start 0.0[0-9]* m inside the ground'
+done
+expect "ground that begins beyond it is of no start" 0 "$stance" check block.yaml --set ground.plates.a.from=2
 expect "a gait has no cycle there" 2 "$stance" gait "$walks" "${alone[@]}"
 says "... which is said" 'leave out ground.plates'
 expect "what is exported has none" 0 "$stance" export --mjcf rod.yaml -o rod.xml

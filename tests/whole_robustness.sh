@@ -15,6 +15,12 @@ by=(--sensitivity ground.plates.step.height=-0.001..0.001)
 expect "by how much steps of the ground vary a gait" 0 "$stance" gait "$walks" --set "$step" "${by[@]}"
 grep -qE '^  ground.plates.step.height +-0.001 +0.001 +1\.8[12][0-9]*e-02 +1\.5[67][0-9]*e-03 ' log
 result $? "... counts what they do to the step after"
+expect "steps in a range close to what is known" 0 "$stance" gait "$walks" --set "$step" "${by[@]//0.001/1e-10}"
+grep -qE '^  ground.plates.step.height .* [0-9.]+e(-01|\+0[0-9])$' log
+result $? "... have an error that tells"
+expect "a step that is never met" 2 "$stance" gait "$walks" --set "${step/: 1/: 2}" "${by[@]}"
+grep -q "changes nothing in the gait's returns" log
+result $? "... is refused"
 expect "a step that is there each time" 2 "$stance" gait "$walks" --set "${step/height: 0/height: 0.01}"
 grep -q 'the same plane in each step' log
 result $? "... is of no gait"

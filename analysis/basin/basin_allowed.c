@@ -94,7 +94,7 @@ static bool count_rows(const struct basin *b, const struct scenario *s, struct r
         if (!row->of.set)
             continue;
         scenario_case_values(s, i, values);
-        if (resolve_case(s->scene, values, &row->of.design, s->seed, i, c, &ignored))
+        if (resolve_case(s, values, &row->of.design, i, c, &ignored))
             count_case(row, i, c, r->kind[i] == b->choice.of, motion);
     }
     free(c);

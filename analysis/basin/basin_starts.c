@@ -29,10 +29,7 @@ static bool place(struct starts *starts, size_t n, const size_t *offset, const d
     const struct scenario *s = starts->s;
     for (size_t k = 0; k < n; k++)
         memcpy((char *)&starts->values + offset[k], &value[k], sizeof *value);
-    const bool good = resolve_case(s->scene, &starts->values, &starts->design, s->seed,
-                                   starts->index, out, &starts->why);
-    scenario_case_keys(s, starts->index, &out->grid_index, &out->sample_index);
-    return good;
+    return resolve_case(s, &starts->values, &starts->design, starts->index, out, &starts->why);
 }
 
 bool starts_possible(struct starts *starts, size_t n, const size_t *offset, const double *value)

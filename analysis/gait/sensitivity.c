@@ -11,7 +11,8 @@
  *     var g = var e (D^2 + (C B + H G)^2 + sum over k >= 0 of (C A^k (A B + F G))^2)
  * The first two returns are simulated, one after the other, the second with e = 0 from where the
  * first one ended: central differences over the whole range of the number and over half of it,
- * extrapolated; how far these are apart is the error that is told. On even ground f is 0, and this
+ * extrapolated; how far these are apart is the error that is told, with what the gait's residual
+ * makes of the narrower one, below which nothing is told. On even ground f is 0, and this
  * is the sum of C A^k B.
  */
 #include "sensitivity.h"
@@ -30,6 +31,7 @@ enum { MEASURES = 3, STEPS_MOST = 100000 }; /* time, length, speed */
 enum { ANSWERS_MOST = RETURN_MAP_MOST + 4 };
 #define MIDDLE 0.05 /* of what the range changes: so far off may the middle's return be */
 #define EXACT 1e-6  /* as gait.c admits */
+#define SAME 1e-10  /* no return is known better: footfalls are found to about that */
 
 struct change {
     struct return_map map;
@@ -164,6 +166,14 @@ bool gait_sensitivity_find(const struct scenario *s, const struct return_map *ma
                  along->path, middle);
         good = false;
     }
+    const double floor = fmax(gait->residual, SAME) / fabs(0.5 * range);
+    if (good && largest <= floor) {
+        snprintf(message->text, sizeof message->text,
+                 "%.60s from %.6g to %.6g changes nothing in the gait's returns beyond %.1e: give "
+                 "what they meet (a plate of footfall: 1) or a wider range",
+                 along->path, along->from, along->to, 0.5 * floor * fabs(range));
+        good = false;
+    }
     if (!good)
         return false;
     add_up(map, gait, by[1], variance);
@@ -171,6 +181,6 @@ bool gait_sensitivity_find(const struct scenario *s, const struct return_map *ma
     *sensitivity = (struct gait_sensitivity){.time = deviation * sqrt(variance[0]),
                                              .length = deviation * sqrt(variance[1]),
                                              .speed = deviation * sqrt(variance[2]),
-                                             .error = largest > 0 ? off / largest : 0};
+                                             .error = (off + floor) / largest};
     return true;
 }

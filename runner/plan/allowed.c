@@ -62,7 +62,7 @@ bool allowed_case(const struct allowed *allowed, const struct scenario *s, uint6
     stance_message ignored;
     double x[DESIGN_STATES];
     scenario_case_values(s, index, &values);
-    if (!resolve_case(s->scene, &values, &allowed->design, s->seed, index, &c, &ignored))
+    if (!resolve_case(s, &values, &allowed->design, index, &c, &ignored))
         return false;
     allowed_state(allowed, c.position, c.velocity, x);
     return stance_null_set_holds(allowed->set, x);

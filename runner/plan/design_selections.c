@@ -35,7 +35,7 @@ json_t *design_selections(const struct scenario *s, stance_message *singular,
     int coordinate[STANCE_MAX_ACTUATORS], count = 0, used, widest = (int)strlen("coordinates");
     char name[SCENARIO_NAME];
     if (!resolve_design(s->scene, &s->base, &design, message) ||
-        !resolve_case(s->scene, &s->base, &design, s->seed, 0, &start, message))
+        !resolve_case(s, &s->base, &design, 0, &start, message))
         return NULL;
     while (count < STANCE_MAX_SELECTIONS && stance_selection(s->scene, count, coordinate))
         count++;

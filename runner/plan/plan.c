@@ -271,8 +271,5 @@ bool plan_resolve(const struct plan *plan, uint64_t row, stance_case *out, int *
     if (plan->design_status[design] != STANCE_DONE)
         return false;
     const struct resolved_design own = plan_design_at(plan, design);
-    if (!resolve_case(s->scene, &values, &own, s->seed, index, out, &ignored))
-        return false;
-    scenario_case_keys(s, index, &out->grid_index, &out->sample_index);
-    return true;
+    return resolve_case(s, &values, &own, index, out, &ignored);
 }

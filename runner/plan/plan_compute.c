@@ -178,7 +178,7 @@ static bool check_case(const struct plan *plan, uint64_t index, struct plan_erro
         return true;
     scenario_case_values(s, index, &values);
     const struct resolved_design own = plan_design_at(plan, design);
-    if (resolve_case(s->scene, &values, &own, s->seed, index, &resolved, &message) &&
+    if (resolve_case(s, &values, &own, index, &resolved, &message) &&
         (s->cases > 1 || resolve_selection(s->scene, &resolved, &message)))
         return true;
     place_error(s, "initial:", message.text, error);

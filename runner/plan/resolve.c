@@ -537,17 +537,18 @@ bool resolve_selection(const stance_scene *scene, const stance_case *start, stan
                     name);
 }
 
-bool resolve_case(const stance_scene *scene, const struct scenario_values *values,
-                  const struct resolved_design *design, uint64_t seed, uint64_t index,
-                  stance_case *out, stance_message *message)
+bool resolve_case(const struct scenario *s, const struct scenario_values *values,
+                  const struct resolved_design *design, uint64_t index, stance_case *out,
+                  stance_message *message)
 {
+    const stance_scene *const scene = s->scene;
     message->text[0] = '\0';
     *out = (stance_case){
         .torque_rate = isinf(values->torque_rate) ? 0 : values->torque_rate,
         .settle_place = isinf(values->settle_place) ? 0 : values->settle_place,
-        .seed = seed,
-        .grid_index = index,
+        .seed = s->seed,
     };
+    scenario_case_keys(s, index, &out->grid_index, &out->sample_index); /* rough ground's, too */
     /* friction and all else that a case has by the scenario's name: scenario.h */
 #define TAKE(name) out->name = values->name;
     SCENARIO_WHOLES(TAKE)

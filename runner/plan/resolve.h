@@ -81,10 +81,11 @@ void resolve_start(const stance_scene *scene, const struct scenario_values *valu
                    const struct resolved_design *design, double *position, double *velocity);
 
 /* Fills *out (trajectory NULL). Checks the initial state: a gap below -1e-9 m of a contact that
- * may touch is an error, and so is a state that is not finite. `index` is the flat case index. */
-bool resolve_case(const stance_scene *scene, const struct scenario_values *values,
-                  const struct resolved_design *design, uint64_t seed, uint64_t index,
-                  stance_case *out, stance_message *message);
+ * may touch is an error, and so is a state that is not finite. `values` and `index`: of the case,
+ * flat, of s. */
+bool resolve_case(const struct scenario *s, const struct scenario_values *values,
+                  const struct resolved_design *design, uint64_t index, stance_case *out,
+                  stance_message *message);
 
 /* Makes *out act by what a law is told, from the coordinates `begin`; `linear`: its near or far. */
 bool resolve_law(const stance_scene *scene, const struct scenario_values *values,

@@ -59,15 +59,21 @@ static bool push_fault(const stance_mechanism *m, const stance_mechanism_numbers
 
 /* ---- the ground ------------------------------------------------------------------------------ */
 
-/* A piece begins behind the one before it, or is laid later; of those that are always there, and of
- * those by footfall. */
+/* The one before of those that are always there, or of those by footfall; -1: none. */
+static int plate_before(const stance_mechanism *m, int i)
+{
+    int before = i - 1;
+    while (before >= 0 && m->plate[before].by_footfall != m->plate[i].by_footfall)
+        before--;
+    return before;
+}
+
+/* A piece begins behind the one before it, or is laid later. */
 static bool order_fault(const stance_mechanism *m, const stance_mechanism_numbers *number, int i,
                         struct fault *f)
 {
     const stance_plate_numbers *const plate = &number->plate[i];
-    int before = i - 1;
-    while (before >= 0 && m->plate[before].by_footfall != m->plate[i].by_footfall)
-        before--;
+    const int before = plate_before(m, i);
     const stance_plate_numbers *const other = before < 0 ? NULL : &number->plate[before];
     if (other && plate->footfall < other->footfall)
         return FAULT(f, "ground.plates", m->plate[i].name, ".footfall",
@@ -242,6 +248,14 @@ static void find_ends(const struct scenario_axis *axis, int k, size_t end[2])
     }
 }
 
+/* What an axis makes of the robot at a point. */
+static void put_point(const struct scenario_axis *axis, size_t point, double *robot)
+{
+    for (int i = 0; i < axis->paths; i++)
+        if (is_robot(axis->offset[i]))
+            robot[axis->offset[i] / sizeof *robot] = scenario_axis_value(axis, point, i);
+}
+
 /* The robot with what an axis makes of it at a point. False: a problem, reported of path k. */
 static bool check_point(struct reader *r, const double *first, int a, int k, size_t point)
 {
@@ -249,9 +263,7 @@ static bool check_point(struct reader *r, const double *first, int a, int k, siz
     double robot[STANCE_MAX_ROBOT];
     struct fault fault;
     memcpy(robot, first, sizeof robot);
-    for (int i = 0; i < axis->paths; i++)
-        if (is_robot(axis->offset[i]))
-            robot[axis->offset[i] / sizeof *robot] = scenario_axis_value(axis, point, i);
+    put_point(axis, point, robot);
     if (!find_fault(r, robot, &fault))
         return true;
     char name[AXIS_NAME];
@@ -277,6 +289,93 @@ static bool check_axes(struct reader *r, const double *first)
         }
     }
     return any;
+}
+
+/* A number of two plates that both vary: the axes, and which path of each. */
+struct both {
+    const struct scenario_axis *axis[2];
+    int k[2];
+};
+
+static bool find_both(const struct reader *r, const int plate[2], const char *key,
+                      struct both *both)
+{
+    for (int i = 0; i < 2; i++) {
+        char path[96];
+        snprintf(path, sizeof path, "ground.plates.%.31s.%s",
+                 r->s->scene->mechanism->plate[plate[i]].name, key);
+        const struct scenario_field *const field = schema_find(r->schema, path);
+        both->axis[i] = field ? scenario_axis_of(r->s, field->offset, &both->k[i]) : NULL;
+        if (!both->axis[i])
+            return false;
+    }
+    return true;
+}
+
+/* The robot with what two axes make of it. False: a problem, reported of the second one. */
+static bool check_points(struct reader *r, const double *first, const struct both *both,
+                         const size_t point[2])
+{
+    double robot[STANCE_MAX_ROBOT], value[2];
+    struct fault fault;
+    memcpy(robot, first, sizeof robot);
+    for (int i = 0; i < 2; i++) {
+        put_point(both->axis[i], point[i], robot);
+        value[i] = scenario_axis_value(both->axis[i], point[i], both->k[i]);
+    }
+    if (!find_fault(r, robot, &fault))
+        return true;
+    char name[AXIS_NAME];
+    const int a = (int)(both->axis[1] - r->s->axis);
+    return problem_add(&r->problems, r->swept[a][both->k[1]].mark,
+                       "%s: with %s = %.6g and %s = %.6g %s: %s", axis_key(r->s, a, name),
+                       both->axis[0]->path[both->k[0]], value[0], both->axis[1]->path[both->k[1]],
+                       value[1], fault.path, fault.text);
+}
+
+/* The point of an axis where path l is least beyond path k; evenly between the ends of a range. */
+static size_t nearest(const struct scenario_axis *axis, int k, int l)
+{
+    const size_t stride = axis->value || axis->count < 3 ? 1 : axis->count - 1;
+    size_t near = 0;
+    double least = INFINITY;
+    for (size_t i = 0; i < axis->count; i += stride) {
+        const double apart = scenario_axis_value(axis, i, l) - scenario_axis_value(axis, i, k);
+        near = apart < least ? i : near;
+        least = fmin(apart, least);
+    }
+    return near;
+}
+
+/* Where a number of two plates varies: on one axis where they are nearest to each other, on two at
+ * all that their ends make. */
+static bool check_both(struct reader *r, const double *first, const struct both *both)
+{
+    size_t end[2][2];
+    if (both->axis[0] == both->axis[1]) {
+        const size_t near = nearest(both->axis[0], both->k[0], both->k[1]);
+        return check_points(r, first, both, (size_t[]){near, near});
+    }
+    for (int i = 0; i < 2; i++)
+        find_ends(both->axis[i], both->k[i], end[i]);
+    for (int c = 0; c < 4; c++)
+        if (!check_points(r, first, both, (size_t[]){end[0][c & 1], end[1][c >> 1]}))
+            return false;
+    return true;
+}
+
+/* The order of plates, each with the one before it of its kind. */
+static void check_order(struct reader *r, const double *first)
+{
+    static const char *const key[] = {"from", "footfall"};
+    const stance_mechanism *const m = r->s->scene->mechanism;
+    for (int i = 1; i < m->plates; i++) {
+        struct both both;
+        const int pair[2] = {plate_before(m, i), i};
+        for (int k = 0; pair[0] >= 0 && k < 2; k++)
+            if (find_both(r, pair, key[k], &both) && !check_both(r, first, &both))
+                return;
+    }
 }
 
 /* The robot that the design believes in, where it is another one. */
@@ -313,5 +412,7 @@ void mechanism_check(struct reader *r)
         reader_refuse(r, fault.path, ": %s", fault.text);
     else
         check_model(r, values);
+    if (!r->axes_bad && r->problems.count == 0)
+        check_order(r, values->robot);
     free(values);
 }
