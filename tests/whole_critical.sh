@@ -234,7 +234,8 @@ wrong "a number without a range" "of a scenario --of takes PATH=FROM..TO, .*, no
 wrong "a number that there is not" "unknown field 'ground.frction'; did you mean 'ground.friction'" block.yaml --of ground.frction=1..0
 wrong "a range of nothing" "not 'ground.friction=1..1'" block.yaml --of ground.friction=1..1
 wrong "an axis that a file has not" "whose values rise or fall, not 'robot.slop'" one.h5 --of robot.slop
-wrong "a range without values" 'robot.slope has 0 values there' one.h5 --of robot.slope=1..2
+wrong "a range beyond the file's" 'robot.slope goes from 0.02 to 0.6 in this file' one.h5 --of robot.slope=1..2
+wrong "what a results file does not take" 'holds results' one.h5 --count 5
 wrong "a share above 1" '--share takes' one.h5 --share 2
 wrong "an axis to refine that there is not" "sweep.refine.along: no axis of numbers on the grid is robot.mass" own.yaml \
     --set sweep.refine.along=robot.mass
