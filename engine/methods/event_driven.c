@@ -216,13 +216,14 @@ static void advance_forget(struct advance *a, mask m)
     memset(a->stood, 0, sizeof a->stood);
 }
 
-static inline double advance_done(const struct advance *a, int lane)
+#if SCENE_PLATES
+static double advance_done(const struct advance *a, int lane)
 {
     (void)lane;
     return a->within ? a->here.tau : 0;
 }
 /* The integrator is begun anew from wherever it is. */
-static inline void advance_back(struct advance *a, const struct advance *before, mask m)
+static void advance_back(struct advance *a, const struct advance *before, mask m)
 {
     const struct advance now = *a;
     if (!m)
@@ -230,6 +231,7 @@ static inline void advance_back(struct advance *a, const struct advance *before,
     *a = *before;
     a->arkode = now.arkode, a->y = now.y, a->context = now.context;
 }
+#endif
 
 /* Makes ARKODE start at *from with the internal step `length`, not beyond `target`. */
 static bool event_restart(struct advance *a, const struct event_point *from, double target,

@@ -62,14 +62,16 @@ static void advance_forget(struct advance *a, mask m)
     for (int i = 0; i < OWN_CONTACTS; i++)
         a->stood[i] = choose(m, lanes_of(0), a->stood[i]);
 }
-static inline double advance_done(const struct advance *a, int lane)
+#if SCENE_PLATES
+static double advance_done(const struct advance *a, int lane)
 {
     return lane_get(&a->done, lane);
 }
-static inline void advance_back(struct advance *a, const struct advance *before, mask m)
+static void advance_back(struct advance *a, const struct advance *before, mask m)
 {
     choose_all(m, before, a, sizeof *a);
 }
+#endif
 static void advance_free(struct advance *a)
 {
     (void)a;
