@@ -163,7 +163,7 @@ static void brackets_are_exact(void **state)
         {"lllll", CRITICAL_OUTSIDE, NAN, 0, 0, 0},   {"lkkkl", CRITICAL_OUTSIDE, NAN, 0, 0, 1},
         {"kklkk", CRITICAL_LOST, 10, 20, 0, 1},      {"klklk", CRITICAL_LOST, 0, 10, 0, 2},
         {"kkull", CRITICAL_LOST, 10, 30, 1, 0},      {"kukll", CRITICAL_LOST, 0, 30, 2, 0},
-        {"ukkkk", CRITICAL_UNKNOWN, NAN, NAN, 5, 0}, {"kkkku", CRITICAL_KEPT, 30, NAN, 1, 0},
+        {"ukkkk", CRITICAL_UNKNOWN, NAN, NAN, 5, 0}, {"kkkku", CRITICAL_UNKNOWN, 30, NAN, 1, 0},
         {"ullll", CRITICAL_LOST, NAN, 10, 1, 0},     {"klukl", CRITICAL_LOST, 0, 10, 0, 1},
     };
     const struct critical_choice choice = {0.9, 0.95};

@@ -39,8 +39,7 @@ def answer(caller: Callable[..., str], command: str, given: Mapping[str, Any], *
 
 
 def read(file: str, group: str = "/") -> xarray.Dataset:
-    """A group of the file, in memory, the file closed again. Axes are dimensions, with values, `units`, `long_name`;
-    codes are words; what a case does not have is NaN or "none"."""
+    """A group of the file, in memory: axes are dimensions, codes words, what a case does not have NaN or "none"."""
     def attributes(node: Any) -> dict[str, Any]:
         return {name: value.decode() if isinstance(value, bytes) else value.item() if value.size == 1 else value
                 for name, value in node.attrs.items() if node.name == "/" or name in ("units", "long_name")}
@@ -179,16 +178,14 @@ class Results(File_):
 
     def compare(self, other: Union[File, Results], **given: Any) -> Any:
         """What differs from another file: as of summary (`stance compare -h`)."""
-        name = name_of(other.file if isinstance(other, Results) else other)
-        return answer(call, "compare", given, self.file, name, codes=(0, 1))
+        return answer(call, "compare", given, self.file, name_of(getattr(other, "file", other)), codes=(0, 1))
 
     def replay(self, case: Optional[int] = None, **given: Any) -> Picture:
         """One case again, drawn (`stance replay -h`), also near={"theta": 0.02}; save("x.gif") makes a film."""
         return Picture(lambda *words: call("replay", self.file, *options({"case": case, **given}), *words))
 
     def trajectory(self, case: Optional[int] = None, **given: Any) -> xarray.Dataset:
-        """One case, by its flat index, until its end, from the file or simulated again, over `time` (s): position and
-        velocity (time, coordinate), torque (time, actuator), force (time, contact, component; N), gap (m)."""
+        """One case, by its flat index, over `time` (s): position, velocity, torque, force (N) and gap (m) of contacts."""
         first = int(self.data["case"][0]) if "case" in self.data else 0
         case = first if case is None else operator.index(case)
         if not first <= case < first + self.status.size:

@@ -136,8 +136,7 @@ class Scenario:
 
     def optimise(self, ranks: int = 1, output: Optional[File] = None, progress: Progress = False,
                  **given: Any) -> results.Search:
-        """Searches for a better controller, as its section `optimise` says, into results/NAME-search.h5 or `output`:
-        arguments as of run, progress of generations (`stance optimise -h`)."""
+        """Searches for a better controller, into results/NAME-search.h5 or `output`, as run (`stance optimise -h`)."""
         return results.Search(self._compute("optimise", "-search.h5", ranks, output, progress, given))
 
     def _compute(self, command: str, ending: str, ranks: int, output: Optional[File], progress: Progress,
