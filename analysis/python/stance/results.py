@@ -185,7 +185,7 @@ class Results(File_):
         return Picture(lambda *words: call("replay", self.file, *options({"case": case, **given}), *words))
 
     def trajectory(self, case: Optional[int] = None, **given: Any) -> xarray.Dataset:
-        """One case, by its flat index, over `time` (s): position, velocity, torque, force (N) and gap (m) of contacts."""
+        """One case, by its flat index, over `time` (s): position, velocity, torque, force (N) and gap (m)."""
         first = int(self.data["case"][0]) if "case" in self.data else 0
         case = first if case is None else operator.index(case)
         if not first <= case < first + self.status.size:
