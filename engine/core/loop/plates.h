@@ -68,8 +68,8 @@ HOT mask plates_near(const struct bundle *b)
     EACH_CONTACT (c, 0) {
         if (contact_grip(c) < 0)
             continue;
-        const lanes way = lanes_fma(lanes_of(2), b->plates.moved[c], lanes_of(1e-5));
-        const lanes fall = lanes_fma(2 * b->h, lanes_abs(b->now.approach[c]), lanes_of(1e-5));
+        const lanes way = lanes_fma(lanes_of(4), b->plates.moved[c], lanes_of(1e-3));
+        const lanes fall = lanes_fma(4 * b->h, lanes_abs(b->now.approach[c]), lanes_of(1e-3));
         const lanes room = lanes_min(b->plates.along[c] - b->plates.low[c],
                                      b->plates.high[c] - b->plates.along[c]);
         const lanes z = b->now.gap[c] + b->set.body.floor[c];

@@ -211,7 +211,9 @@ COLD void stream_any(struct bundle *b, bool coupled)
 #if SCENE_PLATES
     struct motion from;
     struct advance before;
+    mask near = MASK_NONE; /* of its own: what is beside a lane must not matter */
     if (tree_plates > 0) {
+        near = plates_near(b);
         memcpy(&from, &b->now, sizeof from);
         memcpy(&before, &b->advance, sizeof before);
     }
@@ -220,7 +222,7 @@ COLD void stream_any(struct bundle *b, bool coupled)
         advance(&b->advance, &b->set, b->torque, h, b->live, coupled, &b->now, &report, &failed);
 #if SCENE_PLATES
     if (tree_plates > 0) {
-        const mask back = plates_back(b, &from, &before, h, ok, failed);
+        const mask back = plates_back(b, &from, &before, h, ok, failed | LANES_NOT(near));
         plates_follow(b, b->live & LANES_NOT(back | failed));
         ok &= LANES_NOT(back);
     }
