@@ -2,6 +2,7 @@
  * problems whose truth is a quantile that is known, each drawn many times; brackets, islands, and
  * what cannot be known, against what is plain to see.
  */
+#include "runner/base/command.h"
 #include "support.h"
 
 #include "analysis/critical/critical.h"
@@ -206,11 +207,11 @@ static void ranges_are_read(void **state)
     char path[96];
     double ends[2];
     (void)state;
-    assert_true(critical_range("robot.points.p.force[0]=-1e1..2.5", path, ends));
+    assert_true(option_range("robot.points.p.force[0]=-1e1..2.5", path, ends));
     assert_string_equal(path, "robot.points.p.force[0]");
     assert_true(ends[0] == -10 && ends[1] == 2.5);
     for (size_t k = 0; k < sizeof bad / sizeof bad[0]; k++)
-        assert_false(critical_range(bad[k], path, ends));
+        assert_false(option_range(bad[k], path, ends));
 }
 
 int main(void)

@@ -156,7 +156,7 @@ static bool ask_for_axis(struct search *search)
     const char *const of = search->asked.of;
     char path[96];
     double ends[2];
-    bool good = !of || critical_range(of, path, ends) ||
+    bool good = !of || option_range(of, path, ends) ||
                 run_fail(run, EXIT_USAGE,
                          "stance critical: of a scenario --of takes PATH=FROM..TO, from where the "
                          "outcome is kept, not '%.60s'",

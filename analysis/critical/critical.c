@@ -2,6 +2,7 @@
 #include "critical.h"
 
 #include "analysis/basin/basin.h"
+#include "runner/base/command.h"
 #include "runner/base/message.h"
 
 #include <math.h>
@@ -9,22 +10,6 @@
 #include <string.h>
 
 /* ---- which axis, and which of its values --------------------------------------------------- */
-
-bool critical_range(const char *text, char path[96], double ends[2])
-{
-    const char *const equals = strchr(text, '=');
-    const char *const dots = equals ? strstr(equals, "..") : NULL;
-    char first[64], *end;
-    if (!dots || equals == text || equals - text >= 96 || dots - equals > 60)
-        return false;
-    snprintf(path, 96, "%.*s", (int)(equals - text), text);
-    snprintf(first, sizeof first, "%.*s", (int)(dots - equals) - 1, equals + 1);
-    ends[0] = strtod(first, &end);
-    bool good = first[0] && !*end;
-    ends[1] = strtod(dots + 2, &end);
-    good = good && dots[2] && !*end;
-    return good && isfinite(ends[0]) && isfinite(ends[1]) && ends[0] != ends[1];
-}
 
 /* The one axis that sweep.refine refines; -1: none, or several. */
 static int refined_axis(const struct results *r)
@@ -60,7 +45,7 @@ static bool find_axis(struct critical *c, const char *of, double ends[2], stance
     const struct results *const r = c->r;
     char path[96] = "", meant[128];
     ends[0] = ends[1] = NAN;
-    if (of && strchr(of, '=') && !critical_range(of, path, ends))
+    if (of && strchr(of, '=') && !option_range(of, path, ends))
         return complain(message,
                         "stance critical: --of takes PATH or PATH=FROM..TO, two different finite "
                         "numbers, not '%.60s'",

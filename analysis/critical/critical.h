@@ -100,7 +100,4 @@ bool critical_make(struct critical *critical, const struct results *r, const cha
                    stance_message *message);
 void critical_free(struct critical *critical);
 
-/* Splits "PATH=FROM..TO", where FROM and TO are different finite numbers; false: it is none. */
-bool critical_range(const char *text, char path[96], double ends[2]);
-
 #endif

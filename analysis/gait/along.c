@@ -7,6 +7,7 @@
  * is halved. */
 #include "along.h"
 
+#include "runner/base/command.h"
 #include "runner/plan/asked.h"
 #include "runner/plan/instruction_set.h"
 
@@ -273,17 +274,15 @@ static int follow(struct follow *f)
 
 bool along_read(char *text, struct along *along)
 {
-    char *const equals = strchr(text, '='), *const dots = equals ? strstr(equals, "..") : NULL;
-    char *end;
-    if (!dots)
+    char path[96];
+    double ends[2];
+    if (!option_range(text, path, ends))
         return false;
-    *equals = *dots = '\0';
+    *strchr(text, '=') = '\0';
     along->path = text;
-    along->from = strtod(equals + 1, &end);
-    bool good = end != equals + 1 && *end == '\0';
-    along->to = strtod(dots + 2, &end);
-    good = good && end != dots + 2 && *end == '\0';
-    return good && isfinite(along->from) && isfinite(along->to) && along->from != along->to;
+    along->from = ends[0];
+    along->to = ends[1];
+    return true;
 }
 
 char *along_initial(const struct return_map *map, const double *z, double height)

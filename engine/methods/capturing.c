@@ -117,16 +117,6 @@ HOT void advance_watch(struct advance *a, mask m, mask near)
 {
     a->near = choose(m, choose(near, lanes_of(1), lanes_of(0)), a->near);
 }
-#if SCENE_PLATES
-static double advance_done(const struct advance *a, int lane)
-{
-    return lane_get(&a->done, lane);
-}
-static void advance_back(struct advance *a, const struct advance *before, mask m)
-{
-    choose_all(m, before, a, sizeof *a);
-}
-#endif
 static void advance_free(struct advance *a)
 {
     (void)a;

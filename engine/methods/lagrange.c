@@ -62,16 +62,6 @@ static void advance_forget(struct advance *a, mask m)
     for (int i = 0; i < OWN_CONTACTS; i++)
         a->stood[i] = choose(m, lanes_of(0), a->stood[i]);
 }
-#if SCENE_PLATES
-static double advance_done(const struct advance *a, int lane)
-{
-    return lane_get(&a->done, lane);
-}
-static void advance_back(struct advance *a, const struct advance *before, mask m)
-{
-    choose_all(m, before, a, sizeof *a);
-}
-#endif
 static void advance_free(struct advance *a)
 {
     (void)a;

@@ -355,6 +355,22 @@ size_t command_word(const struct command *command, const char *option, const cha
 
 /* ---- values --------------------------------------------------------------------------------- */
 
+bool option_range(const char *text, char path[96], double ends[2])
+{
+    const char *const equals = strchr(text, '=');
+    const char *const dots = equals ? strstr(equals, "..") : NULL;
+    char first[64], *end;
+    if (!dots || equals == text || equals - text >= 96 || dots - equals > 60)
+        return false;
+    snprintf(path, 96, "%.*s", (int)(equals - text), text);
+    snprintf(first, sizeof first, "%.*s", (int)(dots - equals) - 1, equals + 1);
+    ends[0] = strtod(first, &end);
+    bool good = first[0] && !*end;
+    ends[1] = strtod(dots + 2, &end);
+    good = good && dots[2] && !*end;
+    return good && isfinite(ends[0]) && isfinite(ends[1]) && ends[0] != ends[1];
+}
+
 bool option_seconds(const char *text, void *seconds)
 {
     return (*(double *)seconds = seconds_of_text(text)) >= 0;

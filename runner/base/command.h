@@ -69,6 +69,8 @@ struct option {
 #define OPTION_NONE UINT64_MAX /* which no whole number is that was given */
 #define OPTION_DURATION "a duration such as 90s, 55m or 1h30m"
 bool option_seconds(const char *text, void *seconds);
+/* Splits "PATH=FROM..TO", where FROM and TO are different finite numbers; false: it is none. */
+bool option_range(const char *text, char path[96], double ends[2]);
 /* Ends the command when its time is up, with one line on standard error and EXIT_INTERRUPTED; what
  * it started in a sandbox ends with it. */
 bool option_alarm(const char *text, void *ignored);

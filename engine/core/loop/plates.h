@@ -158,8 +158,7 @@ static bool plates_step_on(struct bundle *b, int lane, int k)
     return false;
 }
 
-/* At the beginning of the cases in `fresh`: pieces that are laid before a footfall are not there.
- */
+/* At the beginning of the cases in `fresh`, where pieces before a footfall are not laid yet. */
 COLD void plates_begin(struct bundle *b, mask fresh)
 {
     EACH_PLACE (k)
@@ -260,8 +259,7 @@ HOT void plates_follow(struct bundle *b, mask ok)
     }
 }
 
-/* The highest and the lowest plate between two places, ends included; 1: more than are looked at.
- */
+/* The highest and the lowest plate from x0 to x1; true: there are more than are looked at. */
 static bool plates_between(const struct bundle *b, int lane, double x0, double x1, double *high,
                            double *low)
 {
@@ -310,6 +308,17 @@ static bool plates_matters(const struct bundle *b, int lane, int c, const struct
 }
 
 #ifdef ADVANCE_PIECES
+
+#ifdef ADVANCE_MOVES /* lanes, of which `done` is where they are in their step */
+static double advance_done(const struct advance *a, int lane)
+{
+    return lane_get(&a->done, lane);
+}
+static void advance_back(struct advance *a, const struct advance *before, mask m)
+{
+    choose_all(m, before, a, sizeof *a);
+}
+#endif
 
 /* Lanes of those that have moved, from *from and *before, whose way has to end at an edge: they are
  * back where they were, and their next piece ends there. `ends`: of them those at the end of a

@@ -18,7 +18,9 @@
  * ADVANCE_WATCHES with advance_watch(a, m, near), which is told of the lanes m from which state a
  * step may come to a fall or a larger answer between its ends, and
  * ADVANCE_PIECES where a step may be of any length: then pushes begin and end, and blows fall, at
- * their instants.
+ * their instants, and contacts cross edges of plates at the end of a piece. If it is not of lanes
+ * that has advance_done(a, lane), how far into its step a lane is, and advance_back(a, before, m),
+ * which puts the lanes m back.
  */
 #ifndef STANCE_CORE_LOOP_STREAM_H
 #define STANCE_CORE_LOOP_STREAM_H
