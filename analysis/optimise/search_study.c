@@ -3,7 +3,6 @@
 
 #include "runner/base/message.h"
 #include "runner/base/sandbox.h"
-#include "runner/optimise/best.h"
 #include "runner/optimise/search.h"
 #include "runner/plan/allowed.h"
 #include "runner/scenario/schema.h"

@@ -1,7 +1,6 @@
 /* command_optimise.c - `stance optimise`: from a scenario with a section optimise to the file of a
  * search and the scenario of its best candidate, on one rank or many.
  */
-#include "best.h"
 #include "search.h"
 
 #include "runner/base/message.h"

@@ -10,7 +10,7 @@
 #ifndef STANCE_OPTIMISE_SEARCH_H
 #define STANCE_OPTIMISE_SEARCH_H
 
-#include "space.h"
+#include "candidate.h"
 #include "trials.h"
 
 #include "runner/store/search_file.h"
