@@ -128,21 +128,13 @@ static void add_values(const struct search_study *study, json_t *facts)
 static void add_poles(const struct search_study *study, json_t *facts)
 {
     stance_message ignored;
-    json_t *list = NULL;
     struct design_report *const loop =
         study->best && scenario_law(&study->best->base)->designed ? malloc(sizeof *loop) : NULL;
-    if (loop && design_loop(loop, study->best, NULL, &ignored)) {
-        list = json_array();
-        for (int i = 0; i < loop->states; i++) {
-            say_add(facts, ".poles", "%s%.5g", i ? ", " : "", loop->closed_re[i]);
-            if (loop->closed_im[i] != 0)
-                say_add(facts, ".poles", "%+.5gi", loop->closed_im[i]);
-            json_array_append_new(list,
-                                  json_pack("[f, f]", loop->closed_re[i], loop->closed_im[i]));
-        }
-    }
+    if (loop && design_loop(loop, study->best, NULL, &ignored))
+        design_put_complex(facts, ".poles", loop->states, loop->closed_re, loop->closed_im);
+    else
+        table_put(facts, "poles", as_tree(NULL));
     free(loop);
-    table_put(facts, "poles", as_tree(list));
 }
 
 static json_t *chosen(const struct search_study *study)
@@ -377,7 +369,7 @@ static const char text[] =
     "[gains:  controller:\n    design: gains\n    gains:\n"
     "[gains*:      - \\[[value*, :{value%.6g}]\\]\n]]"
     "[.values*:  {key} = {value%.6g}\n]"
-    "[.poles:  poles {.poles} 1/s\n]"
+    "[.poles:  poles{.poles} 1/s\n]"
     "[.critical:  critical sample time{.critical}\n]]]";
 
 static int summarise(const struct report *report, stance_message *message)

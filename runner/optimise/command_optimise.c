@@ -352,16 +352,14 @@ static void warn(const struct search *search)
 static void print_limit(const struct search *search)
 {
     const struct search_file *const f = &search->record;
-    const size_t circumstances = f->length[SEARCH_CIRCUMSTANCE];
-    size_t least;
+    const char *where;
     const double limit =
-        linear_limit_overall(search->scenario->search.worst, circumstances,
-                             &f->confirmed_allowed[(size_t)f->chosen * circumstances], &least);
+        search_limit_of(f, search->scenario->search.worst, (size_t)f->chosen, &where);
     if (!isfinite(limit))
         return;
     printf(", linear theory allows any %.2f %%", 100 * limit);
-    if (least < circumstances)
-        printf(" in its worst circumstance (%s)", f->circumstance[least]);
+    if (where)
+        printf(" in its worst circumstance (%s)", where);
     if (allowed_glued_in(search->scenario))
         fputs(" (" ALLOWED_GLUED ")", stdout);
 }

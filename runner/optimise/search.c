@@ -576,6 +576,22 @@ static enum trials_end try_elsewhere(struct search *search, stance_message *mess
     return end;
 }
 
+double search_limit_of(const struct search_file *f, bool worst, size_t k, const char **where)
+{
+    const size_t circumstances = f->length[SEARCH_CIRCUMSTANCE];
+    const double *const share = &f->confirmed_allowed[k * circumstances];
+    double sum = 0, least = NAN;
+    *where = NULL;
+    for (size_t c = 0; c < circumstances; c++) {
+        sum += share[c];
+        if (worst && circumstances > 1 && !isnan(share[c]) && !(share[c] >= least)) {
+            least = share[c];
+            *where = f->circumstance[c];
+        }
+    }
+    return worst && circumstances > 1 ? least : sum / (double)circumstances;
+}
+
 /* Rank 0: what linear theory allows the first and the chosen one, and that all is done. */
 static void finish(struct search *search, const char *why)
 {
@@ -584,12 +600,11 @@ static void finish(struct search *search, const char *why)
     const uint64_t starts = confirm < MOST_ALLOWED ? confirm : MOST_ALLOWED;
     const size_t n = (size_t)search->space.n, circumstances = search->trials.circumstances;
     const size_t which[COMPARED] = {0, (size_t)f->chosen};
-    size_t least;
+    const char *where;
     for (int i = 0; i < COMPARED; i++)
         linear_limit_shares(&search->trials, &f->confirmed_value[which[i] * n], starts,
                             &f->confirmed_allowed[which[i] * circumstances]);
-    f->linear_limit = linear_limit_overall(search->scenario->search.worst, circumstances,
-                                           &f->confirmed_allowed[which[1] * circumstances], &least);
+    f->linear_limit = search_limit_of(f, search->scenario->search.worst, which[1], &where);
     f->length[SEARCH_CONFIRMED] = search->compared;
     f->length[SEARCH_START] = confirm;
     f->finished = 1;

@@ -64,6 +64,11 @@ bool search_make(struct search *search, const struct scenario *scenario, const c
                  stance_message *message);
 void search_free(struct search *search);
 
+/* Of confirmed candidate k, the share of fresh starts from which linear theory allows any
+ * controller to recover, as a search counts: no more than in the circumstance *where that allows
+ * least, if it is of the worst of several; else the mean, *where is NULL. NAN: it sets no bound. */
+double search_limit_of(const struct search_file *f, bool worst, size_t k, const char **where);
+
 /* Collective, with counters. */
 enum trials_end search_run(struct search *search, stance_message *message);
 
