@@ -186,9 +186,15 @@ HOT void iterate_newton(const struct setting *set, const struct motion *from, la
 
     scene_matrix J;
     lanes dw[SCENE_COORDINATES];
-    scene_residual(&set->body, h, from->t + METHOD_THETA * h, u, trig, v, change, torque, residual);
-    scene_factor(&set->body, h, moves, lever, direction_lever, trig, direction, v, change,
-                 (const lanes(*)[2])it->r, coupled, (const lanes(*)[POSTURES])torque_rate, &J);
+    const scene_guess at = {h, from->t + METHOD_THETA * h, u, trig, v, change};
+    const scene_slopes by = {moves,
+                             lever,
+                             direction_lever,
+                             direction,
+                             (const lanes(*)[2])it->r,
+                             (const lanes(*)[POSTURES])torque_rate};
+    scene_residual(&set->body, &at, torque, residual);
+    scene_factor(&set->body, &at, &by, coupled, &J);
     EACH (i, 0, SCENE_COORDINATES)
         residual[i] = -residual[i];
     scene_solve(&J, coupled, residual, dw);

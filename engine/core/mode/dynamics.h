@@ -57,7 +57,7 @@ HOT void dynamics_place(const struct setting *set, contact_set touching, bool pu
     scene_inertia(&set->body, &e->trig, A);
 #ifdef SCENE_SERVOS
     for (int i = 0; i < OWN_ACTUATORS && pushes; i++)
-        scene_actuator_response(&set->body, A, i, e->push[i]);
+        scene_actuator_response(A, i, e->push[i]);
 #else
     (void)pushes;
 #endif
@@ -87,7 +87,8 @@ HOT void dynamics_motion(const struct setting *set, lanes t, const lanes *s, con
     lanes load[SCENE_COORDINATES];
     EACH (i, 0, SCENE_ACTUATORS)
         e->torque[i] = torque[i];
-    scene_forces(&set->body, t, s, &e->trig, w, e->torque, load);
+    scene_residual(&set->body, &(scene_guess){.t = t, .s = s, .trig = &e->trig, .w = w}, e->torque,
+                   load);
     scene_solve(A, false, load, e->acceleration);
     EACH_CONTACT (c, 0) {
         lanes curvature[2], forced[2];
