@@ -62,9 +62,8 @@ static int take(const struct scenario *s, const stance_case *c, void *context)
         struct return_point off = f->gait.from;
         for (int i = 0; i < f->map.n; i++)
             off.z[i] += i % 2 ? -OFF : OFF;
-        f->settled = return_map_settle(&f->map, &off, ALONG_WALKED, ALONG_TIMES, f->time)
-                         ? ALONG_TIMES
-                         : 0;
+        f->settled =
+            return_map_settle(&f->map, &off, ALONG_WALKED, ALONG_TIMES, f->time) ? ALONG_TIMES : 0;
     }
     return good ? EXIT_DONE : EXIT_USAGE;
 }
@@ -163,8 +162,8 @@ static int repeats(const struct along_gait *row)
     X("speed", "", as_number(row->length / row->period), "speed (m/s)", "%.6f", .width = 12)       \
     X("re", "", as_number(row->re[0]), "multiplier", "%.6f", .width = 11)                          \
     X("im", "", as_number(row->im[0]), "+- i", "%.6f", .width = 9)                                 \
-    X("modulus", "of the largest multiplier", as_number(hypot(row->re[0], row->im[0])),            \
-      "modulus", "%.6f", .width = 9)                                                               \
+    X("modulus", "of the largest multiplier", as_number(hypot(row->re[0], row->im[0])), "modulus", \
+      "%.6f", .width = 9)                                                                          \
     X("holds", "", as_text(row->stable ? "holds" : ""), "", .left = true, .width = 5)              \
     X("place", "flip, fold or jump, to another gait", as_text(row->place), "", .left = true,       \
       .width = 4, .empty = "")                                                                     \

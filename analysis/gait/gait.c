@@ -23,7 +23,11 @@ struct difference {
     double apart[4], weight[4];
 };
 static const struct difference central = {1e-4, 2, {1, -1}, {0.5, -0.5}};
-#define FOURTH 4, {1, -1, 2, -2}, {8.0 / 12, -8.0 / 12, -1.0 / 12, 1.0 / 12}
+#define FOURTH                                                                                     \
+    4, {1, -1, 2, -2},                                                                             \
+    {                                                                                              \
+        8.0 / 12, -8.0 / 12, -1.0 / 12, 1.0 / 12                                                   \
+    }
 static const struct difference fourth[2] = {{1e-3, FOURTH}, {3e-4, FOURTH}};
 
 struct work {

@@ -27,8 +27,8 @@ static void look_at_feet(const struct return_map *map, const stance_trajectory *
         else
             m->under = fmax(m->under, -gap);
         if (k > 0) /* row 0 has nothing before it */
-            m->least_normal_force =
-                fmin(m->least_normal_force, record->force[2 * (k * scene->contacts + map->foot[0])]);
+            m->least_normal_force = fmin(m->least_normal_force,
+                                         record->force[2 * (k * scene->contacts + map->foot[0])]);
     }
 }
 

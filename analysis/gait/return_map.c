@@ -83,8 +83,7 @@ void return_map_foot(const struct return_map *map, const double *position, const
     speed[0] = cosine * v[0] - sine * v[1], speed[1] = sine * v[0] + cosine * v[1];
 }
 
-char *return_map_initial(const struct return_map *map, const struct return_point *at,
-                         double height)
+char *return_map_initial(const struct return_map *map, const struct return_point *at, double height)
 {
     const stance_scene *const scene = map->scene;
     double position[STANCE_MAX_COORDINATES], velocity[STANCE_MAX_COORDINATES];
@@ -155,12 +154,13 @@ static bool returned(const struct return_map *map, const stance_case *c, const s
     const char *const cause =
         r->outcome == STANCE_FELL && r->fall_cause > 0 ? map->scene->cause[r->fall_cause - 1] : "";
     return complain(message,
-             r->status != STANCE_DONE    ? "a run failed after %ld footfall%s%s%s"
-             : r->outcome == STANCE_FELL ? "it falls after %ld footfall%s%s%s; give a start that "
-                                           "walks (--settle 1 looks near the "
-                                           "start, --along follows a gait away from one)"
-                                         : "it makes %ld footfall%s in 100 s and no more%s%s",
-             made, made == 1 ? "" : "s", cause[0] ? ", by " : "", cause);
+                    r->status != STANCE_DONE ? "a run failed after %ld footfall%s%s%s"
+                    : r->outcome == STANCE_FELL
+                        ? "it falls after %ld footfall%s%s%s; give a start that "
+                          "walks (--settle 1 looks near the "
+                          "start, --along follows a gait away from one)"
+                        : "it makes %ld footfall%s in 100 s and no more%s%s",
+                    made, made == 1 ? "" : "s", cause[0] ? ", by " : "", cause);
 }
 
 /* Ground under the foot behind, where it is not that under the other one: before all pieces that
@@ -173,8 +173,9 @@ static bool lay_behind(const struct return_map *map, double behind, stance_case 
     if (behind == 0 || body->plates == 0)
         return true;
     if (body->plates > STANCE_MAX_PLATES - 2)
-        return complain(message, "ground.plates has too many pieces: two more are laid, for the foot "
-                               "behind");
+        return complain(message,
+                        "ground.plates has too many pieces: two more are laid, for the foot "
+                        "behind");
     for (int k = 0; k < 2; k++)
         return_map_foot(map, c->position, c->velocity, k, place[k], speed);
     memmove(body->plate + 2, body->plate, (size_t)body->plates * sizeof *body->plate);
@@ -201,9 +202,9 @@ bool return_map_take(const struct return_map *map, size_t count, const struct re
     for (size_t i = 0; good && i < count; i++) {
         cases[i] = map->base;
         cases[i].footfalls = map->steps;
-        good = return_map_state(map, &from[i], cases[i].position, cases[i].velocity) ||
-               complain(message,
-                        "both feet are not on the ground at once: no such posture is near");
+        good =
+            return_map_state(map, &from[i], cases[i].position, cases[i].velocity) ||
+            complain(message, "both feet are not on the ground at once: no such posture is near");
         good = good && lay_behind(map, from[i].behind, &cases[i], message);
     }
     if (good)
@@ -325,26 +326,29 @@ static bool check(const stance_case *c, const stance_kernel *kernel, int steps,
                         "event-driven",
                         method);
     if (c->noise != 0 || c->angle_noise != 0 || c->rate_noise != 0)
-        return complain(message, "a gait with noise has no cycle: set controller.noise, angle_noise "
-                               "and rate_noise to 0");
+        return complain(message,
+                        "a gait with noise has no cycle: set controller.noise, angle_noise "
+                        "and rate_noise to 0");
     if (c->delay > 0 || c->lag > 0 || (c->torque_rate > 0 && isfinite(c->torque_rate)))
         return complain(message, "controller.delay, lag and torque_rate remember the step before, "
-                               "which the section does not");
+                                 "which the section does not");
     if (c->restitution > 0)
-        return complain(message, "a foot that rebounds is not on the ground after its footfall: set "
-                               "ground.restitution to 0");
+        return complain(message,
+                        "a foot that rebounds is not on the ground after its footfall: set "
+                        "ground.restitution to 0");
     for (int k = 0; k < c->body.plates; k++)
         if (c->body.plate[k].footfall == 0 && c->body.plate[k].height != 0)
-            return complain(message, "on uneven ground no step is as the one before: leave out "
-                                   "ground.plates, but for one with footfall: 1 and height: 0 that "
-                                   "--sensitivity varies");
+            return complain(message,
+                            "on uneven ground no step is as the one before: leave out "
+                            "ground.plates, but for one with footfall: 1 and height: 0 that "
+                            "--sensitivity varies");
     if (timed(c))
         return complain(message,
-                      "a gait has no time of its own: pushes, ramps and integrals of a run "
-                      "begin once, not at each footfall");
+                        "a gait has no time of its own: pushes, ramps and integrals of a run "
+                        "begin once, not at each footfall");
     return steps % 2 == 0 || alike(c->scene, c) ||
            complain(message, "the legs, or what drives them, differ: a gait repeats after an even "
-                           "number of steps; give --steps 2");
+                             "number of steps; give --steps 2");
 }
 
 bool return_map_settle(const struct return_map *map, const struct return_point *from, size_t first,

@@ -58,9 +58,8 @@ static bool at(const struct scenario *s, const char *path, double value,
     change->map = *map;
     struct scenario *const changed =
         along_at(s->file, s->text, path, value, map, &change->gait->from);
-    const bool good =
-        changed && asked_first(&command_gait, changed, take, change) == EXIT_DONE &&
-        return_map_take(map, 1, &change->first, &change->next, change->message);
+    const bool good = changed && asked_first(&command_gait, changed, take, change) == EXIT_DONE &&
+                      return_map_take(map, 1, &change->first, &change->next, change->message);
     scenario_drop(changed);
     if (!good) {
         along_blame(path, value, change->message);
