@@ -93,10 +93,12 @@ static void put_lines(struct page *page)
     const struct search_study *const study = page->study;
     const struct search_file *const f = &study->f;
     const bool done = study->done;
+    const char *where;
     const double at[SEARCH_CURVES] = {
         page->scale * (done ? f->confirmed_objective[0] : NAN),
         page->scale * (done ? f->confirmed_objective[f->chosen] : NAN),
-        page->scale * (done && study->plain ? search_limit(study, (size_t)f->chosen, NULL) : NAN)};
+        page->scale *
+            (done && study->plain ? search_limit(study, (size_t)f->chosen, &where) : NAN)};
     char text[SEARCH_CURVES][40];
     const char *more[SEARCH_CURVES] = {NULL};
     gnuplot_set(&page->g, "array curve_at[%d]", SEARCH_CURVES);
