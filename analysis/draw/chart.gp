@@ -16,7 +16,7 @@ longest = 6
 if (shared_y ne '' && value('y_scale') eq 'list') { do for [k=1:y_words] { longest = at_least(longest, strlen(y_word[k])) } }
 labelled_y = own_y || shared_y eq '' || axis_label('y', 999) ne ''
 left = plain ? 24 : (own_y && columns > 1 ? 82 : 104) + 24*wide_tics + 8.2*(longest - 6) - (labelled_y ? 0 : 22)
-across = own_y ? 82 + 24*wide_tics : asked_width > 0 ? 16 : 28 # between columns
+across = own_y ? 82 + 24*wide_tics : own_x ? 40 : asked_width > 0 ? 16 : 28 # between columns
 head = headed ? 22 : 0
 row_head = asides ? 44 : 0
 right_room = at_least(legend_room, ends > 0 ? 24 + 7.4*longest_end : 0)
@@ -73,7 +73,7 @@ do for [p=1:panels] {
         eval y_label(axis_label(panel_y[p], panel_high[p] + 14), panel_left(p) - (columns > 1 && p > leads ? 58 + 24*wide_tics : left - 22), f_middle)
     }
     if (panel_x[p] ne 'x') {
-        f_label = p <= leads || columns == 1 ? axis_label(panel_x[p], panel_wide(p) + 28) : end_of(value(panel_x[p]."_path"), (width + 28)/6.9)
+        f_label = p <= leads || columns == 1 ? axis_label(panel_x[p], panel_wide(p) + 28) : end_of(value(panel_x[p]."_path"), (width + at_most(28, across - 8))/6.9)
         set label f_label at screen X(panel_left(p) + 0.5*panel_wide(p)), Y(panel_top[p] + panel_high[p] + (p <= leads ? 46 : 42)) center @small front
     }
 }
