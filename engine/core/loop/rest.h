@@ -73,9 +73,9 @@ COLD void rest_law(const stance_rest *asked, const double *s1, const double *w1,
     law_sampled(&r->set.law, s, w, torque);
     if (SCENE_ACTUATORS > 0 &&
         mask_any(mask_less(lanes_of(0), r->set.law.decouples + r->set.law.switches))) {
+        const struct state at = {r->t, s, w, integral};
         scene_trigonometry(s, &e.trig);
-        const mask servos =
-            law_command(&r->set, LANES_ALL, r->t, s, w, integral, &r->mode, &e, torque);
+        const mask servos = law_command(&r->set, LANES_ALL, &at, &r->mode, &e, torque);
         for (int i = 0; i < SCENE_ACTUATORS; i++)
             rate[i] = choose(servos, e.integral_rate[i], rate[i]);
     }
@@ -94,8 +94,9 @@ COLD void rest_evaluate(const struct rest *r, const double *s1, const double *to
     rest_lanes(s1, OWN_COORDINATES, SCENE_COORDINATES, s);
     rest_lanes(NULL, 0, SCENE_COORDINATES, still);
     rest_lanes(torque1, OWN_ACTUATORS, ACTUATORS, torque);
+    const struct state at = {.t = r->t, .s = s, .w = still};
     scene_trigonometry(s, &e->trig);
-    dynamics_evaluate(&r->set, r->t, s, still, torque, CONTACT_ALL, false, e);
+    dynamics_evaluate(&r->set, &at, torque, CONTACT_ALL, false, e);
 }
 
 static void rest_accelerate(const stance_rest *asked, const double *s1, const double *torque,
