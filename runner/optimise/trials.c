@@ -124,8 +124,9 @@ static void look_at_loop(const struct trials *t, uint64_t index, struct scenario
     if (!loop->tried || sample_time <= 0)
         return;
     const double least = isnan(asked) ? 2 * sample_time : asked;
-    if (stance_critical_sample_time(report->states, report->inputs, report->A, report->B, report->K,
-                                    0, DESIGN_LONGEST, &loop->critical) != STANCE_OK)
+    const stance_plant plant = {report->states, report->inputs, report->A, report->B};
+    if (stance_critical_sample_time(&plant, &(stance_sampling){.K = report->K}, DESIGN_LONGEST,
+                                    &loop->critical) != STANCE_OK)
         loop->critical = NAN;
     loop->tried = least <= 0 || loop->critical >= least;
     if (!loop->tried)
