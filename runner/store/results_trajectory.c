@@ -48,10 +48,9 @@ static bool read_tracks(const struct results *r, struct results_trajectory *t, s
 {
     uint32_t crc = 0, expected;
     for (int k = 0; k < TRACKS; k++) {
-        char path[64];
+        const char *const path = store_tracks[k].name;
         size_t width;
         double **const track = track_of(t, k, &width);
-        snprintf(path, sizeof path, "trajectory/%s", store_tracks[k].name);
         if (width == 0 || !hdf_exists((hid_t)r->id, path))
             continue;
         const struct results_variable v = results_variable(r, path);

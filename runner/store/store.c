@@ -43,31 +43,32 @@ const struct store_variable store_columns[COLUMNS] = {
 };
 
 #define AT(member) offsetof(stance_trajectory, member)
-const struct store_variable store_tracks[TRACKS] = {
-    NUMBERS("position", NULL, AT(position), COORDINATE, NONE, "coordinates, in m and rad"),
-    NUMBERS("velocity", NULL, AT(velocity), COORDINATE, NONE,
+const struct store_variable store_tracks[TRACKS + 1] = {
+    NUMBERS("trajectory/position", NULL, AT(position), COORDINATE, NONE,
+            "coordinates, in m and rad"),
+    NUMBERS("trajectory/velocity", NULL, AT(velocity), COORDINATE, NONE,
             "rates of the coordinates, in m/s and rad/s"),
-    NUMBERS("torque", "N m", AT(torque), ACTUATOR, NONE,
+    NUMBERS("trajectory/torque", "N m", AT(torque), ACTUATOR, NONE,
             "torque applied in the step that ends there"),
-    NUMBERS("force", "N", AT(force), CONTACT, COMPONENT,
+    NUMBERS("trajectory/force", "N", AT(force), CONTACT, COMPONENT,
             "contact force, mean since the instant before"),
-    NUMBERS("gap", "m", AT(gap), CONTACT, NONE, "height of the contact point above the ground"),
+    NUMBERS("trajectory/gap", "m", AT(gap), CONTACT, NONE,
+            "height of the contact point above the ground"),
+    [TRACK_CHECKSUM] = NUMBER("trajectory/checksum", KIND_uint32_t, "1",
+                              "CRC-32C over the trajectory of the case"),
 };
-const struct store_variable store_track_checksum =
-    NUMBER("checksum", KIND_uint32_t, "1", "CRC-32C over the trajectory of the case");
-
 const struct store_variable store_designs[RESOLVED_PARTS] = {
-    NUMBERS("gain", NULL, RESOLVED_GAIN, ACTUATOR, POSTURE,
+    NUMBERS("design/gain", NULL, RESOLVED_GAIN, ACTUATOR, POSTURE,
             "gains of the linear law: torque = feedforward - gain * error"),
-    NUMBERS("equilibrium_position", NULL, RESOLVED_EQUILIBRIUM, COORDINATE, NONE,
+    NUMBERS("design/equilibrium_position", NULL, RESOLVED_EQUILIBRIUM, COORDINATE, NONE,
             "coordinates of the controller's equilibrium"),
-    NUMBERS("equilibrium_torque", "N m", RESOLVED_TORQUE, ACTUATOR, NONE,
+    NUMBERS("design/equilibrium_torque", "N m", RESOLVED_TORQUE, ACTUATOR, NONE,
             "torques that hold the controller's equilibrium"),
-    NUMBERS("start_position", NULL, RESOLVED_START, COORDINATE, NONE,
+    NUMBERS("design/start_position", NULL, RESOLVED_START, COORDINATE, NONE,
             "coordinates of the initial equilibrium, foot at the origin"),
 };
 const struct store_variable store_design_status =
-    NUMBER("status", KIND_uint8_t, NULL, "whether the design exists");
+    NUMBER("design/status", KIND_uint8_t, NULL, "whether the design exists");
 
 size_t store_width(const stance_scene *scene, const struct store_variable *v)
 {
@@ -91,12 +92,8 @@ bool store_is_column(const char *path)
 
 bool store_is_track(const char *path)
 {
-    static const char group[] = "trajectory/";
-    if (strncmp(path, group, strlen(group)) != 0)
-        return false;
-    path += strlen(group);
-    bool found = strcmp(path, store_track_checksum.name) == 0;
-    for (int v = 0; v < TRACKS; v++)
+    bool found = false;
+    for (int v = 0; v <= TRACK_CHECKSUM; v++)
         found = found || strcmp(path, store_tracks[v].name) == 0;
     return found;
 }
@@ -197,20 +194,15 @@ static bool open_trajectories(struct store *store, stance_message *message)
     const struct plan *plan = store->plan;
     if (plan->record_rows == 0)
         return true;
-    for (int v = 0; v < TRACKS; v++) {
-        store->trajectory_size[v] =
-            (size_t)plan->record_rows * store_width(plan->scenario->scene, &store_tracks[v]);
-        if (store->trajectory_size[v] == 0)
-            continue;
-        char name[64];
-        snprintf(name, sizeof name, "trajectory/%s", store_tracks[v].name);
-        store->trajectory[v] = find_dataset(store, name, NULL);
-        if (store->trajectory[v] < 0)
+    for (int v = 0; v <= TRACK_CHECKSUM; v++) {
+        const size_t width = store_width(plan->scenario->scene, &store_tracks[v]);
+        store->trajectory_size[v] = (size_t)plan->record_rows * width;
+        if (width > 0)
+            store->trajectory[v] = find_dataset(store, store_tracks[v].name, NULL);
+        if (width > 0 && store->trajectory[v] < 0)
             return store_failed(message, store->file, "open the trajectories");
     }
-    store->trajectory_checksum = find_dataset(store, "trajectory/checksum", NULL);
-    return store->trajectory_checksum >= 0 ||
-           store_failed(message, store->file, "open the trajectories");
+    return true;
 }
 
 /* `id`: the file, open; below 0: it could not be. */
@@ -226,11 +218,10 @@ static bool open_store(struct store **result, hid_t id, const char *file, const 
     store->plan = plan;
     store->id = id;
     store->ranks = ranks;
-    store->trajectory_checksum = -1;
     store->no_count = STANCE_NO_COUNT;
     for (int c = 0; c < COLUMNS; c++)
         store->column[c] = -1;
-    for (int v = 0; v < TRACKS; v++)
+    for (int v = 0; v <= TRACK_CHECKSUM; v++)
         store->trajectory[v] = -1;
     *result = store;
     if (id < 0)
@@ -270,13 +261,9 @@ void store_abandon(struct store *store)
 
 bool store_close(struct store *store, stance_message *message)
 {
-    bool good = true;
-    for (int c = 0; c < COLUMNS; c++)
-        good &= store->column[c] < 0 || H5Dclose(store->column[c]) >= 0;
-    for (int v = 0; v < TRACKS; v++)
-        good &= store->trajectory[v] < 0 || H5Dclose(store->trajectory[v]) >= 0;
-    good &= store->trajectory_checksum < 0 || H5Dclose(store->trajectory_checksum) >= 0;
-    good &= H5Fclose(store->id) >= 0;
+    hdf_close_all(store->column, COLUMNS);
+    hdf_close_all(store->trajectory, TRACKS + 1);
+    const bool good = H5Fclose(store->id) >= 0;
     if (!good)
         store_failed(message, store->file, "close");
     store_abandon(store);
@@ -460,7 +447,8 @@ bool store_move_trajectory(struct store *store, uint64_t place, enum hdf_directi
     }
     if (way == HDF_WRITE)
         *stored = *crc;
-    return good && hdf_move(store->trajectory_checksum, H5T_STD_U32LE, place, 1, way, stored);
+    return good &&
+           hdf_move(store->trajectory[TRACK_CHECKSUM], H5T_STD_U32LE, place, 1, way, stored);
 }
 
 bool store_write_trajectory(struct store *store, uint64_t place,
@@ -542,11 +530,9 @@ bool store_read_designs(struct store *store, struct plan *plan, stance_message *
 {
     bool good = true;
     for (int k = 0; k < RESOLVED_PARTS; k++) { /* all of them, even when this rank has failed */
-        char name[64];
         if (store_width(plan->scenario->scene, &store_designs[k]) == 0)
             continue;
-        snprintf(name, sizeof name, "design/%s", store_designs[k].name);
-        const hid_t dataset = find_dataset(store, name, NULL);
+        const hid_t dataset = find_dataset(store, store_designs[k].name, NULL);
         double *const data = design_room(plan, k);
         good = data && hdf_read(dataset, KIND_double, data) && good;
         if (good)
@@ -554,7 +540,7 @@ bool store_read_designs(struct store *store, struct plan *plan, stance_message *
         free(data);
         hdf_close(dataset);
     }
-    const hid_t dataset = find_dataset(store, "design/status", NULL);
+    const hid_t dataset = find_dataset(store, store_design_status.name, NULL);
     good = good && hdf_read(dataset, KIND_uint8_t, plan->design_status);
     hdf_close(dataset);
     return good || store_failed(message, store->file, "read the designs");

@@ -231,7 +231,7 @@ static void put(struct layout *l, const struct store_variable *v,
     int rank = 0;
     if (store_width(l->plan->scenario->scene, v) == 0)
         return;
-    more.name = v->name;
+    more.name = strrchr(v->name, '/') ? strrchr(v->name, '/') + 1 : v->name;
     more.kind = v->kind;
     more.filled = v->filled;
     more.unit = v->unit;
@@ -331,7 +331,7 @@ static void put_trajectories(struct layout *l)
     for (int v = 0; v < TRACKS; v++)
         put(l, &store_tracks[v], (const struct dimension *const[]){&number, &time, NULL},
             (struct dataset){0});
-    put(l, &store_track_checksum, (const struct dimension *const[]){&number, NULL},
+    put(l, &store_tracks[TRACK_CHECKSUM], (const struct dimension *const[]){&number, NULL},
         (struct dataset){0});
 }
 

@@ -33,16 +33,16 @@ enum store_over {
     OVERS,
 };
 struct store_variable {
-    const char *name;
+    const char *name; /* with its group */
     enum store_kind kind;
     bool filled;             /* has `_FillValue` */
     const char *unit, *text; /* may be NULL */
     enum store_over over[2];
     size_t place; /* of a design: its part; of a trajectory: offset of the pointer */
 };
-enum { TRACKS = 5 };
+enum { TRACKS = 5, TRACK_CHECKSUM = TRACKS };
 extern const struct store_variable store_columns[COLUMNS], store_designs[RESOLVED_PARTS],
-    store_design_status, store_tracks[TRACKS], store_track_checksum;
+    store_design_status, store_tracks[TRACKS + 1];
 /* Numbers per case, design, or case and instant; 0: it is left out. */
 size_t store_width(const stance_scene *scene, const struct store_variable *variable);
 
@@ -64,16 +64,15 @@ struct store {
     char file[1024];
     const struct plan *plan;
     hid_t id;
-    int ranks;                   /* that have it open together */
-    bool spans;                  /* see store_set_spans */
-    hid_t column[COLUMNS];       /* -1: not stored */
-    size_t width[COLUMNS];       /* elements per case, and */
-    size_t size[COLUMNS];        /* ... bytes */
-    int64_t no_count;            /* what it has for a count that there is none of: `_FillValue` */
-    struct store_block *checked; /* [STORE_ROWS], for store_verify; made when it is needed */
-    hid_t trajectory[TRACKS];    /* -1: not stored */
-    size_t trajectory_size[TRACKS]; /* elements per case; 0: not stored */
-    hid_t trajectory_checksum;
+    int ranks;                    /* that have it open together */
+    bool spans;                   /* see store_set_spans */
+    hid_t column[COLUMNS];        /* -1: not stored */
+    size_t width[COLUMNS];        /* elements per case, and */
+    size_t size[COLUMNS];         /* ... bytes */
+    int64_t no_count;             /* what it has for a count that there is none of: `_FillValue` */
+    struct store_block *checked;  /* [STORE_ROWS], for store_verify; made when it is needed */
+    hid_t trajectory[TRACKS + 1]; /* -1: not stored; the last one is their checksum */
+    size_t trajectory_size[TRACKS + 1]; /* elements per case; 0: not stored */
 };
 
 /* Rows in memory, column after column. */
