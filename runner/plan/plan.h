@@ -8,7 +8,7 @@
 #define STANCE_PLAN_PLAN_H
 
 #include "resolve.h"
-#include "rows.h"
+#include "shard.h"
 
 #include "runner/ranks/parallel.h"
 

@@ -47,7 +47,7 @@
 #ifndef STANCE_STORE_STORE_H
 #define STANCE_STORE_STORE_H
 
-#include "runner/plan/rows.h"
+#include "runner/plan/shard.h"
 #include "runner/scenario/scenario.h"
 
 enum { STORE_ROWS = 256 }; /* most rows in one call of store_verify */
