@@ -108,7 +108,7 @@ bool results_column_read(const struct results *r, const struct results_column *c
                          uint64_t first, size_t rows, double *values, stance_message *message);
 
 /* The scenarios that the file was made from, where a run went on with another one than it was begun
- * with (runner/store/changed_scenario.h). */
+ * with (runner/store/adopt.h). */
 struct ancestry {
     size_t scenarios;                                   /* 1: as usual */
     char date[STORE_MOST_ANCESTORS + 1][SCENARIO_NAME]; /* of each: when it was first run */
