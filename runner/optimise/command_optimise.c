@@ -25,7 +25,7 @@ static const double most_undecided = 1e-3;
 struct optimise {
     struct run run;         /* whose scenario is the first candidate */
     struct scenario *asked; /* as it was read, on rank 0 */
-    char best[1024];
+    char best[1100];
     struct search_file origin; /* of a search that is gone on with, on rank 0 */
     bool resumes;
     struct search search;
@@ -44,6 +44,7 @@ static struct optimise *of(struct run *run)
 static void stage_options(struct run *run)
 {
     run->options.time_limit = INFINITY;
+    run->options.ending = "-search";
     run_take_options(run, &command_optimise);
 }
 
@@ -99,20 +100,14 @@ static void stage_scenario(struct run *run)
 static bool name_files(struct optimise *o)
 {
     struct run *const run = &o->run;
-    const char *const output = run->options.output;
-    const size_t size = sizeof run->file;
-    const int length = output
-                           ? snprintf(run->file, size, "%s", output)
-                           : snprintf(run->file, size, "results/%s-search.h5", run->scenario->name);
-    if (length < 0 || (size_t)length >= size - 16)
-        return run_fail(run, EXIT_IO, "stance optimise: the name of the file is too long");
-    size_t stem = (size_t)length;
+    run_name_file(run);
+    size_t stem = strlen(run->file);
     if (stem > 3 && strcmp(run->file + stem - 3, ".h5") == 0)
         stem -= 3;
     if (stem > 7 && strncmp(run->file + stem - 7, "-search", 7) == 0)
         stem -= 7;
     snprintf(o->best, sizeof o->best, "%.*s-best.yaml", (int)stem, run->file);
-    return true;
+    return run->failure.code == EXIT_DONE;
 }
 
 /* Of a damaged file. */
