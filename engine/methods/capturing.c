@@ -92,18 +92,10 @@ struct advance {
 
 static void advance_load(struct advance *a, int lane, const stance_case *c)
 {
+    lane_clear(a, sizeof *a, lane);
     lane_set(&a->tolerance, lane, c->tolerance);
-    lane_set(&a->done, lane, 0);
     lane_set(&a->part, lane, INFINITY);
-    lane_set(&a->hunting, lane, 0);
-    lane_set(&a->attempts, lane, 0);
-    lane_set(&a->crossings, lane, 0);
     lane_set(&a->near, lane, 1);
-    lane_set(&a->ordinary, lane, 0);
-    lane_set(&a->wait, lane, 0);
-    lane_set(&a->turns, lane, 0);
-    for (int i = 0; i < OWN_CONTACTS; i++)
-        lane_set(&a->stood[i], lane, 0);
     report_clear_lane(&a->sum, lane);
 }
 static void advance_forget(struct advance *a, mask m)
@@ -116,10 +108,6 @@ static void advance_forget(struct advance *a, mask m)
 HOT void advance_watch(struct advance *a, mask m, mask near)
 {
     a->near = choose(m, choose(near, lanes_of(1), lanes_of(0)), a->near);
-}
-static void advance_free(struct advance *a)
-{
-    (void)a;
 }
 
 /* What happens in a step that ends in *to, between its ends. */
@@ -221,15 +209,6 @@ static inline void capture_add(struct advance *a, mask taken, mask tried,
     const mask wasted = tried & LANES_NOT(taken);
     a->sum.evaluations += choose(wasted, part->evaluations, lanes_of(0));
     a->sum.iterations += choose(wasted, part->iterations, lanes_of(0));
-}
-
-/* Angles stay in the range of sine and cosine during the next two steps. */
-static inline mask capture_in_range(const struct motion *now, lanes h)
-{
-    lanes ahead[SCENE_COORDINATES];
-    for (int i = 0; i < SCENE_COORDINATES; i++)
-        ahead[i] = now->s[i] + 2 * h * now->w[i];
-    return scene_angles_in_range(ahead);
 }
 
 static inline lanes capture_largest(const struct dynamics *e)
@@ -484,7 +463,7 @@ static inline mask capture_attempt(struct advance *a, const struct step *whole, 
     *report = a->sum;
     report->failure =
         choose(tired, lanes_of(STANCE_FAILURE_WORK), lanes_of(STANCE_FAILURE_TOLERANCE));
-    report->failure = choose(capture_in_range(now, h), report->failure, none);
+    report->failure = choose(motion_in_range(now, h), report->failure, none);
     struct step_report fresh;
     report_clear(&fresh);
     choose_all(arrived, &fresh, &a->sum, sizeof fresh);

@@ -50,21 +50,14 @@ struct advance {
 static void advance_load(struct advance *a, int lane, const stance_case *c)
 {
     (void)c;
-    lane_set(&a->done, lane, 0);
+    lane_clear(a, sizeof *a, lane);
     lane_set(&a->part, lane, INFINITY);
-    lane_set(&a->events, lane, 0);
-    for (int i = 0; i < OWN_CONTACTS; i++)
-        lane_set(&a->stood[i], lane, 0);
     report_clear_lane(&a->sum, lane);
 }
 static void advance_forget(struct advance *a, mask m)
 {
     for (int i = 0; i < OWN_CONTACTS; i++)
         a->stood[i] = choose(m, lanes_of(0), a->stood[i]);
-}
-static void advance_free(struct advance *a)
-{
-    (void)a;
 }
 
 /* One attempt in every lane. */

@@ -59,7 +59,6 @@ COLD void solve_rest(const struct contact_problem *p, mask unsure, mask many, la
         EACH_IN (c, p->touching)
             here |= mask_get(p->active[c], lane) ? 1u << c : 0;
         lane_gather(p, here, lane, &own);
-        lane_choose_none(&best);
         if (own.elements <= SOLVE_ENUMERATED) {
             lane_enumerate(&own, &best);
         } else {

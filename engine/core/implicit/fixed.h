@@ -34,10 +34,6 @@ static void advance_forget(struct advance *a, mask m)
 {
     ordinary_forget(&a->quick, m);
 }
-static void advance_free(struct advance *a)
-{
-    (void)a;
-}
 
 /* One step. Where Newton's iteration does not end because a torque that acts inside the step comes
  * and goes at its limit, each torque is taken for free or for being at either end of its range, one

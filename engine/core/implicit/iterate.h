@@ -159,12 +159,12 @@ HOT void iterate_contacts(const struct step *step, const struct iteration *of,
     }
     lanes r[CONTACTS][2];
     struct contact_verdict now;
-    const struct contact_problem problem = {.D = D,
-                                            .uf = uf,
-                                            .touching = touching,
-                                            .active = it->active,
-                                            .friction = set->friction,
-                                            .prefer = set->prefer,
+    const struct contact_problem problem = {D,
+                                            uf,
+                                            touching,
+                                            it->active,
+                                            set->friction,
+                                            set->prefer,
                                             .shift = rebound,
                                             .last = it->r,
                                             .known = LANES_NOT(it->decides)};

@@ -69,9 +69,7 @@ static inline void report_clear(struct step_report *report)
 /* The same in one lane. */
 static inline void report_clear_lane(struct step_report *report, int lane)
 {
-    lanes *const all = (lanes *)report;
-    for (size_t i = 0; i < sizeof *report / sizeof(lanes); i++)
-        lane_set(&all[i], lane, 0);
+    lane_clear(report, sizeof *report, lane);
     EACH_CONTACT (c, 0)
         lane_set(&report->least[c], lane, INFINITY);
 }

@@ -135,17 +135,6 @@ HOT mask step_rebounds(const struct setting *set, const struct motion *from,
         it->kinetic, lanes_fma(most, source, lanes_fma(lanes_of(1e-9), rounding, lanes_of(1e-12))));
 }
 
-/* The velocities that the laws are held to, `end` at the end of the step: those of contacts that
- * have left the ground in a rebound (`left`) are of the impact, before positions were mended. */
-HOT void step_hold(bool left, contact_set touching, const lanes (*end)[2], struct iterate *it)
-{
-    EACH_IN (c, touching) {
-        const mask off = mask_less(lanes_of(STEP_CLOSED), it->gap[c]);
-        EACH (a, 0, 2)
-            it->u[c][a] = left ? choose(off, it->u[c][a], end[c][a]) : end[c][a];
-    }
-}
-
 /* What one contact says in a step that has arrived: velocity u, impulses of all, where they are in
  * `part`. What hardly carries has no direction, see CONTACT_TOLERANCE. */
 HOT void report_contact(const struct step *step, const struct iterate *it, const mask *part,
@@ -245,7 +234,13 @@ HOT mask step_finish(const struct step *step, contact_set touching, enum step_ki
             impacts ? project_far(step, touching, lands, somewhere, it, u, energy)
                     : project_near(step, touching, kind == STEP_FULL, somewhere, it, u, energy);
         converged &= right | LANES_NOT(somewhere);
-        step_hold(impacts, touching, u, it);
+        /* The velocities that the laws are held to: those of contacts that have left the ground in
+         * a rebound are of the impact, before positions were mended. */
+        EACH_IN (c, touching) {
+            const mask off = mask_less(lanes_of(STEP_CLOSED), it->gap[c]);
+            EACH (a, 0, 2)
+                it->u[c][a] = impacts ? choose(off, it->u[c][a], u[c][a]) : u[c][a];
+        }
     }
     EACH_CONTACT (c, 0) {
         /* One that has left the ground may move back towards it. */

@@ -266,18 +266,14 @@ static bool case_is_noisy(const stance_case *c)
     return c->noise != 0 || c->angle_noise != 0 || c->rate_noise != 0;
 }
 
-/* Is there more to its torques than a linear law of the present state? */
-static bool case_is_unusual(const stance_case *c)
-{
-    return case_is_noisy(c) || c->delay > 0 || actuators_lag(c) || c->decouples || c->switches ||
-           c->program;
-}
-
 /* Counts a case among those that cost more, or (-1) no longer. */
 static void bundle_count(struct bundle *b, const stance_case *c, int by)
 {
+    /* Is there more to its torques than a linear law of the present state? */
+    const bool unusual = case_is_noisy(c) || c->delay > 0 || actuators_lag(c) || c->decouples ||
+                         c->switches || c->program;
     b->recorded += c->trajectory && c->trajectory->rows > 0 ? by : 0;
-    b->unusual += case_is_unusual(c) ? by : 0;
+    b->unusual += unusual ? by : 0;
     b->bending += c->bends ? by : 0;
     b->choosy += c->lands_ahead ? by : 0;
     b->walking += c->walk_steps > 0 ? by : 0;
@@ -311,7 +307,10 @@ static void bundle_load(struct bundle *b, int lane, const stance_case *c, stance
     b->program[lane] = c->program ? (uintptr_t)c->program->begin(c->program, c) : 0;
     lane_set(&b->delay, lane, (double)c->delay);
     lane_set(&b->lags, lane, actuators_lag(c));
-    actuators_load(&b->actuators, lane, c);
+    lane_set(&b->actuators.at, lane, -1);
+    lane_set(&b->actuators.lag, lane, c->lag);
+    lane_set(&b->actuators.rate, lane, c->torque_rate > 0 ? c->torque_rate : INFINITY);
+    lane_set(&b->actuators.left, lane, c->lag > 0 ? actuator_exp(-c->step / c->lag) : 0);
     bundle_clear_answers(b, lane);
     advance_load(&b->advance, lane, c);
     lane_set(&b->h, lane, c->step);
@@ -352,10 +351,7 @@ static void bundle_begin(struct bundle *b, mask fresh)
 {
     scene_trig trig;
     scene_trigonometry(b->now.s, &trig);
-    for (int a = 0; a < SCENE_ANGLES; a++) {
-        b->now.trig.sine[a] = choose(fresh, trig.sine[a], b->now.trig.sine[a]);
-        b->now.trig.cosine[a] = choose(fresh, trig.cosine[a], b->now.trig.cosine[a]);
-    }
+    choose_all(fresh, &trig, &b->now.trig, sizeof trig);
     for (int c = 0; c < OWN_CONTACTS; c++) {
         lanes u[2];
         scene_contact_velocity(&b->set.body, &trig, c, b->now.w, u);

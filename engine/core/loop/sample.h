@@ -12,10 +12,6 @@
 
 /* Uniform in [-1, 1), keyed as stance.h says: of sampling instant k the `count` numbers of a
  * stream; the noise of torques is stream 0, that of measurements 1. */
-static inline double noise_value(uint64_t bits)
-{
-    return (double)(int64_t)(bits >> 11) * 0x1p-52 - 1;
-}
 static void bundle_noise(const stance_case *c, double instant, uint64_t stream, int count,
                          double *noise)
 {
@@ -26,7 +22,7 @@ static void bundle_noise(const stance_case *c, double instant, uint64_t stream, 
             {c->grid_index, c->sample_index, (uint64_t)instant, (uint64_t)i / 4}};
         if (i % 4 == 0)
             random = philox4x64(counter, key);
-        noise[i] = noise_value(random.v[i % 4]);
+        noise[i] = (double)(int64_t)(random.v[i % 4] >> 11) * 0x1p-52 - 1;
     }
 }
 

@@ -11,16 +11,15 @@
  *                                         returns the lanes that are there, with *report about the
  *                                         whole step; the others go on at the next call, but for
  *                                         *failed,
- *   void advance_free(a)                  at the end of all,
  *
- * and may define ADVANCE_ORDINARY (see stream_ordinary) with advance_was_ordinary, ADVANCE_MOVES
- * where struct advance consists of lanes, so that cases may change lanes between steps,
- * ADVANCE_WATCHES with advance_watch(a, m, near), which is told of the lanes m from which state a
- * step may come to a fall or a larger answer between its ends, and
- * ADVANCE_PIECES where a step may be of any length: then pushes begin and end, and blows fall, at
- * their instants, and contacts cross edges of plates at the end of a piece. If it is not of lanes
- * that has advance_done(a, lane), how far into its step a lane is, and advance_back(a, before, m),
- * which puts the lanes m back.
+ * and may define ADVANCE_FREES with advance_free(a), at the end of all, ADVANCE_ORDINARY (see
+ * stream_ordinary) with advance_was_ordinary, ADVANCE_MOVES where struct advance consists of lanes,
+ * so that cases may change lanes between steps, ADVANCE_WATCHES with advance_watch(a, m, near),
+ * which is told of the lanes m from which state a step may come to a fall or a larger answer
+ * between its ends, and ADVANCE_PIECES where a step may be of any length: then pushes begin and
+ * end, and blows fall, at their instants, and contacts cross edges of plates at the end of a piece.
+ * If it is not of lanes that has advance_done(a, lane), how far into its step a lane is, and
+ * advance_back(a, before, m), which puts the lanes m back.
  */
 #ifndef STANCE_CORE_LOOP_STREAM_H
 #define STANCE_CORE_LOOP_STREAM_H
@@ -60,7 +59,8 @@ COLD void bundle_start(struct bundle *b, mask fresh, bool coupled)
         plates_begin(b, fresh);
 #endif
     feet_begin(b, fresh);
-    walk_begin(b, fresh);
+    for (int i = 0; i < SCENE_ACTUATORS; i++) /* where they begin */
+        b->walk.moved[i] = choose(fresh, scene_actuated(b->now.s, i), b->walk.moved[i]);
     feet_choose(b, fresh);
     mask loaded[CONTACTS];
     EACH_CONTACT (c, 0)
@@ -432,7 +432,9 @@ static bool bundle_stream(const stance_feed *feed)
         all[k].feed = feed;
     const bool done = stream_go(&stream);
     for (int k = 0; k < 2 * STREAM_BUNDLES; k++) {
+#ifdef ADVANCE_FREES
         advance_free(&all[k].advance);
+#endif
         for (int lane = 0; lane < LANES; lane++) /* given up: told to leave */
             if (all[k].which[lane] && all[k].which[lane]->program)
                 all[k].which[lane]->program->end(all[k].which[lane]->program,

@@ -169,19 +169,6 @@ HOT void walk_effort(struct bundle *b, mask where, const lanes *torque, bool ins
     w->inside = choose(where, lanes_of(inside), w->inside);
 }
 
-/* Where the actuators of the cases in `fresh` begin. */
-COLD void walk_begin(struct bundle *b, mask fresh)
-{
-    for (int i = 0; i < SCENE_ACTUATORS; i++)
-        b->walk.moved[i] = choose(fresh, scene_actuated(b->now.s, i), b->walk.moved[i]);
-}
-
-/* Lanes that walk: in steps that are alike, or in enough of them. */
-static inline mask walk_goes(const struct bundle *b)
-{
-    return mask_less(lanes_of(0), b->walk.period) | mask_less_equal(b->walk.enough, b->walk.steps);
-}
-
 /* The answers, at the end of a case. */
 static void walk_answer(const struct bundle *b, int lane, stance_result *r)
 {

@@ -32,9 +32,7 @@ struct walking {
 
 static inline void walking_load(struct walking *w, int lane, const stance_case *c)
 {
-    lanes *const all = (lanes *)w;
-    for (size_t i = 0; i < sizeof *w / sizeof(lanes); i++)
-        lane_set(&all[i], lane, 0);
+    lane_clear(w, sizeof *w, lane);
     lane_set(&w->wanted, lane, (double)c->walk_steps);
     lane_set(&w->enough, lane, c->walk_enough > 0 ? (double)c->walk_enough : INFINITY);
     lane_set(&w->foot, lane, -1);

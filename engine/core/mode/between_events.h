@@ -262,12 +262,12 @@ static inline void between_mode(const struct setting *set, const struct dynamics
     }
     for (int c = 0; c < OWN_CONTACTS; c++)
         last[c][0] = stood[c], last[c][1] = none;
-    const struct contact_problem problem = {.D = e->D,
-                                            .uf = e->free,
-                                            .touching = touching,
-                                            .active = part,
-                                            .friction = set->friction,
-                                            .prefer = set->prefer,
+    const struct contact_problem problem = {e->D,
+                                            e->free,
+                                            touching,
+                                            part,
+                                            set->friction,
+                                            set->prefer,
                                             .sliding = sliding,
                                             .last = last,
                                             .known = LANES_NOT(moves)};

@@ -214,12 +214,12 @@ static inline mask decoupling_react(const struct decoupling *of, mask where,
                     for (int i = 0; i < OWN_ACTUATORS; i++)
                         problem.D[c][k][a][b] += reach[c][i][a] * answer[k][b][i];
                 }
-    const struct contact_problem reactions = {.D = problem.D,
-                                              .uf = problem.free,
-                                              .touching = touching,
-                                              .active = part,
-                                              .friction = set->friction,
-                                              .prefer = set->prefer,
+    const struct contact_problem reactions = {problem.D,
+                                              problem.free,
+                                              touching,
+                                              part,
+                                              set->friction,
+                                              set->prefer,
                                               .sliding = of->contact->slide,
                                               .indefinite = true};
     for (int round = 0; round < 2; round++) {
