@@ -174,7 +174,7 @@ static void small_ones_are_exact(void **state)
             uf[c][0] = small * large[c][0], uf[c][1] = small * large[c][1];
         }
         const mask active[2] = {true, true};
-        struct contact_problem asked = {D, large, 3, active, uniform(&seed, 0, 1.5), 1};
+        struct contact_problem asked = {D, large, 3, active, uniform(&seed, 0, 1.5), .prefer = 1};
         struct contact_verdict verdict;
         struct lane_problem problem;
         struct lane_choice best;

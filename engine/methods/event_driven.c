@@ -477,9 +477,7 @@ static stance_failure event_begin(struct advance *a, struct event_point *p, stru
         law_torque(law, s, w, command);
         for (int i = 0; i < SCENE_ACTUATORS; i++)
             m->clipped[i] = command[i] > law->limit[i] ? 1 : command[i] < -law->limit[i] ? -1 : 0;
-        m->touches = 0;
-        for (int c = 0; c < OWN_CONTACTS; c++)
-            m->touches |= m->contact.closed[c] ? contact_with(c) : 0;
+        m->touches = contact_any(m->contact.closed, true);
         if (m->touches) /* a slip that has ended leaves what counts as zero */
             between_project(a->problem.set, &m->contact, true, p->y, p->y + SCENE_COORDINATES,
                             &p->e);

@@ -100,17 +100,15 @@ static inline mask advance(struct advance *a, const struct step *asked, mask liv
     for (int c = 0; c < OWN_CONTACTS; c++)
         a->stood[c] = choose(switched, none, choose(take, stands[c], a->stood[c]));
     step.report.ambiguous_steps = choose(trouble.chosen, one, step.report.ambiguous_steps);
-    step.report.unranked_steps = choose(trouble.unranked, one, none);
-    struct step_report sum = a->sum;
-    report_add(&sum, &step.report);
-    choose_all(take, &sum, &a->sum, sizeof sum);
+    step.report.unranked_steps = lanes_where(trouble.unranked);
+    report_add_where(take, &a->sum, &step.report);
     choose_all(take, &step.end, now, sizeof step.end);
     a->sum.evaluations += choose(live & LANES_NOT(take), step.report.evaluations, none);
     mask unsolved = MASK_NONE;
     if (mask_any(switched)) {
         unsolved = switched & LANES_NOT(between_impact(set, switched, now, &a->sum));
-        a->sum.events += choose(switched, one, none);
-        a->events += choose(switched, one, none);
+        a->sum.events += lanes_where(switched);
+        a->events += lanes_where(switched);
     }
 
     /* A step may be so long that no projection brings a foot back onto the ground. */
@@ -131,9 +129,7 @@ static inline mask advance(struct advance *a, const struct step *asked, mask liv
     report->failure = choose(unsolved | deep, lanes_of(STANCE_FAILURE_CONTACT), report->failure);
     report->failure = choose(zeno, lanes_of(STANCE_FAILURE_EVENTS), report->failure);
     report->failure = choose(step.bad, step.failure, report->failure);
-    struct step_report fresh;
-    report_clear(&fresh);
-    choose_all(arrived, &fresh, &a->sum, sizeof fresh);
+    report_clear_where(arrived, &a->sum);
     a->done = choose(arrived, none, a->done);
     a->events = choose(arrived, none, a->events);
     return arrived;

@@ -94,6 +94,14 @@ HOT contact_set contact_with(int c)
 {
     return 1u << c | (contact_grip(c) >= 0 ? 1u << contact_grip(c) : 0);
 }
+/* Contacts that are in `part` in any of the lanes m, with what holds their friction. */
+HOT contact_set contact_any(const mask *part, mask m)
+{
+    contact_set any = 0;
+    EACH_CONTACT (c, 0)
+        any |= mask_any(part[c] & m) ? contact_with(c) : 0;
+    return any;
+}
 /* The sets of contacts that steps are compiled for, X(name, whether there is such a one, set): none
  * and, where they are no lists, all on the ground and each grip's alone. */
 #define CONTACT_ON_GROUND                                                                          \

@@ -135,7 +135,7 @@ static inline lanes impact_mode(lanes friction, const lanes (*r)[2])
     const lanes none = lanes_of(0);
     lanes mode = none;
     for (int c = 0; c < OWN_CONTACTS; c++) {
-        lanes own = choose(mask_less(none, r[c][0]), lanes_of(1), none);
+        lanes own = lanes_where(mask_less(none, r[c][0]));
         if (contact_unknowns(c) == 2) {
             const lanes side = choose(mask_less(none, r[c][1]), lanes_of(2), lanes_of(4));
             const mask slips = mask_less(none, contact_load(c, r)) &

@@ -117,7 +117,7 @@ HOT bool advance_ordinary(struct advance *a, const struct step *step, mask live,
     struct iterate it;
     mask apart = MASK_NONE;
     EACH_IN (c, touching)
-        apart |= live & LANES_NOT(ordinary_active(step->set, now, c));
+        apart |= live & LANES_NOT(motion_closed(step->set, now->gap, c));
     if (mask_any(apart))
         return false;
     const mask good = ordinary_try(&a->quick, step, live, touching, true, &it, report);

@@ -33,6 +33,13 @@ struct motion {
     lanes energy, kinetic;     /* J, of this state; where steps of step.h are taken */
 };
 
+/* Lanes where contact c, of those that may touch, is closed. */
+HOT mask motion_closed(const struct setting *set, const lanes *gap, int c)
+{
+    return mask_less(lanes_of(0), set->may_touch[c]) &
+           mask_less_equal(gap[c], lanes_of(STEP_CLOSED));
+}
+
 static inline struct state state_of(const struct motion *m)
 {
     return (struct state){m->t, m->s, m->w, m->integral};
@@ -43,8 +50,7 @@ static inline contact_set step_touching(const struct setting *set, const lanes *
 {
     contact_set touching = 0;
     EACH_CONTACT (c, 0)
-        if (mask_any(m & mask_less(lanes_of(0), set->may_touch[c]) &
-                     mask_less_equal(gap[c], lanes_of(STEP_CLOSED))))
+        if (mask_any(m & motion_closed(set, gap, c)))
             touching |= contact_with(c);
     return touching;
 }

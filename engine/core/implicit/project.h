@@ -163,8 +163,7 @@ static inline contact_set project_missed(const struct setting *set, contact_set 
 {
     contact_set missed = 0;
     EACH_IN (c, CONTACT_ALL & ~near)
-        if (mask_any(m & mask_less(lanes_of(0), set->may_touch[c]) &
-                     mask_less_equal(it->gap[c], lanes_of(STEP_CLOSED))))
+        if (mask_any(m & motion_closed(set, it->gap, c)))
             missed |= contact_with(c);
     return missed;
 }
@@ -417,8 +416,7 @@ static inline void project_slides(const struct setting *set, const struct iterat
 HOT mask project_falls(const struct setting *set, mask run, const struct grip *g, int c,
                        const struct iterate *it, const lanes u[2])
 {
-    return run & LANES_NOT(g->rows[c][0]) & mask_less(lanes_of(0), set->may_touch[c]) &
-           mask_less_equal(it->gap[c], lanes_of(STEP_CLOSED)) &
+    return run & LANES_NOT(g->rows[c][0]) & motion_closed(set, it->gap, c) &
            mask_less(u[0], lanes_of(-STEP_APPROACH));
 }
 HOT mask project_turns(const struct grip *g, int c, const struct iterate *it, const lanes u[2])

@@ -204,6 +204,11 @@ static inline lanes lanes_sqrt(lanes a)
 {
     return ISA_SQRT(a);
 }
+/* NAN is not finite, neither is an infinity. */
+static inline mask mask_finite(lanes a)
+{
+    return mask_less_equal(lanes_abs(a), lanes_of(1.7976931348623157e308));
+}
 #ifdef LANES_EMULATE_FMA
 static inline mask mask_equal(lanes a, lanes b)
 {
@@ -244,10 +249,23 @@ static inline lanes lanes_min(lanes a, lanes b)
 {
     return choose(mask_less(a, b), a, b);
 }
-/* NAN is not finite, neither is an infinity. */
-static inline mask mask_finite(lanes a)
+/* The sign of x; 0 where it is no larger than `none`. */
+static inline lanes lanes_sign(lanes x, lanes none)
 {
-    return mask_less_equal(lanes_abs(a), lanes_of(1.7976931348623157e308));
+    const lanes sign = choose(mask_less(x, lanes_of(0)), lanes_of(-1), lanes_of(1));
+    return choose(mask_less(none, lanes_abs(x)), sign, lanes_of(0));
+}
+/* 1 where m holds, else 0. */
+static inline lanes lanes_where(mask m)
+{
+    return choose(m, lanes_of(1), lanes_of(0));
+}
+/* The largest size of n values, or `least`. */
+HOT lanes lanes_largest(const lanes *v, int n, lanes least)
+{
+    EACH (i, 0, n)
+        least = lanes_max(lanes_abs(v[i]), least);
+    return least;
 }
 
 /* Takes a struct that consists of lanes over, where m holds. */
@@ -278,7 +296,7 @@ static inline void lane_clear(void *all, size_t size, int lane)
 }
 static inline bool mask_get(mask m, int lane)
 {
-    lanes v = choose(m, lanes_of(1), lanes_of(0));
+    const lanes v = lanes_where(m);
     return lane_get(&v, lane) != 0;
 }
 static inline mask mask_of_lane(int lane)

@@ -215,7 +215,8 @@ COLD bool rest_holds(const struct bundle *b, int lane, const lanes *s, const lan
     struct rest r;
     struct setting wider = b->set;
     double off = INFINITY;
-    lanes still[SCENE_COORDINATES], torque[ACTUATORS], rate[ACTUATORS];
+    const lanes still[SCENE_COORDINATES] = {0};
+    lanes torque[ACTUATORS], rate[ACTUATORS];
     double known[STANCE_SAMPLE_HEAD];
     const double h = lane_get(&b->h, lane), every = lane_get(&b->sample_every, lane);
     memset(&r, 0, sizeof r);
@@ -240,7 +241,7 @@ COLD bool rest_holds(const struct bundle *b, int lane, const lanes *s, const lan
     r.lane = lane;
     r.t = b->steps * b->h;
     for (int i = 0; i < SCENE_COORDINATES; i++)
-        r.s[i] = s[i], still[i] = lanes_of(0);
+        r.s[i] = s[i];
     for (int i = 0; i < ACTUATORS; i++)
         r.integral[i] = integral[i];
     scene_trig trig;
@@ -333,7 +334,7 @@ COLD bool rest_target(struct bundle *b, int lane)
     rest_key(b, lane, key);
     if (b->target_known && memcmp(key, b->target_key, sizeof key) == 0)
         return b->target_holds;
-    lanes s[SCENE_COORDINATES], integral[ACTUATORS];
+    lanes s[SCENE_COORDINATES], integral[ACTUATORS] = {0};
     for (int i = 0; i < scene->postures; i++)
         q[scene->posture[i]] = c->near.target[i];
     if (c->supports)
@@ -341,8 +342,6 @@ COLD bool rest_target(struct bundle *b, int lane)
     scene_enter(&c->body, q, v, s1, w1);
     for (int i = 0; i < SCENE_COORDINATES; i++)
         s[i] = lanes_of(s1[i]);
-    for (int i = 0; i < ACTUATORS; i++)
-        integral[i] = lanes_of(0);
     memcpy(b->target_key, key, sizeof key);
     b->target_known = true;
     return b->target_holds = rest_holds(b, lane, s, NULL, integral);

@@ -20,9 +20,10 @@
 #define REST_GONE 1e-3  /* of settle.angle and settle.rate: a deviation that is none */
 #define REST_BENT 0.05  /* of what a law adds to the torques: how far from linear that may be */
 #define REST_RAMP 0.5   /* of a sample: how long a torque of limited rate may take to come up */
+#define REST_RANK 1e-9  /* of the largest: what is smaller is nothing */
 #define REST_ENDLESS 1e100
 
-enum { REST_INPUTS = SCENE_ACTUATORS, REST_STATES = MATRIX_ROOM };
+enum { REST_INPUTS = SCENE_ACTUATORS, REST_STATES = GAUSS_STATES };
 
 /* The neighbourhood of a state of rest in one lane. */
 struct rest {
@@ -97,9 +98,7 @@ COLD void rest_law(const struct rest *r, const lanes *s, const lanes *w, const l
 static void rest_evaluate(const struct rest *r, const lanes *s, const lanes *torque,
                           struct dynamics *e)
 {
-    lanes still[SCENE_COORDINATES];
-    for (int i = 0; i < SCENE_COORDINATES; i++)
-        still[i] = lanes_of(0);
+    const lanes still[SCENE_COORDINATES] = {0};
     const struct state at = {.t = r->t, .s = s, .w = still};
     scene_trigonometry(s, &e->trig);
     dynamics_evaluate(r->set, &at, torque, CONTACT_ALL, false, e);
@@ -155,7 +154,7 @@ static int rest_add(double family[][SCENE_COORDINATES], int n, const double *v)
         }
     for (int i = 0; i < SCENE_COORDINATES; i++)
         after += rest[i] * rest[i];
-    if (!(after > MATRIX_RANK * before) || n == SCENE_COORDINATES)
+    if (!(after > REST_RANK * before) || n == SCENE_COORDINATES)
         return n;
     for (int i = 0; i < SCENE_COORDINATES; i++)
         family[n][i] = rest[i] / sqrt(after);
@@ -251,16 +250,16 @@ COLD void rest_linearise(struct rest *r, const lanes *torque)
  * the integrals) were from zero. */
 COLD void rest_approach(struct rest *r, double *off)
 {
-    const int d = r->ways;
-    lanes torque[ACTUATORS], rate[ACTUATORS], still[SCENE_COORDINATES];
-    double b[REST_STATES], x[REST_STATES], a[SCENE_COORDINATES];
-    small_matrix M;
-    for (int i = 0; i < SCENE_COORDINATES; i++)
-        still[i] = lanes_of(0);
+    const int d = r->ways, n = d + REST_INPUTS;
+    const lanes still[SCENE_COORDINATES] = {0};
+    lanes torque[ACTUATORS], rate[ACTUATORS];
+    double b[REST_STATES], x[REST_STATES] = {0}, a[SCENE_COORDINATES];
+    double M[REST_STATES * REST_STATES];
+    struct gauss f;
     rest_law(r, r->s, still, r->integral, torque, rate);
     rest_accelerations(r, r->s, torque, a);
     *off = 0;
-    for (int i = 0; i < d + REST_INPUTS; i++) {
+    for (int i = 0; i < n; i++) {
         b[i] = -(i < d ? a[i] : lane_get(&rate[i - d], r->lane));
         if (!(fabs(b[i]) <= *off)) /* a NAN, too; no fmax: gcc 12 for ARM fails on it */
             *off = b[i] == b[i] ? fabs(b[i]) : INFINITY;
@@ -268,14 +267,16 @@ COLD void rest_approach(struct rest *r, double *off)
     if (*off <= REST_STILL)
         return;
     rest_linearise(r, torque);
-    for (int i = 0; i < d + REST_INPUTS; i++)
-        for (int j = 0; j < d + REST_INPUTS; j++) {
+    for (int i = 0; i < n; i++)
+        for (int j = 0; j < n; j++) {
             const int kind = j < d ? 0 : 2, from = j < d ? j : j - d;
-            M[i][j] = i < d ? (j < d ? r->K[i][j] : 0) : r->E[kind][i - d][from];
+            double *const m = &M[i * n + j];
+            *m = i < d ? (j < d ? r->K[i][j] : 0) : r->E[kind][i - d][from];
             for (int k = 0; k < REST_INPUTS && i < d; k++)
-                M[i][j] += r->B[i][k] * r->C[kind][k][from];
+                *m += r->B[i][k] * r->C[kind][k][from];
         }
-    matrix_solve(d + REST_INPUTS, M, b, x);
+    gauss_factor(n, M, REST_RANK, &f);
+    gauss_solve(&f, b, x);
     for (int i = 0; i < SCENE_COORDINATES; i++) {
         double move = 0;
         for (int k = 0; k < d; k++)

@@ -106,8 +106,7 @@ COLD mask bundle_program(struct bundle *b, mask due, const lanes *s, const lanes
     program_measure(&b->set, mask_any(due & mask_less(lanes_of(0), b->set.law.switches)), s, w,
                     trig, &is);
     for (int c = 0; c < OWN_CONTACTS; c++) /* feet feel what they do */
-        closed[c] = mask_less(lanes_of(0), b->set.may_touch[c]) &
-                    mask_less_equal(b->now.gap[c], lanes_of(STEP_CLOSED)) &
+        closed[c] = motion_closed(&b->set, b->now.gap, c) &
                     mask_less_equal(lanes_abs(b->now.approach[c]), lanes_of(SAMPLE_REST));
     for (int lane = 0; lane < LANES; lane++) {
         const stance_case *const c = b->which[lane];

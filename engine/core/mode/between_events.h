@@ -84,10 +84,7 @@ static inline void between_evaluate(const struct setting *set, const struct stat
 static inline contact_set between_set(const mask *part)
 {
 #ifdef CONTACT_LISTS
-    contact_set set = 0;
-    for (int c = 0; c < OWN_CONTACTS; c++)
-        set |= mask_any(part[c]) ? contact_with(c) : 0;
-    return set;
+    return contact_any(part, LANES_ALL);
 #else
     (void)part;
     return CONTACT_ALL;
@@ -202,7 +199,7 @@ static inline void between_stands(const struct contact_state *m, lanes *stands)
         mask sticks = m->closed[c];
         if (contact_grip(c) >= 0)
             sticks &= mask_less_equal(lanes_abs(m->slide[contact_grip(c)]), lanes_of(0));
-        stands[c] = choose(sticks, lanes_of(1), lanes_of(0));
+        stands[c] = lanes_where(sticks);
     }
 }
 
@@ -233,14 +230,12 @@ static inline void between_mode(const struct setting *set, const struct dynamics
     lanes sliding[CONTACTS]; /* of each grip */
     *trouble = (struct between_trouble){MASK_NONE, MASK_NONE, MASK_NONE, MASK_NONE, MASK_NONE};
     for (int c = 0; c < OWN_CONTACTS; c++) {
-        const mask closed =
-            mask_less(none, set->may_touch[c]) & mask_less_equal(e->gap[c], lanes_of(STEP_CLOSED));
+        const mask closed = motion_closed(set, e->gap, c);
         trouble->impact |= closed & mask_less(e->u[c][0], lanes_of(-BETWEEN_REST));
         part[c] = closed & mask_less_equal(lanes_abs(e->u[c][0]), lanes_of(BETWEEN_REST));
         sliding[c] = none;
         if (contact_unknowns(c) == 2)
-            sliding[c] = choose(mask_less(lanes_of(BETWEEN_REST), lanes_abs(e->u[c][1])),
-                                choose(mask_less(e->u[c][1], none), -one, one), none);
+            sliding[c] = lanes_sign(e->u[c][1], lanes_of(BETWEEN_REST));
         any |= part[c];
         m->closed[c] = MASK_NONE;
         m->slide[c] = sliding[c];
@@ -408,14 +403,11 @@ static inline mask between_impact(const struct setting *set, mask where, struct 
     struct contact_verdict verdict;
     const struct state at = state_of(now);
     struct impact_answer found;
-    lanes torque[ACTUATORS], energy = none;
-    for (int i = 0; i < ACTUATORS; i++)
-        torque[i] = none;
+    lanes torque[ACTUATORS] = {0}, energy = none;
     scene_trigonometry(now->s, &e.trig);
     dynamics_evaluate(set, &at, torque, CONTACT_ALL, false, &e);
     for (int c = 0; c < OWN_CONTACTS; c++)
-        part[c] = where & mask_less(none, set->may_touch[c]) &
-                  mask_less_equal(e.gap[c], lanes_of(STEP_CLOSED));
+        part[c] = where & motion_closed(set, e.gap, c);
     between_project_position(set, part, now->s, &e);
     mask impact = MASK_NONE; /* else only rounding is left to remove */
     for (int c = 0; c < OWN_CONTACTS; c++) {
@@ -452,7 +444,7 @@ static inline mask between_impact(const struct setting *set, mask where, struct 
     choose_all(where, &e.trig, &now->trig, sizeof e.trig);
     report->impact_energy =
         choose(where, lanes_max(energy, report->impact_energy), report->impact_energy);
-    report->limited_impacts += choose(limited, lanes_of(1), none);
+    report->limited_impacts += lanes_where(limited);
     report->ambiguous_steps =
         choose(where & verdict.ambiguous, lanes_of(1), report->ambiguous_steps);
     report->unranked_steps = choose(where & verdict.unranked, lanes_of(1), report->unranked_steps);

@@ -124,7 +124,7 @@ COLD void explicit_look(const struct explicit_way *e, mask where, lanes x,
     if (e->touches)
         between_solve(set, e->drive->mode, &at);
     inside_tell(e->drive->mode, &at, where, report);
-    report->evaluations += choose(where, lanes_of(1), lanes_of(0));
+    report->evaluations += lanes_where(where);
 }
 
 /* What accelerations differ by between the stages and the end. */
@@ -155,11 +155,8 @@ static inline void explicit_take(const struct step *step, mask run, const struct
     lanes kz[METHOD_STAGES][ACTUATORS];
     const bool sums = law_sums(&set->law, coupled);
     const struct drive drive = {step->torque, coupled, m};
-    contact_set touches = 0;
+    const contact_set touches = contact_any(m->closed, run);
     struct dynamics e = *begin;
-    for (int c = 0; c < OWN_CONTACTS; c++)
-        if (mask_any(m->closed[c] & run))
-            touches |= contact_with(c);
     report_clear(&out->report);
     for (int i = 0; i < SCENE_ACTUATORS; i++) {
         out->torque[i] = begin->torque[i];
@@ -235,9 +232,7 @@ static inline void explicit_take(const struct step *step, mask run, const struct
     out->violated |= between_violated(set, m, &e);
     out->error = lanes_of(0);
 #ifdef METHOD_EMBEDDED
-    lanes es[SCENE_COORDINATES], ew[SCENE_COORDINATES];
-    for (int i = 0; i < SCENE_COORDINATES; i++)
-        es[i] = ew[i] = lanes_of(0);
+    lanes es[SCENE_COORDINATES] = {0}, ew[SCENE_COORDINATES] = {0};
 #pragma GCC unroll 16
     for (int k = 0; k < METHOD_STAGES; k++)
         if (tableau_e[k] != 0)
