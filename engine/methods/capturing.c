@@ -218,11 +218,7 @@ static inline mask capture_smooth(const struct step *asked, mask try, lanes *sto
     struct dynamics begin;
     struct contact_state mode;
     struct between_trouble trouble;
-    const contact_set touching = step_touching(set, now->gap, LANES_ALL);
-    const struct drive drive = {asked->torque, asked->coupled, NULL};
-    const struct state at = state_of(now);
-    between_evaluate(set, &at, &drive, touching, &begin);
-    between_mode(set, &begin, touching, stood, &mode, &trouble);
+    const contact_set touching = between_begin(asked, stood, &begin, &mode, &trouble);
     between_stands(&mode, stood);
     *acceleration = lanes_largest(begin.acceleration, SCENE_COORDINATES, lanes_of(0));
     if (touching)

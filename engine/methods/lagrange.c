@@ -76,13 +76,9 @@ static inline mask advance(struct advance *a, const struct step *asked, mask liv
     struct contact_state mode;
     struct between_trouble trouble;
     struct explicit_step step;
-    const contact_set touching = step_touching(set, now->gap, LANES_ALL);
-    const struct drive drive = {asked->torque, asked->coupled, NULL};
-    const struct state at = state_of(now);
     struct step part = *asked;
     part.h = length;
-    between_evaluate(set, &at, &drive, touching, &begin);
-    between_mode(set, &begin, touching, a->stood, &mode, &trouble);
+    const contact_set touching = between_begin(asked, a->stood, &begin, &mode, &trouble);
     if (touching)
         between_solve(set, &mode, &begin);
     explicit_take(&part, live, &mode, &begin, &step);

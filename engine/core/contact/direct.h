@@ -342,7 +342,7 @@ COLD mask direct_hold(const struct contact_problem *p, lanes tolerance, lanes (*
     struct direct_operator o;
     struct direct_freedom free;
     mask good = LANES_ALL;
-    lanes u[CONTACTS][2], x[CONTACTS][2], first[CONTACTS][2] = {0};
+    lanes u[CONTACTS][2], x[CONTACTS][2], first[CONTACTS][2];
     o.touching = touching, o.D = p->D;
     direct_rows(p->active, o.rows);
     direct_factor(&o, CONTACT_CAREFUL, NULL, 0);

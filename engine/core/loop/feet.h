@@ -83,11 +83,11 @@ COLD void feet_begin(struct bundle *b, mask fresh)
             if (rests)
                 stands &= mask_less_equal(lanes_abs(b->now.approach[c]), lanes_of(FEET_REST));
             feet_stand(b, stands, c);
-            b->walk.foot = choose(stands, lanes_of(c), b->walk.foot);
+            b->stands = choose(stands, lanes_of(c), b->stands);
         }
     for (int lane = 0; lane < LANES; lane++)
-        if (b->which[lane] && mask_get(fresh, lane) && lane_get(&b->walk.foot, lane) >= 0)
-            feet_lay(b, lane, (int)lane_get(&b->walk.foot, lane));
+        if (b->which[lane] && mask_get(fresh, lane) && lane_get(&b->stands, lane) >= 0)
+            feet_lay(b, lane, (int)lane_get(&b->stands, lane));
 }
 
 /* Which are in play from now on, in the lanes of `live`. */

@@ -84,7 +84,7 @@ COLD void bundle_finish(struct bundle *b, int lane, stance_status status, stance
         .status = status,
         .outcome = outcome,
         .failure = failure,
-        .end_time = lane_get(&b->walk.ended, lane) >= 0 ? lane_get(&b->walk.ended, lane) : n * h,
+        .end_time = lane_get(&b->ended, lane) >= 0 ? lane_get(&b->ended, lane) : n * h,
         .settle_time = calm ? (since >= 0 ? since : n) * h : NAN,
         .fall_time = NAN,
         .steps = (int64_t)n,

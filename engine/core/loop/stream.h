@@ -60,7 +60,7 @@ COLD void bundle_start(struct bundle *b, mask fresh, bool coupled)
 #endif
     feet_begin(b, fresh);
     for (int i = 0; i < SCENE_ACTUATORS; i++) /* where they begin */
-        b->walk.moved[i] = choose(fresh, scene_actuated(b->now.s, i), b->walk.moved[i]);
+        b->moved[i] = choose(fresh, scene_actuated(b->now.s, i), b->moved[i]);
     feet_choose(b, fresh);
     mask loaded[CONTACTS];
     EACH_CONTACT (c, 0)
@@ -194,7 +194,7 @@ COLD mask stream_join(struct bundle *b, mask ok, struct step_report *report)
 /* Ends the cases that a footfall ends, wherever in their steps they are. */
 COLD void stream_footfalls(struct bundle *b)
 {
-    const mask ended = b->live & mask_less_equal(lanes_of(0), b->walk.ended);
+    const mask ended = b->live & mask_less_equal(lanes_of(0), b->ended);
     const struct verdict none = {0};
     if (mask_any(ended))
         bundle_end_lanes(b, ended, MASK_NONE, &none);

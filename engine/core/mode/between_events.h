@@ -297,6 +297,19 @@ static inline void between_mode(const struct setting *set, const struct dynamics
         trouble->none |= between_jammed(set, e, m, starting);
 }
 
+/* The same for the beginning of a step, *e evaluated there. Returns what touches anywhere. */
+static inline contact_set between_begin(const struct step *step, const lanes *stood,
+                                        struct dynamics *e, struct contact_state *m,
+                                        struct between_trouble *trouble)
+{
+    const contact_set touching = step_touching(step->set, step->from->gap, LANES_ALL);
+    const struct drive drive = {step->torque, step->coupled, NULL};
+    const struct state at = state_of(step->from);
+    between_evaluate(step->set, &at, &drive, touching, e);
+    between_mode(step->set, e, touching, stood, m, trouble);
+    return touching;
+}
+
 /* Lanes where the state that *e was solved at is outside the mode. A slip may be backward by what
  * counts as zero. */
 static inline mask between_violated(const struct setting *set, const struct contact_state *m,
