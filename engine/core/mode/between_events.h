@@ -61,14 +61,7 @@ static inline void between_evaluate(const struct setting *set, const struct stat
     const mask decouples = mask_less(lanes_of(0), set->law.decouples);
     const bool servos = SCENE_ACTUATORS > 0 && drive->coupled && mask_any(decouples);
     lanes torque[ACTUATORS];
-    for (int i = 0; i < SCENE_ACTUATORS; i++)
-        torque[i] = drive->torque[i];
-    if (drive->coupled) {
-        law_torque(&set->law, at->s, at->w, torque);
-        law_clip(&set->law, torque);
-        for (int i = 0; i < SCENE_ACTUATORS; i++)
-            torque[i] = choose(decouples, lanes_of(0), torque[i]);
-    }
+    law_drive(&set->law, drive->torque, drive->coupled, at->s, at->w, torque);
     scene_trigonometry(at->s, &e->trig);
     dynamics_evaluate(set, at, torque, touching, servos, e);
     if (!servos)
