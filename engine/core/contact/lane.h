@@ -24,7 +24,6 @@
 #define STANCE_CORE_CONTACT_LANE_H
 
 #include "contact.h"
-#include "engine/core/lanes/gauss.h"
 
 #define LANE_PARALLEL                                                                              \
     1e-9 /* pivots this small, of a unit diagonal, are looked at: see lane_hold                    \
@@ -233,6 +232,73 @@ static double lane_offer(const struct lane_problem *p, const double *r, struct l
     return violation;
 }
 
+/* ---- dense equations ------------------------------------------------------------------------- */
+
+/* A factored by elimination with complete pivoting, rows and columns in the order of the pivots. */
+struct lane_factors {
+    int n, rank, row[LANE_ROWS], column[LANE_ROWS];
+    lane_matrix A;
+};
+
+/* Takes A[n][n]; pivots not above `small` times the first end it. */
+static void lane_factor(int n, double small, struct lane_factors *f)
+{
+    f->n = n;
+    for (int i = 0; i < n; i++)
+        f->row[i] = f->column[i] = i;
+    for (f->rank = 0; f->rank < n; f->rank++) {
+        const int k = f->rank;
+        int p = k, q = k;
+        for (int i = k; i < n; i++)
+            for (int j = k; j < n; j++)
+                if (fabs(f->A[f->row[i]][f->column[j]]) > fabs(f->A[f->row[p]][f->column[q]]))
+                    p = i, q = j;
+        const int r = f->row[p], c = f->column[q];
+        f->row[p] = f->row[k], f->row[k] = r;
+        f->column[q] = f->column[k], f->column[k] = c;
+        if (!(fabs(f->A[r][c]) > small * fabs(f->A[f->row[0]][f->column[0]])))
+            return;
+        for (int i = k + 1; i < n; i++) {
+            double *const other = f->A[f->row[i]];
+            other[c] /= f->A[r][c];
+            for (int j = k + 1; j < n; j++)
+                other[f->column[j]] -= other[c] * f->A[r][f->column[j]];
+        }
+    }
+}
+
+/* Adds a solution of A x = b; unknowns that nothing determines are left as they are. */
+static void lane_solve(const struct lane_factors *f, const double *b, double *x)
+{
+    double left[LANE_ROWS] = {0}, add[LANE_ROWS];
+    for (int i = 0; i < f->rank; i++) {
+        left[i] = b[f->row[i]];
+        for (int k = 0; k < i; k++)
+            left[i] -= f->A[f->row[i]][f->column[k]] * left[k];
+    }
+    for (int i = f->rank - 1; i >= 0; i--) {
+        add[i] = left[i];
+        for (int j = i + 1; j < f->rank; j++)
+            add[i] -= f->A[f->row[i]][f->column[j]] * add[j];
+        add[i] /= f->A[f->row[i]][f->column[i]];
+        x[f->column[i]] += add[i];
+    }
+}
+
+/* What column k, beyond the rank, can be exchanged for: n with A n = 0, n of the column 1. */
+static void lane_null(const struct lane_factors *f, int rank, int k, double *n)
+{
+    for (int i = 0; i < f->n; i++)
+        n[i] = 0;
+    n[f->column[k]] = 1;
+    for (int i = rank - 1; i >= 0; i--) {
+        double sum = -f->A[f->row[i]][f->column[k]];
+        for (int j = i + 1; j < rank; j++)
+            sum -= f->A[f->row[i]][f->column[j]] * n[f->column[j]];
+        n[f->column[i]] = sum / f->A[f->row[i]][f->column[i]];
+    }
+}
+
 /* ---- all stick ------------------------------------------------------------------------------- */
 
 /* Moves r by a multiple of n where that changes no velocity. */
@@ -284,8 +350,7 @@ static void lane_share(const struct lane_problem *p, const double *n, double *r)
 static bool lane_hold(const struct lane_problem *p, double *r)
 {
     double scale[LANE_ROWS], u[LANE_ROWS], null[LANE_ROWS][LANE_ROWS];
-    double A[LANE_ROWS * LANE_ROWS];
-    struct gauss f;
+    struct lane_factors f;
     const int n = p->rows;
     for (int i = 0; i < n; i++) {
         scale[i] = 1 / sqrt(fmax(fabs(p->D[i][i]), 1e-300));
@@ -293,23 +358,23 @@ static bool lane_hold(const struct lane_problem *p, double *r)
     }
     for (int i = 0; i < n; i++)
         for (int j = 0; j < n; j++)
-            A[i * n + j] = scale[i] * p->D[i][j] * scale[j];
-    gauss_factor(n, A, CONTACT_RANK_GUARD, &f);
+            f.A[i][j] = scale[i] * p->D[i][j] * scale[j];
+    lane_factor(n, CONTACT_RANK_GUARD, &f);
     for (int round = 0; round < 2; round++) { /* once more with what is left */
         double b[LANE_ROWS] = {0}, x[LANE_ROWS] = {0};
         lane_velocities(p, r, u);
         for (int i = 0; i < n; i++)
             b[i] = -(scale[i] * u[i]);
-        gauss_solve(&f, b, x);
+        lane_solve(&f, b, x);
         for (int i = 0; i < n; i++)
             r[i] += scale[i] * x[i];
     }
     int rank = f.rank, free = 0;
-    while (rank > 0 && fabs(*gauss_at(&f, rank - 1, rank - 1)) <= LANE_PARALLEL)
+    while (rank > 0 && fabs(f.A[f.row[rank - 1]][f.column[rank - 1]]) <= LANE_PARALLEL)
         rank--;
     for (int k = rank; k < n; k++) { /* an orthonormal family, in scaled units */
         double *const own = null[free], length = 0;
-        gauss_null(&f, rank, k, own);
+        lane_null(&f, rank, k, own);
         for (int m = 0; m < free; m++) {
             double along = 0;
             for (int i = 0; i < n; i++)
@@ -363,8 +428,7 @@ static bool lane_in_modes(const struct lane_problem *p, const struct lane_modes 
 {
     int row[LANE_ROWS], n = 0;
     double edge[LANE_ROWS] = {0}, u[LANE_ROWS]; /* of rows of normal impulses */
-    double A[LANE_ROWS * LANE_ROWS];
-    struct gauss f;
+    struct lane_factors f;
     for (int k = 0; k < p->elements; k++) {
         const struct lane_element *const e = &p->element[k];
         if (e->grips && modes->grip[k] == LANE_STICK)
@@ -375,9 +439,9 @@ static bool lane_in_modes(const struct lane_problem *p, const struct lane_modes 
     }
     for (int i = 0; i < n; i++)
         for (int j = 0; j < n; j++)
-            A[i * n + j] =
+            f.A[i][j] =
                 p->D[row[i]][row[j]] + edge[row[j]] * p->D[row[i]][p->element[p->of[row[j]]].first];
-    gauss_factor(n, A, CONTACT_RANK_GUARD, &f);
+    lane_factor(n, CONTACT_RANK_GUARD, &f);
     if (f.rank < n)
         return false;
     for (int i = 0; i < p->rows; i++)
@@ -387,7 +451,7 @@ static bool lane_in_modes(const struct lane_problem *p, const struct lane_modes 
         lane_velocities(p, r, u);
         for (int i = 0; i < n; i++)
             b[i] = -u[row[i]];
-        gauss_solve(&f, b, x);
+        lane_solve(&f, b, x);
         for (int i = 0; i < n; i++) {
             r[row[i]] += x[i];
             if (edge[row[i]] != 0)
