@@ -165,15 +165,10 @@ static void solve(const struct problem *p, int contacts, bool stood, bool most, 
                 D[c][j / 2][a][j % 2] = p->D[2 * c + a][j];
         }
     }
-    const struct contact_problem problem = {D,
-                                            uf,
-                                            contacts == 2 ? 3 : 1,
-                                            active,
-                                            p->friction,
-                                            most ? -1 : 1,
-                                            .shift = shift,
-                                            .last = stood ? last : NULL,
-                                            .known = true};
+    struct contact_problem problem =
+        contact_pose(D, uf, contacts == 2 ? 3 : 1, active, p->friction, most ? -1 : 1);
+    problem.shift = shift;
+    problem.last = stood ? last : NULL, problem.known = true;
     solve_contacts(&problem, LANES_ALL, out, &verdict);
     *ambiguous = verdict.ambiguous, *unsolved = verdict.unsolved;
     for (int i = 0; i < 2 * contacts; i++)

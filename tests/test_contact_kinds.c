@@ -230,15 +230,10 @@ static struct contact_verdict solve(const struct problem *p, bool most, const do
         for (int j = 0; j < p->rows; j++)
             D[c][p->contact[j]][axis[i]][axis[j]] = p->D[i][j];
     }
-    const struct contact_problem problem = {D,
-                                            uf,
-                                            touching,
-                                            active,
-                                            p->friction,
-                                            most ? -1 : 1,
-                                            .shift = shift,
-                                            .last = last,
-                                            .known = true};
+    struct contact_problem problem =
+        contact_pose(D, uf, touching, active, p->friction, most ? -1 : 1);
+    problem.shift = shift;
+    problem.last = last, problem.known = true;
     solve_contacts(&problem, LANES_ALL, out, &verdict);
     if (unique)
         *unique = direct_unique(&problem);

@@ -45,8 +45,8 @@ static void direct_is_exact(void **state)
             const double *const goes_on = slides ? sliding : NULL;
             const contact_set touching = contacts == 1 ? 1 : 3;
             const mask active[2] = {true, contacts == 2};
-            const struct contact_problem asked = {D,        uf, touching,          active,
-                                                  friction, 1,  .sliding = goes_on};
+            struct contact_problem asked = contact_pose(D, uf, touching, active, friction, 1);
+            asked.sliding = goes_on;
             struct direct_mode mode;
             bool sure = false;
             direct_mode_of(&asked, false, &mode);
@@ -113,15 +113,11 @@ static void pairs_are_exact(void **state)
             sliding[1] = sliding[0];
         }
         const mask active[2] = {true, i % 13 != 0};
-        const struct contact_problem asked = {D,
-                                              uf,
-                                              3,
-                                              active,
-                                              friction,
-                                              i % 11 == 0 ? -1 : 1,
-                                              .sliding = i % 3 == 0 ? sliding : NULL,
-                                              .shift = i % 3 == 1 ? shift : NULL,
-                                              .indefinite = i % 5 == 0 && i % 4 != 0};
+        struct contact_problem asked =
+            contact_pose(D, uf, 3, active, friction, i % 11 == 0 ? -1 : 1);
+        asked.sliding = i % 3 == 0 ? sliding : NULL;
+        asked.shift = i % 3 == 1 ? shift : NULL;
+        asked.indefinite = i % 5 == 0 && i % 4 != 0;
         struct lane_problem problem;
         struct lane_choice best;
         double alone[2][2] = {{0}};
@@ -174,7 +170,7 @@ static void small_ones_are_exact(void **state)
             uf[c][0] = small * large[c][0], uf[c][1] = small * large[c][1];
         }
         const mask active[2] = {true, true};
-        struct contact_problem asked = {D, large, 3, active, uniform(&seed, 0, 1.5), .prefer = 1};
+        struct contact_problem asked = contact_pose(D, large, 3, active, uniform(&seed, 0, 1.5), 1);
         struct contact_verdict verdict;
         struct lane_problem problem;
         struct lane_choice best;

@@ -371,6 +371,19 @@ struct contact_problem {
     mask known;
 };
 
+/* A problem of which nothing else is known, nor asked. */
+HOT struct contact_problem contact_pose(const lanes (*D)[CONTACTS][2][2], const lanes (*uf)[2],
+                                        contact_set touching, const mask *active, lanes friction,
+                                        lanes prefer)
+{
+    return (struct contact_problem){.D = D,
+                                    .uf = uf,
+                                    .touching = touching,
+                                    .active = active,
+                                    .friction = friction,
+                                    .prefer = prefer};
+}
+
 /* Largest violations of the laws, m/s, of what is a solution, `most`, and of what is one to
  * rounding, `exact`. Over a very short time velocities change by no more than the first, which
  * admits every mode, also one that pulls a foot into the ground: such are taken only where none is

@@ -165,15 +165,10 @@ HOT void iterate_contacts(const struct step *step, const struct iteration *of,
     }
     lanes r[CONTACTS][2];
     struct contact_verdict now;
-    const struct contact_problem problem = {D,
-                                            uf,
-                                            touching,
-                                            it->active,
-                                            set->friction,
-                                            set->prefer,
-                                            .shift = rebound,
-                                            .last = it->r,
-                                            .known = LANES_NOT(it->decides)};
+    struct contact_problem problem =
+        contact_pose(D, uf, touching, it->active, set->friction, set->prefer);
+    problem.shift = rebound;
+    problem.last = it->r, problem.known = LANES_NOT(it->decides);
     solve_contacts(&problem, of->running, r, &now);
     it->verdict.ambiguous |= of->running & now.ambiguous; /* a decision is taken once in a step */
     it->verdict.unranked |= of->running & now.unranked;

@@ -250,15 +250,10 @@ static inline void between_mode(const struct setting *set, const struct dynamics
     }
     for (int c = 0; c < OWN_CONTACTS; c++)
         last[c][0] = stood[c], last[c][1] = none;
-    const struct contact_problem problem = {e->D,
-                                            e->free,
-                                            touching,
-                                            part,
-                                            set->friction,
-                                            set->prefer,
-                                            .sliding = sliding,
-                                            .last = last,
-                                            .known = LANES_NOT(moves)};
+    struct contact_problem problem =
+        contact_pose(e->D, e->free, touching, part, set->friction, set->prefer);
+    problem.sliding = sliding;
+    problem.last = last, problem.known = LANES_NOT(moves);
     solve_contacts(&problem, LANES_ALL, r, &verdict);
     direct_velocities(e->D, e->free, CONTACT_ALL, r, u);
     trouble->none = any & verdict.unsolved;

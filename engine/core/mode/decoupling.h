@@ -207,14 +207,9 @@ static inline mask decoupling_react(const struct decoupling *of, mask where,
                     for (int i = 0; i < OWN_ACTUATORS; i++)
                         problem.D[c][k][a][b] += reach[c][i][a] * answer[k][b][i];
                 }
-    const struct contact_problem reactions = {problem.D,
-                                              problem.free,
-                                              touching,
-                                              part,
-                                              set->friction,
-                                              set->prefer,
-                                              .sliding = of->contact->slide,
-                                              .indefinite = true};
+    struct contact_problem reactions =
+        contact_pose(problem.D, problem.free, touching, part, set->friction, set->prefer);
+    reactions.sliding = of->contact->slide, reactions.indefinite = true;
     for (int round = 0; round < 2; round++) {
         solve_contacts(&reactions, LANES_ALL, problem.r, &verdict);
         several |= where & verdict.ambiguous;
