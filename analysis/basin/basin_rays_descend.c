@@ -14,7 +14,6 @@
 #include <string.h>
 
 struct simulator {
-    struct scenario s;
     struct starts starts;
     double half[DESCEND_DIMENSIONS]; /* of the range of each factor */
     size_t row, rows;                /* of the table */
@@ -38,7 +37,7 @@ static bool simulate(void *context, size_t count, const double *z, uint8_t *end)
  * over a range. */
 static bool find_paths(struct simulator *own, const struct basin_rays *rays)
 {
-    const struct scenario_axis *axis = &own->s.axis[rays->sample.axis];
+    const struct scenario_axis *axis = &rays->r->read->axis[rays->sample.axis];
     for (int j = 0; j < own->starts.axes; j++) {
         const struct basin_factor *factor = &rays->sample.factor[j];
         struct starts_field *const field = &own->starts.field[own->starts.fields++];
@@ -61,7 +60,7 @@ static bool begin(struct simulator *own, const struct basin_rays *rays, size_t r
                               .row = row,
                               .rows = rays->rows,
                               .progress = progress_begin(false)};
-    if (rays->sample.factors > DESCEND_DIMENSIONS || !results_scenario(r, &own->s))
+    if (rays->sample.factors > DESCEND_DIMENSIONS || !r->read)
         return complain(message, "%.150s: its scenario cannot be simulated by this version",
                         r->file);
     uint64_t index = 0;
@@ -71,15 +70,13 @@ static bool begin(struct simulator *own, const struct basin_rays *rays, size_t r
             at = rays->by[k] == a ? basin_rays_point(rays, row, k) : at;
         index = index * r->axis[a].count + at;
     }
-    bool good = starts_begin(&own->starts, &own->s, index, message);
+    const bool good = starts_begin(&own->starts, r->read, index, message);
     own->starts.axes = (int)rays->sample.factors;
-    if (good && !find_paths(own, rays))
-        good = complain(message,
-                        "%.150s: descents need a factor with a range of its own for every offset",
-                        r->file);
-    if (!good)
-        scenario_free(&own->s);
-    return good;
+    return good && (find_paths(own, rays) ||
+                    complain(message,
+                             "%.150s: descents need a factor with a range of its own for every "
+                             "offset",
+                             r->file));
 }
 
 /* Unit vectors along the shortest ray and others that end, and their ends. */
@@ -148,7 +145,6 @@ bool basin_rays_nearest(const struct basin_rays *rays, size_t row, size_t starts
         nearest->at[k] = nearest->of[k] * own->half[k];
     }
     progress_end(&own->progress);
-    scenario_free(&own->s);
     free(own);
     return good;
 }
