@@ -419,7 +419,7 @@ int sensitivity_study_make(struct sensitivity_study *study, const struct results
     if (code == EXIT_DONE)
         code = choose_axes(study, message);
     if (code == EXIT_DONE && request->of == RESULTS_KIND_COUNT && !request->answer)
-        study->request.of = summary_judged(r->read);
+        study->request.of = summary_judged(r);
     if (code == EXIT_DONE)
         code = read_answers(study, &answers, message);
     if (code == EXIT_DONE &&
