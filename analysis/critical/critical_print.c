@@ -32,21 +32,13 @@ static void islands_text(const struct critical *c, const struct critical_row *ro
         add_text(text, size, ", ... (%zu)", row->islands);
 }
 
-static json_t *pair(const double value[2])
-{
-    json_t *const list = json_array();
-    table_append(list, as_number(value[0]));
-    table_append(list, as_number(value[1]));
-    return list;
-}
-
 static json_t *islands_json(const struct critical *c, const struct critical_row *row)
 {
     json_t *const list = json_array();
     for (size_t k = 0; k < row->islands; k++) {
         const struct critical_island *const island = &c->island[row->island + k];
-        TABLE_APPEND(list, {"from", as_tree(pair(island->from))},
-                     {"to", as_tree(pair(island->to))});
+        TABLE_APPEND(list, {"from", as_tree(table_pair(island->from[0], island->from[1]))},
+                     {"to", as_tree(table_pair(island->to[0], island->to[1]))});
     }
     return list;
 }

@@ -206,13 +206,10 @@ void search_name(const struct search_study *study, size_t k, char *text, size_t 
         snprintf(text, size, "first candidate");
         return;
     }
-    const size_t last = f->length[SEARCH_GENERATION] - 1;
-    const int used = snprintf(text, size, "%s stage %lld",
-                              f->confirmed_candidate[k] < 0 ? "mean after" : "best of",
-                              (long long)f->stage[g] + 1);
-    if (f->restart[last] > 0 && used > 0 && (size_t)used < size)
-        snprintf(text + used, size - (size_t)used, " of beginning %lld",
-                 (long long)f->restart[g] + 1);
+    snprintf(text, size, "%s stage %lld", f->confirmed_candidate[k] < 0 ? "mean after" : "best of",
+             (long long)f->stage[g] + 1);
+    if (f->restart[f->length[SEARCH_GENERATION] - 1] > 0)
+        add_text(text, size, " of beginning %lld", (long long)f->restart[g] + 1);
 }
 
 void search_aim(const struct search_study *study, char *text, size_t size)

@@ -12,8 +12,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_STAGES = SCENARIO_MAX_STAGES * (SCENARIO_MAX_RESTARTS + 1) };
-
 /* ---- what was sought ---------------------------------------------------------------------- */
 
 /* "[0][3]" of a path is left out: what is varied together is told together. */
@@ -207,8 +205,8 @@ static json_t *chosen(const struct search_study *study)
 static void put_stages(struct table *t, const struct search_study *study)
 {
     const struct search_file *const f = &study->f;
-    size_t last[MOST_STAGES], first = 0;
-    const size_t stages = search_stages(study, last, MOST_STAGES);
+    size_t last[SCENARIO_MAX_STAGES * (SCENARIO_MAX_RESTARTS + 1)], first = 0;
+    const size_t stages = search_stages(study, last, sizeof last / sizeof *last);
     for (size_t i = 0; i < stages; i++) {
         const size_t g = last[i];
         TABLE_FACTS(t,
@@ -244,9 +242,8 @@ static void put_confirmed(struct table *t, const struct search_study *study)
             {{"candidate", "candidate", .width = 9},
              f->confirmed_candidate[k] < 0 ? as_nothing(NULL)
                                            : as_whole((uint64_t)f->confirmed_candidate[k])},
-            {{"share", study->plain ? "share %" : "recovered %", "%.2f", .width = 7,
-              .percent = true},
-             as_number(search_share(study, k, SEARCH_OVERALL))},
+            SEARCH_SHARE("share", study->plain ? "share %" : "recovered %", 7,
+                         search_share(study, k, SEARCH_OVERALL)),
             SEARCH_INTERVAL("low", "high", search_interval(study, k, SEARCH_OVERALL)),
             {{"objective", "objective", .width = 9}, as_number(f->confirmed_objective[k])},
             {{"training", "training", .format = format, .width = 8, .percent = study->plain},
@@ -272,15 +269,14 @@ static void put_circumstances(struct table *t, const struct search_study *study)
                      allowed = f->confirmed_allowed[chosen * circumstances + c];
         TABLE_FACTS(
             t, {{"circumstance", "", .left = true}, as_text(f->circumstance[c])},
-            {{"first", "first %", "%.2f", .width = 7, .percent = true},
-             as_number(search_share(study, 0, c))},
-            {{"chosen", "chosen %", "%.2f", .width = 8, .percent = true}, as_number(share)},
+            SEARCH_SHARE("first", "first %", 7, search_share(study, 0, c)),
+            SEARCH_SHARE("chosen", "chosen %", 8, share),
             SEARCH_INTERVAL("chosen_low", "chosen_high", search_interval(study, chosen, c)),
             {{"gain", "gained", "%+.2f", .width = 7, .percent = true}, as_number(gain.share)},
             SEARCH_INTERVAL("gain_low", "gain_high", gain.interval),
             {{"won", .heading = NULL}, as_whole(gain.won)},
             {{"lost", .heading = NULL}, as_whole(gain.lost)},
-            {{"allowed", "allowed %", "%.2f", .width = 9, .percent = true}, as_number(allowed)},
+            SEARCH_SHARE("allowed", "allowed %", 9, allowed),
             {{"of_allowed", "of that", "%.1f", .width = 7, .percent = true},
              as_number(share / allowed)},
             {{"critical_first", "T* first (s)", "%.4g", .width = 12},
@@ -298,10 +294,8 @@ static void put_elsewhere(struct table *t, const struct search_study *study)
     const struct search_file *const f = &study->f;
     for (size_t e = 0; study->done && e < f->length[SEARCH_ELSEWHERE]; e++) {
         TABLE_FACTS(t, {{"where", "", .left = true}, as_text(f->elsewhere[e])},
-                    {{"first", "first %", "%.2f", .width = 8, .percent = true},
-                     as_number(f->elsewhere_first[e])},
-                    {{"chosen", "chosen %", "%.2f", .width = 9, .percent = true},
-                     as_number(f->elsewhere_chosen[e])});
+                    SEARCH_SHARE("first", "first %", 8, f->elsewhere_first[e]),
+                    SEARCH_SHARE("chosen", "chosen %", 9, f->elsewhere_chosen[e]));
         table_end_row(t);
     }
 }

@@ -290,14 +290,15 @@ bool plot_allowed_same(const struct plot_allowed_panel *a, const struct plot_all
 
 /* ---- drawing ------------------------------------------------------------------------------ */
 
-void plot_allowed_write(const struct plot_allowed_panel *panel, struct gnuplot *g, int number)
+void plot_allowed_write(const struct plot_allowed_panel *panel, struct gnuplot *g,
+                        const char *style)
 {
     const size_t n = panel->points;
     size_t first = 0;
     bool open = false;
     while (first < n && !panel->point[first].edge)
         first++;
-    gnuplot_block(g, "allowed%d", number);
+    gnuplot_series(g, "using 1:2 with lines %s", style);
     for (size_t i = 0; i < n + (first == n && n > 0); i++) { /* from an edge on, or closed */
         const struct plot_allowed_point *const point = &panel->point[(first + i) % n];
         if (!point->edge)
@@ -318,7 +319,6 @@ void plot_allowed_legend(const struct plot_allowed_panel *panel, int count, int 
         same = same && panel[k].share == panel[0].share;
         any = any || isfinite(panel[k].share);
     }
-    gnuplot_set(g, "allowed = %d", any);
     if (!any)
         return;
     if (same)

@@ -1,5 +1,6 @@
 /* mechanism.c - the scene of a described mechanism: names, units, ranges, and what belongs to what.
  */
+#include "engine/rest.h"
 #include "engine/scenes/mechanism_pose.h"
 #include "engine/tree.h"
 #include "exchange.h"
@@ -335,6 +336,7 @@ stance_error stance_mechanism_scene(const stance_mechanism *m, stance_scene **sc
         .equilibrium = stance_mechanism_equilibrium,
         .linearise = stance_mechanism_linearise,
         .contact_force = stance_mechanism_contact_force,
+        .rest = stance_rest_holds,
     };
     d->scene.tree = &d->tree;
     const stance_error error = stance_tree_make(&d->m, &d->tree, message);

@@ -3,7 +3,6 @@
  * 0's. */
 #include "search.h"
 #include "cma.h"
-#include "elsewhere.h"
 
 #include "runner/base/message.h"
 #include "runner/base/units.h"

@@ -195,11 +195,11 @@ static json_t *set_facts(const struct design_report *r)
         json_pack("{s:b, s:f, s:f}", "sampled", r->sampled > 0, ".angle",
                   r->scenario->base.settle_angle, ".rate", r->scenario->base.settle_rate);
     put_matrix(r, facts, ".P", (struct sides){false, false}, set->P);
-    put(facts, "level", isfinite(set->level) ? json_real(set->level) : json_null());
-    put(facts, ".level", isfinite(set->level) ? json_real(set->level) : json_string("inf"));
-    put(facts, "binding", json_string(design_bound_name(r, set->binding, name)));
-    put_states(r, facts, ".alone", set->alone, set->extent);
-    put_states(r, facts, ".extent", set->extent, NULL);
+    put(facts, "level", isfinite(set->of.level) ? json_real(set->of.level) : json_null());
+    put(facts, ".level", isfinite(set->of.level) ? json_real(set->of.level) : json_string("inf"));
+    put(facts, "binding", json_string(design_bound_name(r, set->of.binding, name)));
+    put_states(r, facts, ".alone", set->of.alone, set->of.extent);
+    put_states(r, facts, ".extent", set->of.extent, NULL);
     return facts;
 }
 

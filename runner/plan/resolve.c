@@ -13,7 +13,6 @@
 #include "resolve.h"
 #include "ground_line.h"
 
-#include "engine/control/design.h"
 #include "engine/tree.h"
 
 #include "runner/base/message.h"
@@ -127,23 +126,20 @@ static bool take_gains(const stance_scene *scene, const struct scenario_values *
 }
 
 bool resolve_gains(const stance_scene *scene, const struct scenario_values *values,
-                   const stance_equilibrium *equilibrium, const double *A, const double *B,
-                   double *K, struct resolved_gains *how, stance_message *message)
+                   const stance_equilibrium *equilibrium, const stance_plant *plant, double *K,
+                   stance_robustness *how, stance_message *message)
 {
-    const int n = 2 * equilibrium->freedoms, m = scene->actuators;
+    const int n = plant->states, m = plant->inputs;
     double weights[2 * STANCE_MAX_POSTURE];
     const bool places = values->design == DESIGN_PLACE || values->design == DESIGN_PLACE_SCHUR;
     double re[SCENARIO_MAX_POLES], im[SCENARIO_MAX_POLES];
-    const double T = values->sample_time;
     const int poles = scenario_poles(values, re, im);
     char idle[260];
     const bool sampled = values->design_time == DESIGN_SAMPLED;
-    const stance_placement method =
-        values->design == DESIGN_PLACE_SCHUR ? STANCE_SCHUR : STANCE_ROBUST;
-    struct resolved_gains own = {0, NAN};
+    const double T = sampled ? values->sample_time : 0;
 
-    how = how ? how : &own;
-    *how = (struct resolved_gains){0, NAN};
+    if (how)
+        *how = (stance_robustness){0, NAN};
     message->text[0] = '\0';
     stance_error error = STANCE_OK;
     for (int j = 0; j < n; j++)
@@ -156,17 +152,16 @@ bool resolve_gains(const stance_scene *scene, const struct scenario_values *valu
     if (values->design == DESIGN_GAINS) {
         if (!take_gains(scene, values, equilibrium, K, message))
             return false;
+    } else if (sampled && !(T > 0)) {
+        return complain(message,
+                        "controller.design_time: a design for a sampled model needs a "
+                        "sample time above 0, not %.6g s",
+                        T);
     } else if (values->design == DESIGN_LQR) {
-        error = sampled
-                    ? stance_lqr_sampled(n, m, A, B, T, weights, values->torque_weights, K, message)
-                    : stance_lqr(n, m, A, B, weights, values->torque_weights, K, message);
-    } else if (sampled) {
-        error = stance_place_sampled(method, n, m, A, B, T, re, im, K, &how->sweeps,
-                                     &how->condition, message);
-    } else if (method == STANCE_SCHUR) {
-        error = stance_place_schur(n, m, A, B, re, im, K, message);
+        error = stance_lqr(plant, T, weights, values->torque_weights, K, message);
     } else {
-        error = stance_place(n, m, A, B, re, im, K, &how->sweeps, &how->condition, message);
+        error = stance_place(values->design == DESIGN_PLACE_SCHUR ? STANCE_SCHUR : STANCE_ROBUST,
+                             plant, T, &(stance_poles){re, im}, K, how, message);
     }
     for (int i = 0; error == STANCE_OK && i < m * n; i++)
         if (!isfinite(K[i]))
@@ -186,14 +181,16 @@ bool resolve_gains(const stance_scene *scene, const struct scenario_values *valu
     return error == STANCE_OK;
 }
 
-stance_error resolve_loop(int n, int m, const double *A, const double *B, const double *K,
-                          double interval, double *loop)
+stance_error resolve_loop(const stance_plant *plant, const double *K, double interval, double *loop)
 {
+    const int n = plant->states, m = plant->inputs;
+    const double *const A = plant->A, *const B = plant->B;
     double Ad[4 * STANCE_MAX_POSTURE * STANCE_MAX_POSTURE];
     double Bd[2 * STANCE_MAX_POSTURE * STANCE_MAX_ACTUATORS];
     if (interval > 0) {
-        const stance_error error = stance_discretise(n, m, A, B, interval, Ad, Bd);
-        return error == STANCE_OK ? resolve_loop(n, m, Ad, Bd, K, 0, loop) : error;
+        const stance_error error = stance_discretise(plant, interval, Ad, Bd);
+        const stance_plant held = {n, m, Ad, Bd};
+        return error == STANCE_OK ? resolve_loop(&held, K, 0, loop) : error;
     }
     for (int i = 0; i < n; i++) {
         for (int j = 0; j < n; j++) {
@@ -219,7 +216,8 @@ static bool design_state_feedback(const stance_scene *scene, const struct scenar
     const stance_error error = scene->linearise(scene, model, &equilibrium, A, B);
     if (error != STANCE_OK)
         return complain(message, "linearisation: %s", stance_error_text(error));
-    if (!resolve_gains(scene, values, &equilibrium, A, B, K, NULL, message))
+    if (!resolve_gains(scene, values, &equilibrium,
+                       &(stance_plant){2 * equilibrium.freedoms, m, A, B}, K, NULL, message))
         return false;
     const int n = 2 * equilibrium.freedoms;
     for (int i = 0; i < m * n; i++)

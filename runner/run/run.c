@@ -89,7 +89,7 @@ static void take_file(struct run *run)
 
     if (!run_claim_file(run, &exists))
         return;
-    changed_scenario_clear(run->file);
+    adopt_clear(run->file);
     run->resume = exists && o->resume;
     run->replace = exists && o->force;
     run_old_open(run);
@@ -147,7 +147,7 @@ static void stage_plan(struct run *run)
     else if (!plan_make(&run->plan, run->scenario, o->single, o->single_case, o->trace, &error) ||
              (o->shard.count > 0 && !plan_cut(&run->plan, &o->shard, &error)))
         fail_scenario(run, &error);
-    run->plan.ancestors = run->old.origin.ancestors;
+    run->plan.ancestors = run->old.origin.ancestors + run->succeed;
     parallel_broadcast(&run->parallel, &run->plan.ancestors, sizeof run->plan.ancestors);
     run->plan.stop = out_of_time;
     run->plan.stop_context = run;
@@ -161,16 +161,22 @@ void run_stop_early(struct run *run, const char *what)
     }
 }
 
-/* Those that --extend has from the old file; every rank is told which and what they are. */
+/* Whether the file is made of rows of the old one. */
+static bool takes_rows(const struct run *run)
+{
+    return run->succeed || (run->options.extend_count > 0 && !run->resume);
+}
+
+/* Those of the old file; every rank is told which and what they are. */
 static bool take_designs(struct run *run)
 {
     struct plan *plan = &run->plan;
     bool good = true;
 
-    if (run->options.extend_count == 0 || run->options.dry_run)
+    if (!takes_rows(run) || run->options.dry_run)
         return true;
     if (run->parallel.rank == 0)
-        good = run_extend_designs(run);
+        good = run_old_designs(run);
     parallel_broadcast(&run->parallel, &good, sizeof good);
     parallel_broadcast(&run->parallel, plan->design,
                        plan->designs * plan->design_size * sizeof *plan->design);
@@ -183,7 +189,7 @@ static void stage_designs(struct run *run)
     struct plan_error error = {0};
     bool good = true;
 
-    if (run->resume)
+    if (run->resume && !run->succeed)
         return; /* they are in the file */
     if (!take_designs(run))
         return;
@@ -199,7 +205,7 @@ static void stage_designs(struct run *run)
         fail_scenario(run, &error);
     else if (run->options.dry_run && run->parallel.rank == 0)
         report_plan(&run->plan, run->parallel.size, run->file, false, "stance run");
-    if (good && run->parallel.rank == 0)
+    if (good && run->parallel.rank == 0 && !run->resume)
         run->warned = warnings_print(&run->plan, "stance run");
     run->over = run->options.dry_run;
 }
@@ -253,19 +259,17 @@ static void stage_create(struct run *run)
     if (run->resume && !run->succeed)
         return;
     char *hosts = collect_hosts(&run->parallel);
-    if (run->parallel.rank == 0 && run->succeed) {
-        run_succeed(run, hosts);
-    } else if (run->parallel.rank == 0) {
-        if (run->replace && unlink(run->file) != 0) {
+    if (run->parallel.rank == 0) {
+        if (run->replace && !takes_rows(run) && unlink(run->file) != 0)
             run_fail(run, EXIT_IO, "stance run: cannot replace %.150s: %s", run->file,
                      strerror(errno));
-        } else if (!store_create(run->file, &run->plan, NULL, run->parallel.size, hosts,
-                                 &run->message)) {
+        else if (takes_rows(run))
+            run_old_rows(run, hosts);
+        else if (!store_create(run->file, &run->plan, NULL, run->parallel.size, hosts,
+                               &run->message))
             run_fail_io(run);
-        }
     }
     free(hosts);
-    parallel_broadcast(&run->parallel, &run->plan.ancestors, sizeof run->plan.ancestors);
 }
 
 static void stage_open(struct run *run)
@@ -278,15 +282,6 @@ static void stage_open(struct run *run)
         run_fail_io(run);
     else
         store_set_spans(run->store, one_host);
-}
-
-/* Rows of the old file, which is let go. */
-static void stage_extend(struct run *run)
-{
-    if (run->old.store && run->options.extend_count > 0)
-        run_extend_copy(run);
-    adopt_close(&run->old);
-    lock_release(&run->old_lock);
 }
 
 static void stage_compute(struct run *run)
@@ -353,7 +348,6 @@ int run_all(struct run *run, int argc, char **argv, void (*stage_options)(struct
         {stage_create, "creating the results file"},
         {stage_open, "opening the results file"},
         {stage_kernels, "compiling kernels"}, /* where they were to wait for the designs */
-        {stage_extend, "copying the results of the old file"},
         {stage_compute, "computing"},
         {stage_timing, "storing times"},
         {stage_close, "closing the results file"},

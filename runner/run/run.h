@@ -102,13 +102,11 @@ bool run_claim_file(struct run *run, bool *exists);
 /* old.c, on rank 0, each fails where that cannot be. What --resume goes on with, or --extend from
  * (which is locked): whether it is of the scenario, which takes over its axes. */
 bool run_old_open(struct run *run);
-/* Whether a scenario can be extended; the old file's designs into the plan; its rows into the open
- * file. */
+/* Whether a scenario can be extended. */
 bool run_extend_check(struct run *run, const struct scenario *s);
-bool run_extend_designs(struct run *run);
-bool run_extend_copy(struct run *run);
-/* The file goes on with a scenario that is not its own. */
-void run_succeed(struct run *run, const char *hosts);
+/* The old file's designs into the plan, where it takes rows over; makes the file of its rows. */
+bool run_old_designs(struct run *run);
+void run_old_rows(struct run *run, const char *hosts);
 /* A stop before there is a file. */
 void run_stop_early(struct run *run, const char *what);
 

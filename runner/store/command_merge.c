@@ -100,34 +100,17 @@ static bool at_rest(const struct request *request)
     return true;
 }
 
-/* The file is made under another name and takes its own when it is whole. */
-static bool write_file(const struct request *request, struct merge *m)
-{
-    char made[1100];
-    struct lock lock;
-    snprintf(made, sizeof made, "%s.merging", request->output);
-    m->usage = false;
-    if (!lock_take(&lock, request->output, &m->message))
-        return false;
-    unlink(made);
-    bool good = merge_write(m, made);
-    if (good && m->rows.copied == 0) {
-        m->usage = true;
-        good = complain(&m->message, "none of the %zu files has a case that is computed", m->parts);
-    }
-    good = good && store_take_place(made, request->output, &m->message);
-    if (!good)
-        unlink(made);
-    lock_release(&lock);
-    return good;
-}
-
 static int work(void *context)
 {
     const struct request *request = context;
     struct merge m;
     store_prepare();
-    const bool good = merge_plan(&m, request->files, request->count) && write_file(request, &m);
+    struct lock lock = {.descriptor = -1};
+    bool good = merge_plan(&m, request->files, request->count);
+    m.usage = m.usage && !good;
+    good =
+        good && lock_take(&lock, request->output, &m.message) && merge_write(&m, request->output);
+    lock_release(&lock);
     if (good)
         print_result(request, &m);
     else

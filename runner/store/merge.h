@@ -41,7 +41,7 @@ struct merge {
 
 /* Reads what the parts are and finds how they fit. Release in any case. */
 bool merge_plan(struct merge *merge, const char *const *files, size_t count);
-/* Writes the merged file, which must not exist. False: nothing is left of it. */
+/* Makes the merged file (adopt_make). */
 bool merge_write(struct merge *merge, const char *file);
 void merge_free(struct merge *merge);
 

@@ -229,9 +229,10 @@ HOT void iterate_newton(const struct step *step, const struct iteration *of, str
                    torque, torque_rate);
 
     lanes dw[SCENE_COORDINATES];
-    scene_residual(&set->body, h, from->t + METHOD_THETA * h, u, trig, v, change, torque, residual);
-    scene_factor(&set->body, h, moves, lever, direction_lever, trig, linear.direction, v, change,
-                 it->r, step->coupled, torque_rate, &linear.J);
+    const scene_guess at = {h, from->t + METHOD_THETA * h, u, trig, v, change};
+    const scene_slopes by = {moves, lever, direction_lever, linear.direction, it->r, torque_rate};
+    scene_residual(&set->body, &at, torque, residual);
+    scene_factor(&set->body, &at, &by, step->coupled, &linear.J);
     EACH (i, 0, SCENE_COORDINATES)
         residual[i] = -residual[i];
     scene_solve(&linear.J, step->coupled, residual, dw);

@@ -57,7 +57,7 @@ HOT void dynamics_place(const struct setting *set, contact_set touching, bool pu
     scene_inertia(&set->body, &e->trig, A);
 #ifdef SCENE_SERVOS
     for (int i = 0; i < OWN_ACTUATORS && pushes; i++)
-        scene_actuator_response(&set->body, A, i, e->push[i]);
+        scene_actuator_response(A, i, e->push[i]);
 #else
     (void)pushes;
 #endif
@@ -86,7 +86,8 @@ HOT void dynamics_motion(const struct setting *set, const struct state *at, cons
     lanes load[SCENE_COORDINATES];
     EACH (i, 0, SCENE_ACTUATORS)
         e->torque[i] = torque[i];
-    scene_forces(&set->body, at->t, at->s, &e->trig, at->w, e->torque, load);
+    const scene_guess here = {.t = at->t, .s = at->s, .trig = &e->trig, .w = at->w};
+    scene_residual(&set->body, &here, e->torque, load);
     scene_solve(A, false, load, e->acceleration);
     EACH_CONTACT (c, 0) {
         lanes curvature[2], forced[2];
