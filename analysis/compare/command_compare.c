@@ -6,7 +6,7 @@
 #include "runner/base/command.h"
 #include "runner/base/message.h"
 #include "runner/base/sandbox.h"
-#include "runner/store/results_rows.h"
+#include "runner/store/results.h"
 
 #include <inttypes.h>
 #include <math.h>

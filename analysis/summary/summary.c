@@ -4,7 +4,7 @@
 #include "analysis/statistics/faces.h"
 #include "analysis/statistics/statistics.h"
 #include "runner/plan/ground_line.h"
-#include "runner/store/results_rows.h"
+#include "runner/store/results.h"
 
 #include <ctype.h>
 #include <math.h>

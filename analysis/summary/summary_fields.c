@@ -3,7 +3,7 @@
 
 #include "runner/base/problem.h"
 #include "runner/scenario/schema.h"
-#include "runner/store/results_rows.h"
+#include "runner/store/results.h"
 
 #include <math.h>
 #include <stdlib.h>

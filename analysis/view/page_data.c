@@ -9,7 +9,6 @@
 #include "runner/plan/plan.h"
 #include "runner/store/build_info.h"
 #include "runner/store/results.h"
-#include "runner/store/results_rows.h"
 
 #include "runner/base/command.h"
 
