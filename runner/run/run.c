@@ -60,25 +60,24 @@ static void stage_scenario(struct run *run)
 
 /* ---- the file ----------------------------------------------------------------------------- */
 
-static void name_file(struct run *run)
+void run_name_file(struct run *run)
 {
     const struct options *o = &run->options;
-    if (o->output) {
-        if (snprintf(run->file, sizeof run->file, "%s", o->output) >= (int)sizeof run->file - 8)
-            run_fail(run, EXIT_IO, "stance run: the name of the results file is too long");
-    } else if (o->single) {
-        snprintf(run->file, sizeof run->file, "results/%s-case%" PRIu64 ".h5", run->scenario->name,
-                 o->single_case);
-    } else if (o->extend_count > 0) {
-        snprintf(run->file, sizeof run->file, "results/%s-%" PRIu64 ".h5", run->scenario->name,
-                 o->extend_count);
-    } else if (o->shard.count > 0) {
-        snprintf(run->file, sizeof run->file, "results/%s.shard-%" PRIu64 "-of-%" PRIu64 ".h5",
-                 run->scenario->name, o->shard.number, o->shard.count);
-    } else {
-        snprintf(run->file, sizeof run->file, "results/%s%s.h5", run->scenario->name,
-                 o->ending ? o->ending : "");
-    }
+    char ending[64] = "";
+    if (o->single)
+        snprintf(ending, sizeof ending, "-case%" PRIu64, o->single_case);
+    else if (o->extend_count > 0)
+        snprintf(ending, sizeof ending, "-%" PRIu64, o->extend_count);
+    else if (o->shard.count > 0)
+        snprintf(ending, sizeof ending, ".shard-%" PRIu64 "-of-%" PRIu64, o->shard.number,
+                 o->shard.count);
+    else if (o->ending)
+        snprintf(ending, sizeof ending, "%s", o->ending);
+    const int length = o->output ? snprintf(run->file, sizeof run->file, "%s", o->output)
+                                 : snprintf(run->file, sizeof run->file, "results/%s%s.h5",
+                                            run->scenario->name, ending);
+    if (length >= (int)sizeof run->file - 8)
+        run_fail(run, EXIT_IO, "stance %s: the name of the file is too long", run->argv[0]);
 }
 
 /* Rank 0: where the results go, whether they may, and nobody else writes there. */
@@ -97,7 +96,7 @@ static void take_file(struct run *run)
 
 static void stage_claim(struct run *run)
 {
-    name_file(run);
+    run_name_file(run);
     if (run->parallel.rank == 0 && !run->options.dry_run && run->failure.code == EXIT_DONE)
         take_file(run);
     parallel_broadcast(&run->parallel, &run->resume, sizeof run->resume);
