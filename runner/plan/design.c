@@ -150,10 +150,10 @@ static bool gains(struct design_report *r, const struct resolved_design *known,
     const double begin[STANCE_MAX_COORDINATES] = {0};
     stance_case c = {0};
 
-    r->how = (struct resolved_gains){0, NAN};
+    r->how = (struct resolved_gains){r->K, 0, NAN};
     const stance_law *const law = scenario_law(values);
     if (law->designed && !known &&
-        !resolve_gains(scene, values, &r->equilibrium, r->A, r->B, r->K, &r->how, message))
+        !resolve_gains(scene, values, &r->equilibrium, r->A, r->B, &r->how, message))
         return false;
     if (!law->designed && r->states < 2 * scene->postures)
         return complain(message, "a law that is not designed acts on what the contacts hold, too: "

@@ -54,8 +54,9 @@ bool resolve_keep_design_inputs(const stance_scene *scene, struct scenario_value
 bool resolve_equilibrium(const stance_scene *scene, const struct scenario_values *values,
                          double *model, stance_equilibrium *equilibrium, stance_message *message);
 
-/* How the gains came about. */
+/* Gains, and how they came about. */
 struct resolved_gains {
+    double *gain;     /* [actuators][states], by whoever asks for them */
     int sweeps;       /* of robust pole placement; 0: another design */
     double condition; /* of its eigenvectors; NAN: another design */
 };
@@ -66,11 +67,10 @@ int resolve_state(const stance_scene *scene, const stance_equilibrium *equilibri
 /* column[2 postures]: whether it is one of them. Gains of the others are 0. */
 void resolve_free(const stance_scene *scene, const stance_equilibrium *equilibrium, bool *column);
 
-/* K[actuators][states] of a state-feedback law for x' = A x + B u: designed, or as given. `how`
- * may be NULL. */
+/* The gains K of a state-feedback law for x' = A x + B u: designed, or as given. */
 bool resolve_gains(const stance_scene *scene, const struct scenario_values *values,
                    const stance_equilibrium *equilibrium, const double *A, const double *B,
-                   double *K, struct resolved_gains *how, stance_message *message);
+                   struct resolved_gains *K, stance_message *message);
 
 /* loop[n][n] = A - B K; with interval > 0 of the model sampled so, torques held in between. */
 stance_error resolve_loop(int n, int m, const double *A, const double *B, const double *K,
