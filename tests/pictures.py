@@ -337,7 +337,7 @@ def samples():
     p = Picture("sample-sample.svg")
     paths = [n for n in data if n.startswith(("ground.", "controller.", "initial.")) and data[n].shape == (40,)]
     says(p, "200 cases at 40 points of a design, sobol; what is stabilised is cut by the box at initial.offset.theta (lower end)",
-         "controller.torque_limit (N m)", "stabilised (%), bars: 95 % interval")
+         "controller.torque_limit (N m)", "stabilised (%)", "bars: 95 % interval")
     panel, marks = p.panels[0], p.panels[0].marks()
     # each point is drawn at its values, in the palette's colour of its share
     axis = names(data).shape.index(40)
@@ -485,7 +485,7 @@ def sensitivities():
     stance("plot", "what.h5")
     study = json.loads(stance("sensitivity", "what.h5", "--json"))["tables"][0]["factors"]
     p = Picture("what-sensitivity.svg")
-    says(p, "share of the variance", "controller.model.trunk_mass, hip_mass", "controller.torque_limit")
+    says(p, "share of the variance")
     assert p.legend() == {"first: the factor alone": HUES[0], "total: with interactions": HUES[1]}
     panel = p.panels[0]
     for hue, measure in ((HUES[0], "first"), (HUES[1], "total")):
@@ -494,7 +494,7 @@ def sensitivities():
         close(panel.x(marks[:, 0]), [f[measure]["estimate"] for f in rows], 0.01)
         assert (np.diff(marks[:, 1]) > 0).all() # the most important above
         for f, (_, y) in zip(rows, marks): # named beside its marks
-            assert [t for _, ty, t, _ in p.texts if abs(ty - 3.9 - y) < 8 and t.split(",")[0] == f["path"]], f["path"]
+            assert [t for ty, t in panel.words(1) if abs(ty - y) < 8 and t.split(",")[0] == f["path"]], f["path"]
         bars = [q[2] for q in panel.lines if q[0] == hue and len(q[2]) == 2 and q[2][0][1] == q[2][1][1]]
         ends = sorted((min(a[0], b[0]), max(a[0], b[0])) for a, b in bars)
         wanted = sorted((f[measure]["low"], f[measure]["high"]) for f in rows if f[measure]["high"] > f[measure]["low"])
@@ -568,8 +568,7 @@ def failures():
         assert (hexes(image_of(panel)) == np.vectorize(colours.get)(verdicts.T)).all(), row["method"]
         spans(panel, 0, x, log=True)
         spans(panel, 1, y, log=True)
-        titles = [t for tx, ty, t, _ in p.texts if tx is not None and abs(tx - (panel.left + panel.right) / 2) < 2 and
-                  0 < panel.top - ty < 14]
+        titles = [t for tx, ty, t, _ in p.texts if tx is not None and abs(tx - panel.left) < 2 and 0 < panel.top - ty < 14]
         assert titles and titles[0].startswith(row["method"]), titles
         for n in row["cases"].values(): # of the table
             share = 100 * n / verdicts.size
@@ -581,7 +580,7 @@ def failures():
             close(np.log10(panel.x(line[:, 0], log=True)), steps, 0.05)
     assert any(q[0] == "000000" for panel in p.panels for q in panel.lines)
     p = Picture("failure.local-energy.svg")
-    says(p, "failed", "largest share of a map:", *[f"{r['energy_share']:.2g}" for r in study["rows"]])
+    says(p, "failed", "over each map: the largest share", *[f"{r['energy_share']:.2g}" for r in study["rows"]])
     top = [cividis([math.log10(min(max(r["energy_share"], 1e-16), 10))], -16, 1)[0] for r in study["rows"]]
     for panel, row, wanted in zip(p.panels, study["rows"], top):
         pixels = image_of(panel)

@@ -188,6 +188,16 @@ static int run(int argc, char **argv)
     return wrong ? command_usage(&command_basin, wrong) : report_run(&request.report);
 }
 
+static const struct say_key keys[] = {
+    {NULL, "", basin_keys},
+    {NULL, "of --threshold:", basin_threshold_keys},
+    {NULL, "of --lost:", basin_loss_keys},
+    {NULL, "of --allowed:", basin_allowed_keys},
+    {NULL, "of --answer:", basin_answer_keys},
+    {NULL, "and of rays:", basin_rays_keys},
+    {0},
+};
+
 #define TO(member) OPTION_TO(struct request, member)
 #define QUESTIONS "--threshold --lost --rank --answer --allowed --descend --boundary"
 static const struct option options[] = {
@@ -246,7 +256,7 @@ static const struct option options[] = {
              "`half_width` and both outcomes"},
     {OPTION_TIME_LIMIT},
     {REPORT_CSV, .text = "a row of numbers for each row of the tables"},
-    {REPORT_JSON, .text = "the same as JSON, with the keys"},
+    {REPORT_JSON, .keys = keys, .text = "the same as JSON, with the keys"},
     {0},
 };
 
@@ -320,32 +330,5 @@ const struct command command_basin = {
     "downhill to the nearest end (analysis/basin/basin_descend.h; a few hundred to a few thousand "
     "cases each). How many of them agree, and how large a dip would have been missed, tells how "
     "sure that is.\n",
-    "    outcome, within, level, box_side, design (grid, or the sample's method), starts:\n"
-    "    [paths],\n"
-    "    parameters: [paths], averaged: [paths], box, unit, weights: {path: size}\n"
-    "    rows           [{at: {path: value}, cases, inside, failed, pending, share, volume, reach "
-    "(the likely error at the level), low, high, cells, crossed, entropy, boundary_entropy, "
-    "boxes, mixed_boxes, fractal, alpha, alpha_error, alpha_distances (number of those fitted), "
-    "alpha_missing (why there is none: small, none, wide, bent, few), dimension, distances: "
-    "[cells], uncertain: [share], cut: [{path, end: lower or upper, at}], connected, "
-    "connected_reach, connected_low, connected_high, bounded, connected_cut: [as cut], nearest, "
-    "nearest_least, median, median_least, leaving (share), nearest_at: {path: value}, extent: "
-    "{path: [low, high]}}]; null where there is none\n"
-    "    of --threshold: outcome, threshold, of, unit, level, within, rows [{at, first_share,\n"
-    "                   last_share, value (null: not crossed), low, high (null: beyond the last\n"
-    "                   value), before, after (values between which it is)}]\n"
-    "    of --lost: outcome, of, starts, unknown, kept, lost (values between which the first are\n"
-    "                   lost), first (case), first_at: {path: value}, rows [{value, lost,\n"
-    "                   lost_so_far, share}]\n"
-    "    of --allowed: outcome, rows [{at, starts, allowed, used, outside (shares), why (there\n"
-    "                   is no such set), unreached (modes that no torque moves and that do not\n"
-    "                   decay), glued (several contacts carry), slipped, lifted, neither,\n"
-    "                   unknown: {starts, farthest (null: no growth suffices), case}}]\n"
-    "    of --answer: outcome, answer, rows [{at, cases, smallest, median, q90, q99, largest,\n"
-    "                   largest_case}]\n"
-    "    and of rays: outcome, starts, rays (number), rows [{at, crossing, open, outside,\n"
-    "                   nearest: {scale, bracket: [low, high], at: {path: value}, of_ranges:\n"
-    "                   {path: in units of half the range}, starts, agree, unseen (share of\n"
-    "                   directions), simulations, failed}, smallest, median, largest, first_ray,\n"
-    "                   first_bracket: [low, high], first_at: {path: value}}]\n",
+    NULL,
 };

@@ -9,9 +9,8 @@
 
 #include <math.h>
 
-GNUPLOT_SCRIPT(plot_rays_gp, "analysis/basin/plot_rays.gp");
-
 enum { CURVES = 6 };
+static const int types[CURVES] = {7, 5, 9, 11, 15, 13}; /* of points */
 
 struct page {
     struct gnuplot g;
@@ -87,53 +86,68 @@ static void put_end(struct page *page, size_t p, double scale)
                 scale * sample->factor[1].of->value[p]);
 }
 
-/* The curve, those rays that were not followed to an end, and the shortest ray. */
+/* A diamond at the nearest end, on whatever is there. */
+static void put_nearest(struct page *page, size_t curve, double x, double y)
+{
+    gnuplot_series(&page->g,
+                   "using 1:2 with points pt 13 ps 1.8 lc rgb 0x000000 notitle, '' using 1:2 with "
+                   "points pt 13 ps 1.2 lc rgb %s",
+                   gnuplot_hue(curve));
+    GNUPLOT_ROW(&page->g, x, y);
+}
+
+/* The curve, those rays that were not followed to an end, the shortest ray and the nearest end. */
 static void put_curve(struct page *page, size_t curve, const struct statistics_place *order)
 {
     struct gnuplot *const g = &page->g;
+    const bool several = page->curves > 1;
+    const char *const hue = gnuplot_hue(curve);
     const size_t points = page->rays->sample.points;
     const struct basin_ray *const ray = rays_of(page, curve);
-    const struct basin_nearest *const nearest = &page->nearest[curve];
     struct basin_reach reach;
     if (!gnuplot_needs(g, basin_rays_reach(page->rays, row_of(page, curve), &reach) ||
                               statistics_no_memory(page->rays->r, g->plot->message)))
         return;
-    gnuplot_block(g, "curve%zu", curve + 1);
+    gnuplot_series(g,
+                   "using 1:2 with lines lw 1.6 lc rgb %s notitle, '' using 1:2 every %d with "
+                   "points pt %d ps %g lc rgb %s",
+                   hue, several ? 8 : 1, several ? types[curve] : 7, several ? 0.9 : 0.3, hue);
     for (size_t i = 0; i <= points; i++)
         put_end(page, order[i % points].index, ray_end(&ray[order[i % points].index]));
-    gnuplot_block(g, "open%zu", curve + 1);
+    gnuplot_series(g, "using 1:2 with points pt 6 ps 0.7 lc rgb %s", hue);
     for (size_t p = 0; p < points; p++)
         put_end(page, p, ray[p].end == RAY_OPEN ? ray[p].low : NAN);
-    gnuplot_block(g, "first%zu", curve + 1);
+    gnuplot_series(g, "using 1:2 with lines lw 1.6 dt 2 lc rgb %s", hue);
     GNUPLOT_ROW(g, 0, 0);
     put_end(page, reach.first, reach.count[RAY_CROSSES] > 0 ? reach.smallest : 0);
-    gnuplot_block(g, "nearest%zu", curve + 1);
-    if (is_found(nearest))
-        GNUPLOT_ROW(g, nearest->at[0], nearest->at[1]);
-}
-
-/* Symmetric about the equilibrium, around all ends. */
-static void put_range(struct page *page, int k, const char *which)
-{
-    const struct basin_sample *sample = &page->rays->sample;
-    double most = 0;
-    for (size_t c = 0; c < page->curves; c++) {
-        for (size_t p = 0; p < sample->points; p++) {
-            const double end = ray_end(&rays_of(page, c)[p]) * fabs(sample->factor[k].of->value[p]);
-            most = end > most ? end : most; /* false for NAN */
-        }
-    }
-    plot_label_write(sample->factor[k].of, &page->g, which);
-    gnuplot_number(&page->g, most > 0 ? 1.08 * most : 1, "%s_most", which);
+    if (is_found(&page->nearest[curve]))
+        put_nearest(page, curve, page->nearest[curve].at[0], page->nearest[curve].at[1]);
 }
 
 static void put_plane(struct page *page)
 {
+    const struct basin_sample *const sample = &page->rays->sample;
     const struct statistics_place *const order = sort_directions(page);
-    put_range(page, 0, "x");
-    put_range(page, 1, "y");
+    for (int k = 0; k < 2; k++) { /* symmetric about the equilibrium, around all ends */
+        double most = 0;
+        for (size_t c = 0; c < page->curves; c++)
+            for (size_t p = 0; p < sample->points; p++)
+                most =
+                    fmax(most, ray_end(&rays_of(page, c)[p]) *
+                                   fabs(sample->factor[k].of->value[p])); /* NAN is passed over */
+        most = most > 0 ? 1.08 * most : 1;
+        const char *const axis = gnuplot_axis(&page->g, k ? 'y' : 'x', PLOT_LINEAR,
+                                              (struct plot_range){-most, most}, "", "");
+        plot_label_write(sample->factor[k].of, &page->g, axis);
+    }
+    gnuplot_panel(&page->g, 440, "");
     for (size_t c = 0; order && c < page->curves; c++)
         put_curve(page, c, order);
+    gnuplot_series(&page->g, "using 1:2 with points pt 1 ps 1.6 lw 2 lc rgb 0x000000");
+    GNUPLOT_ROW(&page->g, 0, 0);
+    gnuplot_note(&page->g, "cross: the equilibrium");
+    gnuplot_note(&page->g, "dashed: the ray that ends first");
+    gnuplot_note(&page->g, "circles: followed no further");
 }
 
 /* ---- by scale ----------------------------------------------------------------------------- */
@@ -143,8 +157,17 @@ static void put_distribution(struct page *page)
     const struct basin_rays *rays = page->rays;
     struct gnuplot *const g = &page->g;
     const size_t points = rays->sample.points;
-    double *const end = gnuplot_room(g, points, sizeof *end);
-    plot_label_write(&rays->r->axis[rays->scale], g, "x");
+    double *const end = gnuplot_room(g, points, sizeof *end), most = 0;
+    for (size_t c = 0; c < page->curves; c++)
+        for (size_t p = 0; p < points; p++)
+            if (rays_of(page, c)[p].end == RAY_CROSSES)
+                most = fmax(most, basin_ray_middle(&rays_of(page, c)[p]));
+    const char *const axis = gnuplot_axis(
+        g, 'x', PLOT_LINEAR, (struct plot_range){0, most > 0 ? 1.05 * most : 1}, "", "");
+    plot_label_write(&rays->r->axis[rays->scale], g, axis);
+    gnuplot_panel(g, 440, "");
+    gnuplot_axis(g, 'y', PLOT_LINEAR, (struct plot_range){0, 100}, "directions that have ended (%)",
+                 "");
     for (size_t c = 0; end && c < page->curves; c++) {
         const struct basin_ray *const ray = rays_of(page, c);
         size_t n = 0;
@@ -152,21 +175,23 @@ static void put_distribution(struct page *page)
             if (ray[p].end == RAY_CROSSES || ray[p].end == RAY_OUTSIDE)
                 end[n++] = ray[p].end == RAY_CROSSES ? basin_ray_middle(&ray[p]) : 0;
         statistics_sort(end, n);
-        gnuplot_block(g, "curve%zu", c + 1);
+        gnuplot_series(g,
+                       "using 1:2 with steps lw 1.8 lc rgb %s notitle, '' using 1:2 every 40::%zu "
+                       "with points pt %d ps 0.9 lc rgb %s",
+                       gnuplot_hue(c), 12 * (c + 1), page->curves > 1 ? types[c] : -1,
+                       gnuplot_hue(c));
         GNUPLOT_ROW(g, 0, 0);
         for (size_t i = 0; i < n; i++)
             GNUPLOT_ROW(g, end[i], 100 * (double)(i + 1) / (double)points);
-        gnuplot_block(g, "nearest%zu", c + 1);
         if (is_found(&page->nearest[c]))
-            GNUPLOT_ROW(g, page->nearest[c].end.high, 0);
+            put_nearest(page, c, page->nearest[c].end.high, 0);
     }
 }
 
 /* ---- the page ----------------------------------------------------------------------------- */
 
-static void put_legend(struct page *page, bool plane)
+static void put_legend(struct page *page)
 {
-    static const int types[CURVES] = {7, 5, 9, 11, 15, 13}; /* of points */
     const struct basin_rays *const rays = page->rays;
     const bool several = page->curves > 1;
     char text[400] = "", value[128];
@@ -183,11 +208,6 @@ static void put_legend(struct page *page, bool plane)
         }
         gnuplot_legend(&page->g, gnuplot_hue(c), several, several ? types[c] : 0, text, "");
     }
-    if (plane) {
-        gnuplot_note(&page->g, "cross: the equilibrium");
-        gnuplot_note(&page->g, "dashed: the ray that ends first");
-        gnuplot_note(&page->g, "circles: followed no further");
-    }
     if (is_found(&page->nearest[0]))
         gnuplot_note(&page->g, "diamond: the nearest end");
 }
@@ -195,9 +215,7 @@ static void put_legend(struct page *page, bool plane)
 static bool draw(const struct plot *plot, const struct basin_rays *rays)
 {
     struct page page = {.rays = rays};
-    const bool plane = rays->sample.factors == 2;
-
-    if (!gnuplot_begin(&page.g, plot, "rays", plot_rays_gp))
+    if (!gnuplot_begin(&page.g, plot, "rays", NULL))
         return false;
     page.curves = rays->rows < CURVES ? rays->rows : CURVES;
     seek_nearest(&page);
@@ -208,9 +226,9 @@ static bool draw(const struct plot *plot, const struct basin_rays *rays)
     for (size_t k = 0; nearest && k < rays->sample.factors; k++)
         gnuplot_say(&page.g, "%s %s %.2g", k ? "," : "", rays->sample.factor[k].of->name,
                     page.nearest[0].of[k]);
-    put_legend(&page, plane);
-    gnuplot_set(&page.g, "plane = %d; curves = %zu", plane, page.curves);
-    (plane ? put_plane : put_distribution)(&page);
+    gnuplot_set(&page.g, "chart_width = 520; scaled = 1");
+    (rays->sample.factors == 2 ? put_plane : put_distribution)(&page);
+    put_legend(&page);
     return gnuplot_end(&page.g);
 }
 

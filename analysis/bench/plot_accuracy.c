@@ -5,52 +5,59 @@
 
 #include <math.h>
 
-GNUPLOT_SCRIPT(plot_accuracy_gp, "analysis/bench/plot_accuracy.gp");
-
 /* What a panel shows of a row. */
 enum shown { POSITION, VELOCITY, LABELS };
-
-/* What there is no place for on a logarithmic axis is passed over. */
-static void widen(struct plot_range *range, double value)
-{
-    if (value > 0)
-        plot_widen(range, value);
-}
-
-/* Tells the script; of nothing any range will do. */
-static void put_range(struct gnuplot *g, const struct plot_range *range, const char *name,
-                      int panel)
-{
-    const bool any = range->low <= range->high;
-    gnuplot_number(g, any ? range->low : 0.2, "%s_low[%d]", name, panel);
-    gnuplot_number(g, any ? range->high : 6, "%s_high[%d]", name, panel);
-}
 
 static bool belongs(const struct accuracy *a, size_t k, const stance_method *method)
 {
     return k != a->truth && a->row[k].method == method;
 }
 
-/* Rows of a method in a panel: cost, value, whether that is more than none, cases given up. No
- * cell unlike is fewer than one: so it is drawn at the share of one. */
-static void put_rows(struct gnuplot *g, const struct accuracy *a, const stance_method *method,
-                     enum shown shown, struct plot_range *cost, struct plot_range *error)
+/* What is drawn of a row, a logarithm, NAN: nothing. No cell unlike is fewer than one: so it is
+ * drawn at the share of one, *none. */
+static double place_of(const struct accuracy_row *row, enum shown shown, bool *none)
 {
+    double value = shown == POSITION   ? row->position
+                   : shown == VELOCITY ? row->velocity
+                                       : (double)row->differ / (double)row->compared;
+    if (row->compared == 0 || !(value > 0)) /* a logarithm has no place for zero */
+        value = NAN;
+    *none = shown == LABELS && isnan(value) && row->compared > 0;
+    return log10(*none ? 1 / (double)row->compared : value);
+}
+
+/* A method's line over the cost, and its points: open where there is none, a cross where cases were
+ * given up. */
+static void put_method(struct gnuplot *g, const struct accuracy *a, const stance_method *method,
+                       size_t style, enum shown shown)
+{
+    static const int types[] = {7, 5, 9, 11, 13}; /* filled points; one less is the open one */
+    const char *const hue = gnuplot_hue(style);
+    gnuplot_series(g,
+                   "using 1:2 with lines lc rgb %s lw 1.6 notitle, '' using 1:($3 > 0 ? NaN : $2) "
+                   "with points lc rgb %s pt %d ps 1 notitle, '' using 1:($3 > 0 ? $2 : NaN) with "
+                   "points lc rgb %s pt %d ps 0.9 notitle, '' using 1:($4 > 0 ? $2 : NaN) with "
+                   "points lc rgb '#b00000' pt 2 ps 1.6 lw 1.6",
+                   hue, hue, types[style] - 1, hue, types[style]);
     for (size_t k = 0; k < a->rows; k++) {
-        const struct accuracy_row *row = &a->row[k];
-        if (!belongs(a, k, method))
-            continue;
-        double value = shown == POSITION   ? row->position
-                       : shown == VELOCITY ? row->velocity
-                                           : (double)row->differ / (double)row->compared;
-        if (row->compared == 0 || !(value > 0)) /* a logarithm has no place for zero */
-            value = NAN;
-        const bool none = shown == LABELS && isnan(value) && row->compared > 0;
-        const double drawn = none ? 1 / (double)row->compared : value;
-        widen(cost, row->cost.median);
-        widen(error, drawn);
-        GNUPLOT_ROW(g, row->cost.median, drawn, !none, (double)row->failed);
+        bool none;
+        const double place = place_of(&a->row[k], shown, &none);
+        if (belongs(a, k, method))
+            GNUPLOT_ROW(g, log10(a->row[k].cost.median), place, !none, (double)a->row[k].failed);
     }
+}
+
+/* Of all rows but the truth, or where there is none any. */
+static struct plot_range range_of(const struct accuracy *a, bool cost, enum shown shown)
+{
+    struct plot_range range = PLOT_NOTHING;
+    bool none;
+    for (size_t k = 0; k < a->rows; k++)
+        if (k != a->truth)
+            plot_widen(&range,
+                       cost ? log10(a->row[k].cost.median) : place_of(&a->row[k], shown, &none));
+    return range.low <= range.high ? (struct plot_range){range.low - 0.22, range.high + 0.23}
+                                   : (struct plot_range){-0.9, 1};
 }
 
 /* Orders, failures and residuals in words under the name of a method. */
@@ -66,7 +73,7 @@ static void put_legend(struct gnuplot *g, const struct accuracy *a, const stance
             residual = fmax(residual, fmax(row->signorini, fmax(row->coulomb, row->dissipation)));
         }
     }
-    gnuplot_legend(g, gnuplot_hue(style - 1), 0, 0, method->name, "");
+    gnuplot_legend(g, gnuplot_hue(style), 0, 0, method->name, "");
     for (size_t k = 0; k < a->orders; k++) {
         const struct accuracy_order *order = &a->order[k];
         if (order->method == method && !isnan(order->position))
@@ -91,7 +98,7 @@ static size_t list_methods(const struct accuracy *a, const stance_method **metho
         for (size_t k = 0; k < a->rows; k++)
             any |= belongs(a, k, stance_methods()[m]);
         method[n] = stance_methods()[m];
-        style[n] = m % 5 + 1;
+        style[n] = m % 5;
         n += any;
     }
     return n;
@@ -99,15 +106,18 @@ static size_t list_methods(const struct accuracy *a, const stance_method **metho
 
 bool accuracy_plot(const struct accuracy *a, const struct plot *plot)
 {
+    static const char *const names[] = {[POSITION] = "largest error of a coordinate (m, rad)",
+                                        [VELOCITY] =
+                                            "mean over time of the velocity error (m/s, rad/s)",
+                                        [LABELS] = "share of cells unlike the reference"};
     const int panels = a->labels ? 1 : 2;
     const struct accuracy_row *truth = &a->row[a->truth];
     struct gnuplot g;
     const stance_method *method[ACCURACY_METHODS + 1];
     size_t style[ACCURACY_METHODS + 1];
     const size_t methods = list_methods(a, method, style);
-    struct plot_range cost = PLOT_NOTHING, error[2] = {PLOT_NOTHING, PLOT_NOTHING};
 
-    if (!gnuplot_begin(&g, plot, "", plot_accuracy_gp))
+    if (!gnuplot_begin(&g, plot, "", NULL))
         return false;
     gnuplot_say(&g,
                 "Error against cost. Reference: %s, tolerance %g. %llu cases per point; a cross "
@@ -115,20 +125,17 @@ bool accuracy_plot(const struct accuracy *a, const struct plot *plot)
                 truth->method->name, truth->tolerance, (unsigned long long)truth->cases,
                 a->labels ? "; open symbols: none unlike, drawn where one cell is."
                           : ". Errors of exactly zero are not drawn.");
-    gnuplot_set(&g, "panels = %d; labels = %d", panels, a->labels);
-    gnuplot_arrays(&g, methods, "method_style");
-    gnuplot_arrays(&g, 2, "cost_low cost_high error_low error_high");
-    for (size_t m = 1; m <= methods; m++) {
-        put_legend(&g, a, method[m - 1], style[m - 1]);
-        gnuplot_set(&g, "method_style[%zu] = %zu", m, style[m - 1]);
-        for (int p = 0; p < panels; p++) {
-            const enum shown shown = a->labels ? LABELS : p == 0 ? POSITION : VELOCITY;
-            gnuplot_block(&g, "errors%zu_%d", m, p + 1);
-            put_rows(&g, a, method[m - 1], shown, &cost, &error[p]);
-        }
+    gnuplot_set(&g, "columns = %d; chart_width = 400", panels);
+    gnuplot_axis(&g, 'x', PLOT_LOG, range_of(a, true, LABELS),
+                 "cost: microseconds of one core per simulated second", "");
+    for (int p = 0; p < panels; p++) {
+        const enum shown shown = a->labels ? LABELS : p == 0 ? POSITION : VELOCITY;
+        gnuplot_panel(&g, 380, "");
+        gnuplot_axis(&g, 'y', PLOT_LOG, range_of(a, false, shown), names[shown], "");
+        for (size_t m = 0; m < methods; m++)
+            put_method(&g, a, method[m], style[m], shown);
     }
-    put_range(&g, &cost, "cost", 1);
-    for (int p = 0; p < panels; p++)
-        put_range(&g, &error[p], "error", p + 1);
+    for (size_t m = 0; m < methods; m++)
+        put_legend(&g, a, method[m], style[m]);
     return gnuplot_end(&g);
 }

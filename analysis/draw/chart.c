@@ -130,7 +130,7 @@ void gnuplot_row(struct gnuplot *g, const double *values, size_t count)
     for (size_t i = 0; i < count; i++) {
         fputs(i ? " " : "", g->data);
         if (isfinite(values[i]))
-            fprintf(g->data, "%.16g", values[i]);
+            fprintf(g->data, "%.17g", values[i]);
         else
             fputs("NaN", g->data);
     }
@@ -179,8 +179,7 @@ const char *gnuplot_axis(struct gnuplot *g, char which, enum plot_scale scale,
     gnuplot_text(g, label, "%s_path", axis);
     gnuplot_set(g, "%s_scale = '%s'\n%s_low = %#.17g\n%s_high = %#.17g", axis, scales[scale], axis,
                 range.low, axis, range.high);
-    if (g->panels)
-        gnuplot_set(g, "panel_y[panels] = '%s'", axis);
+    gnuplot_set(g, g->panels ? "panel_%c[panels] = '%s'" : "shared_%c = '%s'", which, axis);
     return axis;
 }
 
@@ -188,10 +187,11 @@ void gnuplot_panel(struct gnuplot *g, double height, const char *heading)
 {
     g->panels++;
     gnuplot_set(g,
-                "panels = panels + 1; panel_own[panels] = %g; panel_y[panels] = ''; "
-                "panel_plot[panels] = ''",
+                "panels = panels + 1; panel_own[panels] = %g; panel_x[panels] = 'x'; "
+                "panel_y[panels] = shared_y; eval new_panel",
                 height);
-    gnuplot_text(g, heading, "panel_heading[panels]");
+    if (heading[0])
+        gnuplot_text(g, heading, "panel_heading[panels]");
 }
 
 void gnuplot_series(struct gnuplot *g, const char *style, ...)

@@ -41,10 +41,11 @@ struct plot_cells {
     const struct plot_axis *across, *up;
     size_t first, stride[2];
 };
-/* Writes them, `size` bytes each, row by row from below, for the script's @cells. gnuplot takes no
- * image of one column or row: such a one is written twice, to be drawn half as wide. */
+/* The next series of a panel: numbers, doubles, drawn by the palette, or codes 0 ... 255, by that
+ * array of colours of the script. gnuplot takes no image of one column or row: such a one is
+ * written twice, to be drawn half as wide. */
 void plot_cells_write(struct gnuplot *g, const struct plot_cells *cells, const void *values,
-                      size_t size);
+                      const char *colours);
 
 /* ---- outcomes ----------------------------------------------------------------------------- */
 
@@ -70,13 +71,12 @@ struct plot_answer {
 /* The names of those that are numbers, NULL from the last on; the table's entry of a name. */
 const char *plot_answer_word(size_t k);
 bool plot_answer_find(const char *name, struct plot_answer *answer);
-/* The numbers of all cases, NAN for other ones, in the picture's memory, and their range; NULL with
- * a message, which the picture then lacks, also when there are none. */
-double *plot_answer_numbers(struct gnuplot *g, const struct plot_answer *answer,
+/* The numbers of all cases, NAN for other ones, to be freed, and their range; NULL with a message,
+ * also when there are none. */
+double *plot_answer_numbers(const struct plot *plot, const struct plot_answer *answer,
                             struct plot_range *range);
-/* "friction_used: largest ratio |rT|/rN of a contact, of the stabilised cases", to the line under
- * the title. */
-void plot_say_answer(struct gnuplot *g, const struct plot_answer *answer);
+/* "friction_used: largest ratio |rT|/rN of a contact, of the stabilised cases" */
+void plot_answer_text(const struct plot_answer *answer, char *text, size_t size);
 
 /* ---- pictures ----------------------------------------------------------------------------- */
 

@@ -215,8 +215,9 @@ void plot_kinds_write(struct gnuplot *g, bool legend)
 }
 
 void plot_cells_write(struct gnuplot *g, const struct plot_cells *cells, const void *values,
-                      size_t size)
+                      const char *colours)
 {
+    const size_t size = colours ? 1 : sizeof(double);
     const struct plot_axis *const across = cells->across, *const up = cells->up;
     const size_t nx = across->axis->count, ny = up->axis->count;
     const size_t twice_x = nx == 1 ? 2 : 1, twice_y = ny == 1 ? 2 : 1;
@@ -230,6 +231,20 @@ void plot_cells_write(struct gnuplot *g, const struct plot_cells *cells, const v
             memcpy(at, (const char *)values + index * size, size);
         }
     }
-    if (copy)
-        gnuplot_cells(g, copy, bytes);
+    if (!copy)
+        return;
+    const double dx = across->step / (double)twice_x, dy = up->step / (double)twice_y;
+    gnuplot_cells(g, copy, bytes);
+    gnuplot_set(g,
+                "panel_plot[panels] = panel_plot[panels].\", 'cells%d' binary array=(%zu,%zu) "
+                "dx=%.17g dy=%.17g origin=(%.17g,%.17g) \"",
+                g->files, nx * twice_x, ny * twice_y, dx, dy, across->range.low + 0.5 * dx,
+                up->range.low + 0.5 * dy);
+    gnuplot_set(g,
+                colours ? "panel_plot[panels] = panel_plot[panels].\"format='%%uchar' using "
+                          "(%1$s[$1+1]>>16):(%1$s[$1+1]>>8&255):(%1$s[$1+1]&255) with rgbimage "
+                          "notitle\""
+                        : "panel_plot[panels] = panel_plot[panels].\"format='%%float64' using 1 "
+                          "with image notitle\"",
+                colours);
 }

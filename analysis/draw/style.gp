@@ -16,22 +16,16 @@ colour_failed = 0x000000
 colour_pending = 0xe4e4e4
 # Of curves side by side.
 array hue[7] = [0x0072b2, 0xd55e00, 0x009e73, 0xcc79a7, 0xe69f00, 0x56b4e9, 0x000000]
-# Of the first candidate of a search, of the chosen one, of what linear theory allows.
-curve_colour(k) = hue[int(word('2 1 3', k))]
-curve_dash(k) = int(word('2 1 4', k))
 grey = 0x8a8a8a
 no_number = 0xd9d9d9
 
-# Numbers: after cividis (Nunez, Anderton, Renslow 2018), even steps for every reader.
 # What linear theory allows any controller: a line of its own dashes, on maps over a white one; beside several
 # outlines thin lines, with the dashes of each.
 colour_allowed = 0x000000
 set dashtype 11 (9,5)
 set dashtype 12 (1,0)
 thin(dash) = dash == 12
-allowed = 0
-over_map = ", '$allowed'.p using 1:2 with lines lw 4.4 dt 1 lc rgb 'white' notitle, " \
-    ."'$allowed'.p using 1:2 with lines lw 2 dt 11 lc rgb colour_allowed notitle"
+# Numbers: after cividis (Nunez, Anderton, Renslow 2018), even steps for every reader.
 palette = "set palette defined (0 '#00224e', 0.25 '#434e6c', 0.5 '#7d7c78', 0.75 '#bcae6c', 1 '#fee838')"
 all_grey = 0
 in_grey = "all_grey = 1; colour_stabilised = 0x404040; colour_rested = 0x8a8a8a; colour_walks = 0x666666; colour_fell = 0xdcdcdc; colour_undecided = 0xb0b0b0; " \
@@ -94,13 +88,32 @@ x_label(middle, y) = (f_label = axis_label('x', page_width - 2*margin), f_half =
     sprintf("set label f_label at screen %.6f,%.6f center %s front", \
         X(at_least(f_half, at_most(middle, page_width - f_half))), Y(y), small))
 
-# ---- charts: see chart.gp. Panels as the data have them, and where they come to stand ----
-array panel_own[40]; array panel_heading[40]; array panel_y[40]; array panel_plot[40]; array panel_top[40]; array panel_high[40]
+# ---- charts: see chart.gp. Panels as the data have them: its own height in px, a heading in up to three forms, what
+# stands at the right over it and beside it, axes, series; and where they come to stand ----
+array panel_own[40]; array panel_heading[40]; array panel_short[40]; array panel_bare[40]; array panel_right[40]
+array panel_aside[40]; array panel_aside_bare[40]; array panel_x[40]; array panel_y[40]; array panel_plot[40]; array panel_wordy[40]
+array panel_top[40]; array panel_high[40]
 panels = 0
+new_panel = "panel_plot[panels] = ''; panel_heading[panels] = ''; panel_short[panels] = ''; panel_bare[panels] = ''; " \
+    ."panel_right[panels] = ''; panel_aside[panels] = ''; panel_aside_bare[panels] = ''; panel_wordy[panels] = 0"
 left = 104
+columns = 1       # at most
+leads = 0
 chart_width = 620 # px, of a panel
-headed = 0        # panels have room for headings
+lead_width = 520; lead_own = 520
+scaled = 0        # heights follow widths
+gridded = 1
+plain = 0         # panels have neither frame nor axes, the legend stands below them
+ground = -1       # colour under what is drawn
+shared_y = ''
+chart_beside = '' # the name of a strip
+column_name = ''; row_name = ''
 chart_fit = 'f_fit = 0' # what follows from their width
+stretches = 0; ends = 0; longest_end = 0
+bar_low = 0; bar_high = 1; bar_text = ''; bar_format = '%g'
+# The legend as a table under the panels: its rows are entries, cell_text[] and, under them, cell_more[] row by row.
+table_columns = 0
+table_top = 0; table_names = 290
 
 # ---- legends: marks with texts, and notes under them; the data add theirs. A mark is a line where it has a type of
 # dashes, a point where it has a type of points, or a filled box ----
@@ -109,7 +122,7 @@ array legend_colour[40]
 array legend_dash[40]
 array legend_point[40]
 array legend_about[40] # lines under an entry
-array note[12]
+array note[60]
 bars = 0
 legends = 0
 notes = 0
@@ -126,7 +139,7 @@ line_mark(left, y, colour, dash) = sprintf("set arrow from screen %.6f,%.6f to s
     ."lw %g front", X(left), Y(y), X(left + legend_indent - 8), Y(y), colour, dash, thin(dash) ? 0.8 : 2)
 point_mark(left, y, colour, type) = sprintf("set label '' at screen %.6f,%.6f point pt %d ps 1.4 lw 2 lc rgb %d front", \
     X(left + 0.5*legend_indent - 4), Y(y), type, colour)
-mark(k, left, y) = legend_dash[k] + legend_point[k] == 0 ? box(left, y, legend_colour[k]) \
+mark(k, left, y) = legend_point[k] < 0 ? '' : legend_dash[k] + legend_point[k] == 0 ? box(left, y, legend_colour[k]) \
     : (legend_dash[k] > 0 ? line_mark(left, y, legend_colour[k], legend_dash[k]) : '').'; ' \
     .(legend_point[k] > 0 ? point_mark(left, y, legend_colour[k], legend_point[k]) : '')
 # The colour bar of the page: under the legend's entries.
@@ -173,10 +186,3 @@ axis_tics(a, n, labelled) = (f_n = at_least(2, n), \
     value(a.'_scale') eq 'linear' ? linear_tics(a, value(a.'_low'), value(a.'_high'), f_n, labelled) \
     : value(a.'_scale') eq 'log' ? log_tics(a, value(a.'_low'), value(a.'_high'), f_n, labelled, 0) \
     : list_tics(a, value(a.'_low'), value(a.'_high'), f_n, labelled))
-
-# ---- maps: the cells of panel p over the axes x and y, see plot_cells_write ----
-cells_of(a) = (f_half = value(a.'_count') == 1 ? 2 : 1, sprintf('%s_cells = %d; %s_size = %.17g; %s_first = %.17g', \
-    a, value(a.'_count')*f_half, a, value(a.'_step')/f_half, a, value(a.'_low') + 0.5*value(a.'_step')/f_half))
-cells = "sprintf('cells%d', p) binary array=(x_cells,y_cells) dx=x_size dy=y_size origin=(x_first,y_first)"
-as_colours = "format='%uchar' using (cell_colour($1)>>16):(cell_colour($1)>>8&255):(cell_colour($1)&255) with rgbimage"
-as_numbers = "format='%float64' using 1 with image"

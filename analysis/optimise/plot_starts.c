@@ -10,8 +10,6 @@
 
 #include <math.h>
 
-GNUPLOT_SCRIPT(plot_starts_gp, "analysis/optimise/plot_starts.gp");
-
 enum { PARTS = 12, LEAST = 20, MOST_PANELS = 18 }; /* starts in a part at least */
 
 struct page {
@@ -23,6 +21,7 @@ struct page {
     double most; /* per cent */
 };
 
+/* The share of the circumstances that count in which candidate k recovers from a start. */
 static double recovered(const struct page *page, size_t k, size_t start)
 {
     size_t from, to, count = 0;
@@ -32,28 +31,26 @@ static double recovered(const struct page *page, size_t k, size_t start)
     return (double)count / (double)(to - from);
 }
 
-/* The middle of a part, and of each curve its share and interval. */
-static void put_part(struct page *page, size_t from, size_t to)
+/* The middle of the starts from ... to in their order, and of each curve its share. */
+static void make_part(struct page *page, size_t from, size_t to,
+                      struct search_curve_row row[SEARCH_CURVES])
 {
-    const struct search_file *const f = &page->study->f;
     struct interval_draws draws[SEARCH_CURVES] = {{0}};
-    double row[1 + 3 * SEARCH_CURVES] = {0};
+    double middle = 0;
     for (size_t i = from; i < to; i++) {
         const size_t start = page->order[i].index;
-        row[0] += page->order[i].value / (double)(to - from);
+        middle += page->order[i].value / (double)(to - from);
         interval_add(&draws[SEARCH_FIRST], recovered(page, 0, start), 1);
-        interval_add(&draws[SEARCH_CHOSEN], recovered(page, (size_t)f->chosen, start), 1);
+        interval_add(&draws[SEARCH_CHOSEN], recovered(page, (size_t)page->study->f.chosen, start),
+                     1);
         if (page->allowed)
             interval_add(&draws[SEARCH_ALLOWED], page->allowed[start], 1);
     }
     for (int k = 0; k < SEARCH_CURVES; k++) {
         const struct interval interval = interval_of(&draws[k], 0.95);
-        row[1 + 3 * k] = 100 * draws[k].k / draws[k].m;
-        row[2 + 3 * k] = 100 * interval.low;
-        row[3 + 3 * k] = 100 * interval.high;
+        row[k] = (struct search_curve_row){middle, 100 * draws[k].k / draws[k].m, interval};
         page->most = fmax(page->most, isnan(interval.high) ? 0 : 100 * interval.high);
     }
-    gnuplot_row(&page->g, row, sizeof row / sizeof *row);
 }
 
 static void put_panel(struct page *page, size_t column)
@@ -63,29 +60,34 @@ static void put_panel(struct page *page, size_t column)
                                                       : n / LEAST > 2    ? n / LEAST
                                                                          : 2;
     const char *const path = f->varied[column], *const label = look_label(page->g.plot->look, path);
+    struct search_curve_row row[SEARCH_CURVES][PARTS], of[SEARCH_CURVES];
     struct results_axis axis = {.unit = ""};
-    char text[200];
+    size_t rows = 0;
     for (size_t i = 0; i < n; i++) {
         const double at = f->start_value[i * f->length[SEARCH_VARIED] + column];
         page->order[i] = (struct statistics_place){isnan(at) ? INFINITY : at, i}; /* damaged */
     }
     statistics_order(page->order, n);
-    const double low = page->order[0].value, high = page->order[n - 1].value;
+    for (size_t p = 0; p < parts; p++) {
+        if (p * n / parts == (p + 1) * n / parts)
+            continue;
+        make_part(page, p * n / parts, (p + 1) * n / parts, of);
+        for (int k = 0; k < SEARCH_CURVES; k++)
+            row[k][rows] = of[k];
+        rows++;
+    }
     snprintf(axis.name, sizeof axis.name, "%s", path);
     search_describe(page->study, &axis);
-    snprintf(text, sizeof text, "%.120s%s%s%s", label == path ? schema_last_name(path) : label,
-             axis.unit[0] ? " (" : "", axis.unit, axis.unit[0] ? ")" : "");
-    gnuplot_text(&page->g, text, "panel_text[%zu]", column + 1);
-    const double margin = low < high ? 0.04 * (high - low) : 0.5;
-    gnuplot_number(&page->g, low - margin, "panel_low[%zu]", column + 1);
-    gnuplot_number(&page->g, high + margin, "panel_high[%zu]", column + 1);
-    gnuplot_block(&page->g, "parts%zu", column + 1);
-    for (size_t p = 0; p < parts; p++)
-        if (p * n / parts < (p + 1) * n / parts)
-            put_part(page, p * n / parts, (p + 1) * n / parts);
+    gnuplot_panel(&page->g, 168, "");
+    gnuplot_axis(
+        &page->g, 'x', PLOT_LINEAR,
+        plot_roomy((struct plot_range){page->order[0].value, page->order[n - 1].value}, 0.04),
+        label == path ? schema_last_name(path) : label, axis.unit);
+    for (int k = page->allowed ? SEARCH_ALLOWED : SEARCH_CHOSEN; k >= 0; k--)
+        search_curve_put(&page->g, (enum search_curve)k, row[k], rows, 0.4);
 }
 
-static void put_curves(struct page *page)
+static void put_legend(struct page *page)
 {
     const struct search_file *const f = &page->study->f;
     const size_t n = f->length[SEARCH_START];
@@ -114,7 +116,7 @@ bool plot_search_starts(const struct search_study *study, const struct plot *plo
     struct gnuplot *const g = &page.g;
     if (!study->done || varied == 0)
         return true;
-    if (!gnuplot_begin(g, plot, "starts", plot_starts_gp))
+    if (!gnuplot_begin(g, plot, "starts", NULL))
         return false;
     page.circumstance = search_worst(study, (size_t)f->chosen);
     page.allowed = gnuplot_room(g, starts, sizeof *page.allowed);
@@ -129,14 +131,14 @@ bool plot_search_starts(const struct search_study *study, const struct plot *plo
     else if (f->length[SEARCH_CIRCUMSTANCE] > 1)
         gnuplot_say(g, ", in the worst circumstance of the chosen one: %.200s",
                     f->circumstance[page.circumstance]);
-    gnuplot_set(g, "panels = %zu; limited = %d", panels, page.allowed != NULL);
-    gnuplot_arrays(g, panels, "panel_text panel_low panel_high");
-    put_curves(&page);
+    gnuplot_set(g, "columns = 3; chart_width = 210; scaled = 1");
+    gnuplot_axis(g, 'y', PLOT_LINEAR, (struct plot_range){0, 100}, "share of the starts (%)", "");
     for (size_t k = 0; k < panels; k++)
         put_panel(&page, k);
+    gnuplot_number(g, fmin(104, 1.04 * page.most + 1), "y_high");
+    put_legend(&page);
     gnuplot_note(g, "bars: 95 %% intervals");
     if (panels < varied)
         gnuplot_note(g, "%zu of the %zu coordinates are drawn", panels, varied);
-    gnuplot_number(g, fmin(104, 1.04 * page.most + 1), "most");
     return gnuplot_end(g);
 }

@@ -4,17 +4,30 @@
 
 #include "runner/plan/allowed.h"
 
+const struct search_style search_styles[SEARCH_CURVES] = {
+    {"hue[2]", "first candidate", 2, 5},
+    {"hue[1]", "chosen", 1, 7},
+    {"hue[3]", "allowed by linear theory", 4, 9}};
+
+void search_curve_put(struct gnuplot *g, enum search_curve curve,
+                      const struct search_curve_row *row, size_t rows, double size)
+{
+    const struct search_style *const style = &search_styles[curve];
+    gnuplot_series(g,
+                   "using 1:2 with lines lc rgb %s dt %d lw 2 notitle, '' using 1:2:3:4 with "
+                   "yerrorbars lc rgb %s pt %d ps %g lw 1.4",
+                   style->colour, style->dash, style->colour, style->point, size);
+    for (size_t i = 0; i < rows; i++)
+        GNUPLOT_ROW(g, row[i].x, row[i].share, 100 * row[i].interval.low,
+                    100 * row[i].interval.high);
+}
+
 void search_curves_write(struct gnuplot *g, const char *const more[SEARCH_CURVES], bool glued)
 {
-    static const struct {
-        const char *colour, *name;
-        int dash;
-    } curve[SEARCH_CURVES] = {{"hue[2]", "first candidate", 2},
-                              {"hue[1]", "chosen", 1},
-                              {"hue[3]", "allowed by linear theory", 4}};
     for (int k = 0; k < SEARCH_CURVES; k++)
         if (more[k])
-            gnuplot_legend(g, curve[k].colour, curve[k].dash, 0, curve[k].name, more[k]);
+            gnuplot_legend(g, search_styles[k].colour, search_styles[k].dash, 0,
+                           search_styles[k].name, more[k]);
     if (glued && more[SEARCH_ALLOWED])
         gnuplot_note(g, "allowed: " ALLOWED_GLUED);
 }

@@ -25,8 +25,19 @@ SEARCH_PICTURES(SEARCH_PICTURE)
 
 /* Their curves: the first candidate, the chosen one, what linear theory allows. */
 enum search_curve { SEARCH_FIRST, SEARCH_CHOSEN, SEARCH_ALLOWED, SEARCH_CURVES };
-/* Their legend, as style.gp draws them, a text behind each name; NULL: that curve is not drawn.
- * glued: what is allowed is so for contacts as if glued. */
+extern const struct search_style {
+    const char *colour, *name;
+    int dash, point;
+} search_styles[SEARCH_CURVES];
+struct search_curve_row {
+    double x, share; /* per cent */
+    struct interval interval;
+};
+/* A curve of the last panel, with the intervals of its shares and points of a size. */
+void search_curve_put(struct gnuplot *g, enum search_curve curve,
+                      const struct search_curve_row *row, size_t rows, double size);
+/* Their legend, a text behind each name; NULL: that curve is not drawn. glued: what is allowed is
+ * so for contacts as if glued. */
 void search_curves_write(struct gnuplot *g, const char *const more[SEARCH_CURVES], bool glued);
 
 struct search_front;

@@ -11,6 +11,11 @@
  */
 int search_summarise(struct report *report, stance_message *message);
 
+/* A fact of a table: a share, of which people see per cent. */
+#define SEARCH_SHARE(name, heading, wide, share)                                                   \
+    {                                                                                              \
+        {name, heading, "%.2f", .width = wide, .percent = true}, as_number(share)                  \
+    }
 /* Two facts of a table that people see as one cell: "(22.3 ... 23.6 %)". */
 #define SEARCH_INTERVAL(least, most, interval)                                                     \
     {{least, "", .format = "(%.2f", .before = " ", .left = true, .empty = "", .percent = true},    \
@@ -19,12 +24,6 @@ int search_summarise(struct report *report, stance_message *message);
         {most, .format = "%.2f)", .joined = true, .before = " ... ", .percent = true},             \
             as_number((interval).high)                                                             \
     }
-
-/* Rows: a stage; a candidate tried from fresh starts; a circumstance; a change of the scenario. */
-void search_table_stages(struct table *t, const struct search_study *study);
-void search_table_confirmed(struct table *t, const struct search_study *study);
-void search_table_circumstances(struct table *t, const struct search_study *study);
-void search_table_elsewhere(struct table *t, const struct search_study *study);
 
 /* What `stance summary -h` says of it. */
 #define SEARCH_SUMMARY_HELP                                                                        \

@@ -8,160 +8,92 @@
 
 /* ---- tracing ------------------------------------------------------------------------------ */
 
-enum side { BOTTOM, RIGHT, TOP, LEFT };
-
-/* A square of four neighbouring cases, the lowest of them (i, j), and one of its sides. */
-struct place {
-    size_t i, j;
-    enum side side;
-};
-
-struct map {
+/* Sides between neighbouring cases, from each case (i, j) the one to the right, number j nx + i,
+ * and after all these the one upwards. A line crosses sides whose ends differ, and goes from one to
+ * the next through a square of four cases. */
+struct trace {
     const uint8_t *inside;
     size_t nx, ny;
-    uint8_t *met; /* of each side, horizontal ones first */
-};
-
-static bool is_inside(const struct map *m, size_t i, size_t j)
-{
-    return m->inside[j * m->nx + i] != 0;
-}
-
-/* The lower or left end of a side. */
-static void begin_of(const struct place *p, size_t *i, size_t *j)
-{
-    *i = p->i + (p->side == RIGHT);
-    *j = p->j + (p->side == TOP);
-}
-
-static bool is_horizontal(const struct place *p)
-{
-    return p->side == BOTTOM || p->side == TOP;
-}
-
-/* Whether the ends of a side differ. */
-static bool is_crossed(const struct map *m, const struct place *p)
-{
-    size_t i, j;
-    begin_of(p, &i, &j);
-    const bool horizontal = is_horizontal(p);
-    return is_inside(m, i, j) != is_inside(m, i + horizontal, j + !horizontal);
-}
-
-static uint8_t *met_at(const struct map *m, const struct place *p)
-{
-    size_t i, j;
-    begin_of(p, &i, &j);
-    return is_horizontal(p) ? &m->met[j * m->nx + i] : &m->met[(m->ny + j) * m->nx + i];
-}
-
-/* Where a line that comes in through a side of a square goes out. Of two cases inside across from
- * each other each keeps to its own corner. */
-static enum side way_out(const struct map *m, const struct place *p)
-{
-    static const enum side round_lowest[] = {LEFT, TOP, RIGHT, BOTTOM};
-    static const enum side round_next[] = {RIGHT, BOTTOM, LEFT, TOP};
-    enum side out = p->side;
-    int crossed = 0;
-    for (int s = BOTTOM; s <= LEFT; s++) {
-        const struct place other = {p->i, p->j, (enum side)s};
-        if (is_crossed(m, &other)) {
-            crossed++;
-            out = other.side == p->side ? out : other.side;
-        }
-    }
-    if (crossed == 4)
-        out = is_inside(m, p->i, p->j) ? round_lowest[p->side] : round_next[p->side];
-    return out;
-}
-
-/* The same side, of the square beyond it; false: there is none. */
-static bool go_beyond(const struct map *m, struct place *p)
-{
-    static const enum side opposite[] = {TOP, LEFT, BOTTOM, RIGHT};
-    p->i +=
-        (size_t)(p->side == RIGHT) - (p->side == LEFT); /* before the first is beyond the last */
-    p->j += (size_t)(p->side == TOP) - (p->side == BOTTOM);
-    p->side = opposite[p->side];
-    return p->i < m->nx - 1 && p->j < m->ny - 1;
-}
-
-/* Points are kept as the lower or left end of their side, and which way it goes. */
-struct trace {
-    struct map map;
+    size_t (*next)[2]; /* of each side, one more than the sides where a line goes on; 0: none */
+    bool *met;
+    bool *horizontal; /* [points] whether a point may move along x */
     struct boundary *b;
-    uint8_t *horizontal; /* [points] */
 };
 
-/* As many points as sides whose ends differ; and no more lines. */
-static bool make_room(struct trace *t)
+static bool is_crossed(const struct trace *t, size_t side)
 {
-    const size_t nx = t->map.nx, ny = t->map.ny;
-    size_t sides = 1;
-    for (size_t j = 0; j < ny; j++) {
-        for (size_t i = 0; i < nx; i++) {
-            sides += i + 1 < nx && is_inside(&t->map, i, j) != is_inside(&t->map, i + 1, j);
-            sides += j + 1 < ny && is_inside(&t->map, i, j) != is_inside(&t->map, i, j + 1);
-        }
-    }
-    t->map.met = calloc(2 * nx * ny + 1, 1);
-    t->horizontal = calloc(sides, 1);
-    t->b->point = calloc(sides, sizeof *t->b->point);
-    t->b->line = calloc(sides, sizeof *t->b->line);
-    return t->map.met && t->horizontal && t->b->point && t->b->line;
+    const bool up = side >= t->nx * t->ny;
+    const size_t from = up ? side - t->nx * t->ny : side;
+    return t->inside[from] != t->inside[from + (up ? t->nx : 1)];
 }
 
-/* The next point of the last line. */
-static void add(struct trace *t, const struct place *p)
+static void join(struct trace *t, size_t a, size_t b)
+{
+    t->next[a][t->next[a][0] > 0] = b + 1;
+    t->next[b][t->next[b][0] > 0] = a + 1;
+}
+
+/* Of the square whose lowest case is (i, j). Of two cases inside across from each other each keeps
+ * to its own corner. */
+static void join_square(struct trace *t, size_t i, size_t j)
+{
+    const size_t from = j * t->nx + i, up = t->nx * t->ny + from;
+    const size_t side[] = {from, up, from + t->nx, up + 1}; /* below, left, above, right */
+    size_t crossed[4], count = 0;
+    for (int k = 0; k < 4; k++)
+        if (is_crossed(t, side[k]))
+            crossed[count++] = side[k];
+    if (count == 2) {
+        join(t, crossed[0], crossed[1]);
+    } else if (count == 4) {
+        const int other = t->inside[from] ? 1 : 3;
+        join(t, side[0], side[other]);
+        join(t, side[2], side[4 - other]);
+    }
+}
+
+/* The line from a side on, if it is crossed and new. */
+static void follow(struct trace *t, size_t side)
 {
     struct boundary *const b = t->b;
-    size_t i, j;
-    begin_of(p, &i, &j);
-    *met_at(&t->map, p) = 1;
-    t->horizontal[b->points] = is_horizontal(p);
-    b->point[b->points][0] = (double)i;
-    b->point[b->points++][1] = (double)j;
-    b->line[b->lines - 1].count++;
+    struct boundary_line line = {.first = b->points, .closed = t->next[side][1] > 0};
+    if (t->met[side] || t->next[side][0] == 0)
+        return;
+    for (size_t at = side + 1; at > 0;) {
+        const size_t here = at - 1, all = t->nx * t->ny;
+        const bool up = here >= all;
+        const size_t from = up ? here - all : here;
+        t->met[here] = true;
+        t->horizontal[b->points] = !up;
+        b->point[b->points][0] = (double)(from % t->nx);
+        b->point[b->points++][1] = (double)(from / t->nx);
+        at = 0;
+        for (int k = 1; k >= 0 && at == 0; k--)
+            if (t->next[here][k] > 0 && !t->met[t->next[here][k] - 1])
+                at = t->next[here][k];
+    }
+    line.count = b->points - line.first;
+    b->line[b->lines++] = line;
 }
 
-/* The line that comes into a square through a side; nothing where one went through already. */
-static void follow(struct trace *t, struct place p)
+static bool trace_lines(struct trace *t)
 {
-    struct boundary *const b = t->b;
-    if (!is_crossed(&t->map, &p) || *met_at(&t->map, &p))
-        return;
-    b->line[b->lines++] = (struct boundary_line){b->points, 0, false};
-    for (bool goes_on = true; goes_on;) {
-        add(t, &p);
-        p.side = way_out(&t->map, &p);
-        const struct place out = p;
-        if (!go_beyond(&t->map, &p)) {
-            goes_on = false;
-            add(t, &out);
-        } else if (*met_at(&t->map, &p)) {
-            goes_on = false;
-            b->line[b->lines - 1].closed = true;
-        }
-    }
-}
-
-/* Lines that end at the edges first: what is left then is closed. */
-static void follow_all(struct trace *t)
-{
-    const size_t nx = t->map.nx, ny = t->map.ny;
-    if (nx < 2 || ny < 2)
-        return;
-    for (size_t i = 0; i + 1 < nx; i++) {
-        follow(t, (struct place){i, 0, BOTTOM});
-        follow(t, (struct place){i, ny - 2, TOP});
-    }
-    for (size_t j = 0; j + 1 < ny; j++) {
-        follow(t, (struct place){0, j, LEFT});
-        follow(t, (struct place){nx - 2, j, RIGHT});
-    }
-    for (size_t j = 0; j + 1 < ny; j++)
-        for (size_t i = 0; i + 1 < nx; i++)
-            follow(t, (struct place){i, j, BOTTOM});
+    const size_t all = 2 * t->nx * t->ny;
+    t->next = calloc(all, sizeof *t->next);
+    t->met = calloc(all, sizeof *t->met);
+    t->horizontal = calloc(all, sizeof *t->horizontal);
+    t->b->point = calloc(all, sizeof *t->b->point);
+    t->b->line = calloc(all, sizeof *t->b->line);
+    if (!t->next || !t->met || !t->horizontal || !t->b->point || !t->b->line)
+        return false;
+    for (size_t j = 0; j + 1 < t->ny; j++)
+        for (size_t i = 0; i + 1 < t->nx; i++)
+            join_square(t, i, j);
+    for (int closed = 0; closed < 2; closed++) /* those that end at the map's edges first */
+        for (size_t side = 0; side < all; side++)
+            if (closed || t->next[side][1] == 0)
+                follow(t, side);
+    return true;
 }
 
 /* ---- bending ------------------------------------------------------------------------------ */
@@ -211,7 +143,7 @@ static double step_of(double (*point)[2], const struct boundary_line *line, size
 static void relax(const struct trace *t, const struct boundary_line *line)
 {
     double(*const point)[2] = t->b->point + line->first;
-    const uint8_t *const horizontal = t->horizontal + line->first;
+    const bool *const horizontal = t->horizontal + line->first;
     const double share = most_work / (double)(t->b->points + 1);
     const int sweeps = share < MOST_SWEEPS ? (int)share + 1 : MOST_SWEEPS;
     for (size_t k = 0; k < line->count; k++)
@@ -232,13 +164,12 @@ bool boundary_trace(struct boundary *b, const uint8_t *inside, size_t nx, size_t
                     stance_message *message)
 {
     *b = (struct boundary){0};
-    struct trace t = {.map = {inside, nx, ny, NULL}, .b = b};
-    const bool good = make_room(&t);
-    if (good)
-        follow_all(&t);
+    struct trace t = {.inside = inside, .nx = nx, .ny = ny, .b = b};
+    const bool good = trace_lines(&t);
     for (size_t k = 0; good && k < b->lines; k++)
         relax(&t, &b->line[k]);
-    free(t.map.met);
+    free(t.next);
+    free(t.met);
     free(t.horizontal);
     if (!good)
         boundary_free(b);

@@ -33,10 +33,11 @@ bool plot_allowed_make(struct plot_allowed *allowed, struct gnuplot *g,
                        const struct plot_layout *layout, const struct plot_axis along[2]);
 
 bool plot_allowed_same(const struct plot_allowed_panel *a, const struct plot_allowed_panel *b);
-/* The block $allowedNUMBER of lines; none of it stands on the picture's edges. */
-void plot_allowed_write(const struct plot_allowed_panel *panel, struct gnuplot *g, int number);
-/* Whether any of `count` panels has one: the variable `allowed`. Then an entry of the legend, with
- * the share where all have the same. */
+/* A series of lines, as gnuplot has their style; none of it stands on the picture's edges. */
+void plot_allowed_write(const struct plot_allowed_panel *panel, struct gnuplot *g,
+                        const char *style);
+/* Where any of `count` panels has one, an entry of the legend, with the share where all have the
+ * same. */
 void plot_allowed_legend(const struct plot_allowed_panel *panel, int count, int dash,
                          struct gnuplot *g);
 

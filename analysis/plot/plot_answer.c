@@ -28,31 +28,32 @@ bool plot_answer_find(const char *name, struct plot_answer *answer)
     return k < STANCE_ANSWER_COUNT;
 }
 
-double *plot_answer_numbers(struct gnuplot *g, const struct plot_answer *answer,
+double *plot_answer_numbers(const struct plot *plot, const struct plot_answer *answer,
                             struct plot_range *range)
 {
-    const struct results *r = g->plot->r;
+    const struct results *r = plot->r;
     const bool all = answer->of == RESULTS_KIND_COUNT;
     uint64_t inferred;
     bool *which; /* cases without numbers, whatever stands in the file */
     double *values = NULL;
-    if (!gnuplot_needs(g, statistics_inferred(r, &inferred, &which, g->plot->message)))
+    if (!statistics_inferred(r, &inferred, &which, plot->message))
         return NULL;
-    const bool good = gnuplot_needs(g, results_answer(r, answer->name, &values, g->plot->message));
+    const bool good = results_answer(r, answer->name, &values, plot->message);
     for (uint64_t i = 0; values && i < r->cases; i++)
         if (!(all || r->kind[i] == answer->of) || (which && which[i]))
             values[i] = NAN;
     free(which);
-    if (good && (!values || !plot_range_of(range, values, r->cases)))
-        gnuplot_needs(g, complain(g->plot->message, "%.200s: no%s%s case has a number %s", r->file,
-                                  all ? "" : " ", all ? "" : results_kind_names[answer->of],
-                                  answer->name));
-    return values ? gnuplot_keep(g, values) : NULL;
+    if (!good || (values && plot_range_of(range, values, r->cases)))
+        return values;
+    complain(plot->message, "%.200s: no%s%s case has a number %s", r->file, all ? "" : " ",
+             all ? "" : results_kind_names[answer->of], answer->name);
+    free(values);
+    return NULL;
 }
 
-void plot_say_answer(struct gnuplot *g, const struct plot_answer *answer)
+void plot_answer_text(const struct plot_answer *answer, char *text, size_t size)
 {
     const bool all = answer->of == RESULTS_KIND_COUNT;
-    gnuplot_say(g, "%s: %s%s%s%s", answer->name, answer->text, all ? "" : ", of the ",
-                all ? "" : results_kind_names[answer->of], all ? "" : " cases");
+    snprintf(text, size, "%s: %s%s%s%s", answer->name, answer->text, all ? "" : ", of the ",
+             all ? "" : results_kind_names[answer->of], all ? "" : " cases");
 }

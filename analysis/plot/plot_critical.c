@@ -215,10 +215,10 @@ static bool draw_map(const struct plot *plot, const struct critical *c)
         }
         rows.r = own;
         said(c, text, sizeof text);
-        good = plot_number_map(
-            &rows,
-            &(struct plot_number){"critical", text, along->name, along->unit, "lost at once"},
-            values);
+        good = plot_number_map(&rows,
+                               &(struct plot_number){"critical", text, along->unit, "lost at once",
+                                                     RESULTS_KIND_COUNT, along->name},
+                               values);
     }
     free(own);
     free(values);

@@ -121,6 +121,7 @@ int figure_names(struct gnuplot *g, const stance_scene *scene)
 {
     const int contacts = plot_case_grounded(scene);
     gnuplot_set(g, "contacts = %d\narray contact_name[%d]", contacts, STANCE_MAX_CONTACTS);
+    gnuplot_set(g, "figure_colour(k) = k < contacts ? hue[int(k)%%|hue|+1] : 0x303030");
     for (int k = 0; k < contacts; k++)
         gnuplot_text(g, scene->contact_name[k], "contact_name[%d]", k + 1);
     return contacts;

@@ -39,7 +39,9 @@ void plot_layout_note(const struct plot_layout *layout, struct gnuplot *g);
 
 /* A map of numbers, one for each of the plot's cases, NAN: none. False: see plot.h. */
 struct plot_number {
-    const char *picture, *said, *name, *unit, *none; /* none: the legend of cells without one */
+    const char *picture, *said, *unit, *none; /* none: the legend of cells without one */
+    enum results_kind of; /* whose starts are seen to be cut, RESULTS_KIND_COUNT: of none */
+    const char *name;     /* NULL: as the picture */
 };
 bool plot_number_map(const struct plot *plot, const struct plot_number *number,
                      const double *values);

@@ -2,6 +2,7 @@
 #include "analysis/draw/plot.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 struct line {
     struct gnuplot g;
@@ -92,11 +93,15 @@ bool plot_answer_curve(const struct plot *plot, const struct plot_answer *answer
 {
     struct line line;
     struct plot_range range;
-    if (!begin(&line, plot, answer->name))
+    char text[600];
+    double *const values = plot_answer_numbers(plot, answer, &range);
+    if (!values || !begin(&line, plot, answer->name)) {
+        free(values);
         return false;
-    plot_say_answer(&line.g, answer);
-    const double *const values = plot_answer_numbers(&line.g, answer, &range);
-    if (values)
-        put_answer(&line, answer->name, answer->unit, values, range);
+    }
+    plot_answer_text(answer, text, sizeof text);
+    gnuplot_say(&line.g, "%s", text);
+    put_answer(&line, answer->name, answer->unit, values, range);
+    free(values);
     return gnuplot_end(&line.g);
 }

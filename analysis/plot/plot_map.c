@@ -1,236 +1,218 @@
 /* plot_map.c - maps of a sweep over two axes or more: what became of every case, a cell each, and
- * when it settled. Further axes become panels. */
+ * the numbers that cases have. Further axes become panels; two of them a table of panels. */
 #include "plot_allowed.h"
+
+#include "runner/base/message.h"
 
 #include <math.h>
 #include <stdlib.h>
 
 enum { MAX_PANELS = 30 }; /* more are drawn in part */
 
-GNUPLOT_SCRIPT(plot_map_gp, "analysis/plot/plot_map.gp");
-
-/* What all pictures of a file are over. */
-struct map {
-    struct gnuplot g;
-    struct plot_layout layout;
-    struct plot_allowed allowed; /* what linear theory allows in the panels */
-    uint64_t inferred;           /* cases */
-};
-
-/* ---- a page ------------------------------------------------------------------------------- */
-
-static void put_titles(struct gnuplot *g, const struct plot_layout *layout)
+/* The heading of the next panel, in forms for less and less room; of a table over its columns, and
+ * beside its rows. */
+static void put_heading(struct gnuplot *g, const struct plot_layout *layout, int p)
 {
-    static const char *const naming[] = {"long", "short", "bare"};
-    const bool table = plot_layout_is_table(layout);
-    const size_t panels = (size_t)layout->panels;
+    static const char *const form[] = {"heading", "short", "bare"};
     char text[1024];
-    gnuplot_arrays(g, panels, "title_long title_short title_bare share");
-    for (int n = PLOT_NAMES; n <= PLOT_VALUES_ALONE; n++) {
-        for (size_t p = 0; p < panels; p++) {
-            plot_panel_title(g, layout, (int)p, (enum plot_naming)n, text, sizeof text);
-            gnuplot_text(g, text, "title_%s[%zu]", naming[n], p + 1);
+    if (!plot_layout_is_table(layout)) {
+        for (int n = PLOT_NAMES; n <= PLOT_VALUES_ALONE; n++) {
+            plot_panel_title(g, layout, p, (enum plot_naming)n, text, sizeof text);
+            gnuplot_text(g, text, "panel_%s[panels]", form[n]);
         }
+        return;
     }
-    gnuplot_set(g, "table = %zu", table ? layout->shown[1] : 0);
-    for (int k = 0; table && k < 2; k++) {
-        const struct results_axis *axis = &layout->r->axis[layout->other[k]];
-        const char *const line = k ? "column" : "row",
-                          *name = look_label(g->plot->look, axis->name);
-        if (name == axis->name)
-            snprintf(text, sizeof text, axis->unit[0] ? "%s (%s)" : "%s",
-                     plot_short_name(name, PLOT_NAMES), axis->unit);
-        else
-            snprintf(text, sizeof text, "%s", name);
-        gnuplot_text(g, text, "%s_name", line);
-        gnuplot_arrays(g, layout->shown[k], k ? "column_long column_bare" : "row_long row_bare");
-        for (size_t m = 0; m < layout->shown[k]; m++) {
-            const size_t i = plot_layout_shown(layout, k, m);
-            plot_value_title(g, axis, i, PLOT_NAMES, text, sizeof text);
-            gnuplot_text(g, text, "%s_long[%zu]", line, m + 1);
-            plot_value_title(g, axis, i, PLOT_NUMBERS, text, sizeof text);
-            gnuplot_text(g, text, "%s_bare[%zu]", line, m + 1);
-        }
+    const size_t columns = layout->shown[1], at[] = {(size_t)p / columns, (size_t)p % columns};
+    for (int k = 0; k < 2; k++) {
+        const struct results_axis *const axis = &layout->r->axis[layout->other[k]];
+        const size_t i = plot_layout_shown(layout, k, at[k]);
+        if (k == 1 ? at[0] > 0 : at[1] + 1 < columns)
+            continue;
+        plot_value_title(g, axis, i, PLOT_NAMES, text, sizeof text);
+        gnuplot_text(g, text, "panel_%s[panels]", k ? "heading" : "aside");
+        plot_value_title(g, axis, i, PLOT_NUMBERS, text, sizeof text);
+        gnuplot_text(g, text, "panel_%s[panels]", k ? "bare" : "aside_bare");
     }
 }
 
-/* What stands of the cases drawn in each panel, of those that are done; of numbers nothing. */
-static void put_shares(struct gnuplot *g, const struct plot_layout *layout, bool measured)
+/* How large panels are, how many stand side by side: the page is a little wider than high, and full
+ * where it can be. The names of a table's axes. */
+static void put_page(struct gnuplot *g, const struct plot_layout *layout)
 {
-    const enum results_kind judged = statistics_judged(g->plot->r);
-    char text[32];
-    for (int p = 0; p < layout->panels; p++) {
-        const double share = measured ? NAN : plot_layout_share(layout, p, judged);
-        snprintf(text, sizeof text, "%.1f %%", share);
-        gnuplot_text(g, isnan(share) ? "" : text, "share[%d]", p + 1);
+    static const int sizes[][3] = {
+        {1, 560, 500}, {4, 336, 300}, {16, 235, 210}, {MAX_PANELS, 170, 150}};
+    const int panels = layout->panels;
+    const bool table = plot_layout_is_table(layout);
+    int columns = panels == 3 ? 3 : (int)ceil(sqrt(1.2 * panels)), size = 0;
+    if (columns > 2 && panels % columns && panels % (columns - 1) == 0)
+        columns--;
+    while (sizes[size][0] < panels)
+        size++;
+    gnuplot_set(g, "columns = %d; chart_width = %d; chart_height = %d; scaled = 1; gridded = 0",
+                table ? (int)layout->shown[1] : columns, sizes[size][1], sizes[size][2]);
+    for (int k = 0; table && k < 2; k++) {
+        const struct results_axis *const axis = &layout->r->axis[layout->other[k]];
+        const char *const name = look_label(g->plot->look, axis->name);
+        char text[200];
+        snprintf(text, sizeof text, name == axis->name && axis->unit[0] ? "%s (%s)" : "%s",
+                 name == axis->name ? plot_short_name(name, PLOT_NAMES) : name, axis->unit);
+        gnuplot_text(g, text, k ? "column_name" : "row_name");
     }
-    if (layout->panels > 1 && !measured)
-        gnuplot_note(g, "%%: %s", results_kind_names[judged]);
 }
 
 /* The other axes, to the line under the title. */
 static void say_others(struct gnuplot *g, const struct plot_layout *layout)
 {
+    static const char *const before[][2] = {{"; one panel per ", ", "}, {"; rows ", ", columns "}};
     const struct results *const r = g->plot->r;
-    const bool table = plot_layout_is_table(layout);
+    const char *at = "; at ";
     for (int k = 0; k < layout->others; k++) {
-        const struct results_axis *axis = &r->axis[layout->other[k]];
-        gnuplot_say(g, "%s%s%s%s%s",
-                    table ? (k ? ", columns " : "; rows ")
-                    : k   ? ", "
-                          : "; one panel per ",
-                    axis->name, axis->text[0] ? " (" : "", axis->text, axis->text[0] ? ")" : "");
+        const struct results_axis *const axis = &r->axis[layout->other[k]];
+        gnuplot_say(g, axis->text[0] ? "%s%s (%s)" : "%s%s",
+                    before[plot_layout_is_table(layout)][k > 0], axis->name, axis->text);
     }
-    const char *before = "; at ";
     for (int a = 0; a < r->axes; a++) {
         char value[96];
         if (r->axis[a].count > 1 || a == layout->x || a == layout->y)
             continue;
         results_value_text(&r->axis[a], 0, true, value, sizeof value);
-        gnuplot_say(g, "%s%s = %s", before, r->axis[a].name, value);
-        before = ", ";
+        gnuplot_say(g, "%s%s = %s", at, r->axis[a].name, value);
+        at = ", ";
     }
 }
 
-static bool begin(struct map *map, const struct plot *plot, const char *name)
+/* Axes, and panels with their cells: of an array over the cases, their kinds or numbers. */
+static void put(struct gnuplot *g, const void *values, bool numbers)
 {
-    const struct results *const r = plot->r;
-    if (!gnuplot_begin(&map->g, plot, name, plot_map_gp))
-        return false;
-    plot_layout_make(&map->layout, r, MAX_PANELS);
-    gnuplot_needs(&map->g, statistics_inferred(r, &map->inferred, NULL, plot->message));
-    return true;
-}
-
-/* Axes, panels and their cells: of an array over the cases, their kinds or numbers; none: the
- * legend of cells without a number. */
-static void put(struct map *map, const void *values, size_t size, const char *none)
-{
-    struct gnuplot *const g = &map->g;
-    const struct plot_layout *const layout = &map->layout;
-    const struct plot_axis *const across = &layout->across, *const up = &layout->up;
-    struct plot_cells cells = {across, up, 0, {0, 0}};
-    const bool measured = values != g->plot->r->kind;
-    double x, y;
-
-    if (!plot_allowed_make(&map->allowed, g, layout, (const struct plot_axis[]){*across, *up}))
+    const enum results_kind judged = statistics_judged(g->plot->r);
+    struct plot_layout layout;
+    struct plot_allowed allowed;
+    char text[32];
+    double x = 0, y = 0;
+    plot_layout_make(&layout, g->plot->r, MAX_PANELS);
+    const struct plot_axis *const across = &layout.across, *const up = &layout.up;
+    if (!plot_allowed_make(&allowed, g, &layout, (const struct plot_axis[]){*across, *up}))
         return;
-    say_others(g, layout);
+    say_others(g, &layout);
+    put_page(g, &layout);
     plot_axis_write(across, g, 'x');
     plot_axis_write(up, g, 'y');
-    gnuplot_set(g, "panels = %d; measured = %d; bars = %d", layout->panels, measured, measured);
-    put_titles(g, layout);
-    if (measured)
-        gnuplot_legend(g, "no_number", 0, 0, none, "");
-    else
-        plot_kinds_write(g, true);
     const bool cross = plot_zero_place(across, &x) && plot_zero_place(up, &y);
-    gnuplot_set(g, "cross = %d", cross);
-    if (cross) {
-        gnuplot_set(g, "cross_x = %#.17g; cross_y = %#.17g", x, y);
+    if (cross)
         gnuplot_legend(g, "0x000000", 0, 1, "equilibrium", "");
+    if (allowed.panels > 0)
+        plot_allowed_legend(allowed.panel, allowed.panels, PLOT_ALLOWED_ONE, g);
+    if (layout.panels > 1 && !numbers)
+        gnuplot_note(g, "%%: %s", results_kind_names[judged]);
+    plot_layout_note(&layout, g);
+    for (int p = 0; p < layout.panels; p++) {
+        const size_t first = plot_layout_index(&layout, p, 0, 0);
+        const struct plot_cells cells = {across,
+                                         up,
+                                         first,
+                                         {plot_layout_index(&layout, p, 1, 0) - first,
+                                          plot_layout_index(&layout, p, 0, 1) - first}};
+        const double share = plot_layout_share(&layout, p, judged);
+        gnuplot_panel(g, 0, "");
+        gnuplot_set(g, "panel_own[panels] = chart_height");
+        put_heading(g, &layout, p);
+        snprintf(text, sizeof text, "%.1f %%", share);
+        if (layout.panels > 1 && !numbers && !isnan(share)) /* of what is done */
+            gnuplot_text(g, text, "panel_right[panels]");
+        plot_cells_write(g, &cells, values, numbers ? NULL : "kind_colour");
+        if (p < allowed.panels)
+            plot_allowed_write(&allowed.panel[p], g,
+                               "lw 4.4 dt 1 lc rgb 'white' notitle, '' using 1:2 with lines lw 2 "
+                               "dt 11 lc rgb colour_allowed");
+        if (cross) {
+            gnuplot_series(g, "using 1:2 with points pt 1 ps 1.6 lw 4.5 lc rgb 'white' notitle, '' "
+                              "using 1:2 with points pt 1 ps 1.4 lw 2 lc rgb 0x000000");
+            GNUPLOT_ROW(g, x, y);
+        }
     }
-    if (map->allowed.panels > 0)
-        plot_allowed_legend(map->allowed.panel, map->allowed.panels, PLOT_ALLOWED_ONE, g);
-    put_shares(g, layout, measured);
-    plot_layout_note(layout, g);
-    for (int p = 0; p < layout->panels; p++) {
-        cells.first = plot_layout_index(layout, p, 0, 0);
-        cells.stride[0] = plot_layout_index(layout, p, 1, 0) - cells.first;
-        cells.stride[1] = plot_layout_index(layout, p, 0, 1) - cells.first;
-        plot_cells_write(g, &cells, values, size);
-        if (p < map->allowed.panels)
-            plot_allowed_write(&map->allowed.panel[p], g, p + 1);
-    }
-}
-
-/* ---- an answer ---------------------------------------------------------------------------- */
-
-static bool end_measure(struct map *map, const char *name, const char *unit, const double *values,
-                        struct plot_range range, const char *none)
-{
-    put(map, values, sizeof *values, none);
-    gnuplot_set(&map->g, "lowest = %#.17g; highest = %#.17g", range.low, range.high);
-    const char *label = look_label(map->g.plot->look, name);
-    gnuplot_text(&map->g, label, "measure");
-    gnuplot_text(&map->g, label == name ? unit : "", "measure_unit");
-    return gnuplot_end(&map->g);
-}
-
-/* When each case settled; said where none did. */
-static bool draw_times(const struct plot *plot)
-{
-    static const char name[] = "settle_time";
-    const struct results *const r = plot->r;
-    struct map map;
-    struct plot_range range;
-    double *values = NULL;
-    if (!begin(&map, plot, name))
-        return false;
-    const bool good = gnuplot_needs(&map.g, results_answer(r, name, &values, plot->message)) &&
-                      values && gnuplot_keep(&map.g, values);
-    for (uint64_t i = 0; good && i < r->cases; i++)
-        if (r->kind[i] != RESULTS_STABILISED && r->kind[i] != RESULTS_RESTED &&
-            r->kind[i] != RESULTS_WALKS)
-            values[i] = NAN;
-    if (map.g.missing)
-        return gnuplot_end(&map.g);
-    if (!good || !plot_range_of(&range, values, r->cases)) {
-        fputs("no picture of settle_time: no case has one\n", stderr);
-        gnuplot_abandon(&map.g);
-        return true;
-    }
-    gnuplot_say(&map.g, "Time from which each case stayed settled");
-    return end_measure(&map, name, "s", values, range,
-                       map.inferred > 0 ? "none or inferred" : "did not settle");
 }
 
 bool plot_maps(const struct plot *plot)
 {
     const struct results *const r = plot->r;
-    struct map map;
+    struct gnuplot g;
+    uint64_t inferred = 0;
     if (r->sample >= 0 || r->axes < 2)
         return true;
-    if (!begin(&map, plot, "map"))
+    if (!gnuplot_begin(&g, plot, "map", NULL))
         return false;
-    plot_say_became(&map.g);
-    if (map.inferred > 0)
-        gnuplot_say(&map.g, "; %llu of them inferred from neighbours that agree",
-                    (unsigned long long)map.inferred);
-    plot_say_cut(&map.g, statistics_judged(r), true);
-    put(&map, r->kind, sizeof *r->kind, "");
-    return gnuplot_end(&map.g) && draw_times(plot);
+    gnuplot_needs(&g, statistics_inferred(r, &inferred, NULL, plot->message));
+    plot_say_became(&g);
+    if (inferred > 0)
+        gnuplot_say(&g, "; %llu of them inferred from neighbours that agree",
+                    (unsigned long long)inferred);
+    plot_say_cut(&g, statistics_judged(r), true);
+    plot_kinds_write(&g, true);
+    put(&g, r->kind, false);
+    if (!gnuplot_end(&g))
+        return false;
+
+    /* When each case settled. */
+    double *values = NULL;
+    bool good = results_answer(r, "settle_time", &values, plot->message);
+    for (uint64_t i = 0; values && i < r->cases; i++)
+        if (r->kind[i] != RESULTS_STABILISED && r->kind[i] != RESULTS_RESTED &&
+            r->kind[i] != RESULTS_WALKS)
+            values[i] = NAN;
+    struct plot_range range;
+    if (good && values && plot_range_of(&range, values, r->cases))
+        good = plot_number_map(
+            plot,
+            &(struct plot_number){"settle_time", "Time from which each case stayed settled", "s",
+                                  "did not settle", RESULTS_KIND_COUNT, NULL},
+            values);
+    else if (good)
+        fputs("no picture of settle_time: no case has one\n", stderr);
+    free(values);
+    return good;
 }
 
 bool plot_answer_map(const struct plot *plot, const struct plot_answer *answer)
 {
-    struct map map;
     struct plot_range range;
-    char none[64];
-    if (!begin(&map, plot, answer->name))
-        return false;
-    const double *const values = plot_answer_numbers(&map.g, answer, &range);
+    char none[64], said[600];
+    double *const values = plot_answer_numbers(plot, answer, &range);
     if (!values)
-        return gnuplot_end(&map.g);
-    plot_say_answer(&map.g, answer);
-    plot_say_cut(&map.g, answer->of, false);
-    snprintf(none, sizeof none,
-             map.inferred > 0                   ? "none or inferred"
-             : answer->of == RESULTS_KIND_COUNT ? "no number"
-                                                : "not %s",
-             answer->of == RESULTS_KIND_COUNT ? "" : results_kind_names[answer->of]);
-    return end_measure(&map, answer->name, answer->unit, values, range, none);
+        return false;
+    snprintf(none, sizeof none, answer->of == RESULTS_KIND_COUNT ? "no number" : "not %s",
+             results_kind_names[answer->of % RESULTS_KIND_COUNT]);
+    plot_answer_text(answer, said, sizeof said);
+    const bool good = plot_number_map(
+        plot, &(struct plot_number){answer->name, said, answer->unit, none, answer->of, NULL},
+        values);
+    free(values);
+    return good;
 }
 
 bool plot_number_map(const struct plot *plot, const struct plot_number *number,
                      const double *values)
 {
-    struct map map;
+    struct gnuplot g;
     struct plot_range range;
+    uint64_t inferred = 0;
+    char text[200];
     if (!plot_range_of(&range, values, plot->r->cases))
         return true; /* there is nothing to be drawn */
-    if (!begin(&map, plot, number->picture))
+    if (!gnuplot_begin(&g, plot, number->picture, NULL))
         return false;
-    gnuplot_say(&map.g, "%s", number->said);
-    return end_measure(&map, number->name, number->unit, values, range, number->none);
+    gnuplot_needs(&g, statistics_inferred(plot->r, &inferred, NULL, plot->message));
+    const char *const name = number->name ? number->name : number->picture, *const label =
+                                                                                look_label(
+                                                                                    plot->look,
+                                                                                    name);
+    gnuplot_say(&g, "%s", number->said);
+    plot_say_cut(&g, number->of, false);
+    gnuplot_legend(&g, "no_number", 0, 0, inferred > 0 ? "none or inferred" : number->none, "");
+    snprintf(text, sizeof text, label == name && number->unit[0] ? "%s (%s)" : "%s", label,
+             number->unit);
+    gnuplot_text(&g, text, "bar_text");
+    gnuplot_set(&g, "bars = 1; bar_low = %#.17g; bar_high = %#.17g; ground = no_number", range.low,
+                range.high);
+    put(&g, values, true);
+    return gnuplot_end(&g);
 }

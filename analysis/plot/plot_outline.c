@@ -7,8 +7,6 @@
 #include <math.h>
 #include <string.h>
 
-GNUPLOT_SCRIPT(plot_outline_gp, "analysis/plot/plot_outline.gp");
-
 /* Each has a pair of dashes and marks of its own. */
 enum { MOST_OUTLINES = 14, DASHES = 5 };
 static const int marks[] = {0, 7, 4}; /* types of gnuplot's points: none, discs, squares */
@@ -103,7 +101,9 @@ static double between(const struct panel *panel, int k, double at)
 
 static void put_lines(struct page *page, const struct boundary *b, const struct panel *panel)
 {
-    gnuplot_block(&page->g, "outline%d", page->outlines);
+    const size_t hue = (size_t)page->outlines - 1, mark = hue / DASHES;
+    gnuplot_series(&page->g, "using 1:2 with linespoints lw 2.2 dt %d lc rgb %s pt %d pn 12 ps 1.1",
+                   (int)(hue % DASHES) + 1, gnuplot_hue(hue), marks[mark] ? marks[mark] : -1);
     for (size_t l = 0; l < b->lines; l++) {
         const struct boundary_line *const line = &b->line[l];
         for (size_t k = 0; k < line->count + line->closed; k++) {
@@ -187,10 +187,15 @@ static void put_allowed(struct page *page)
     }
     for (int k = 1; k < count; k++)
         same = same && plot_allowed_same(&panel[0], &panel[k]);
-    for (int k = 0; k < (same ? 1 : count); k++)
-        plot_allowed_write(&panel[k], &page->g, k + 1);
+    for (int k = 0; k < (same ? 1 : count); k++) {
+        char style[60] = "lw 2 dt 11 lc rgb colour_allowed";
+        if (!same)
+            snprintf(style, sizeof style, "lw 0.8 dt %d lc rgb %s", k % DASHES + 1,
+                     gnuplot_hue((size_t)k));
+        if (panel[k].points > 0)
+            plot_allowed_write(&panel[k], &page->g, style);
+    }
     plot_allowed_legend(panel, count, same ? PLOT_ALLOWED_ONE : PLOT_ALLOWED_EACH, &page->g);
-    gnuplot_set(&page->g, "alloweds = allowed ? %d : 0", same ? 1 : count);
 }
 
 /* ---- the page ----------------------------------------------------------------------------- */
@@ -226,15 +231,19 @@ static void put(struct page *page)
     char head[200];
     snprintf(head, sizeof head, "%s%s", swept[0] && page->files > 1 ? "file, " : "", swept);
     gnuplot_text(g, head, "legend_head");
+    gnuplot_set(g, "chart_width = 560; scaled = 1");
+    gnuplot_panel(g, 500, "");
     for (int f = 0; f < page->files; f++) {
         for (int p = 0; p < page->layout[f].panels; p++)
             put_outline(page, f, p);
         plot_layout_note(&page->layout[f], g);
     }
     put_allowed(page);
-    gnuplot_set(g, "outlines = %d; cross = %d", page->outlines, cross);
-    if (cross)
+    if (cross) {
         gnuplot_legend(g, "0x000000", 0, 1, "equilibrium", "");
+        gnuplot_series(g, "using 1:2 with points pt 1 ps 1.4 lw 2 lc rgb 0x000000");
+        GNUPLOT_ROW(g, 0, 0);
+    }
 }
 
 bool plot_outline(const struct plot *plots, int files, enum results_kind of)
@@ -251,7 +260,7 @@ bool plot_outline(const struct plot *plots, int files, enum results_kind of)
     page.of = of == RESULTS_KIND_COUNT ? statistics_judged(plots[0].r) : of;
     snprintf(title, sizeof title, "Domains of %d files", files);
     plot.title = same ? NULL : title;
-    if (!gnuplot_begin(&page.g, &plot, "outline", plot_outline_gp))
+    if (!gnuplot_begin(&page.g, &plot, "outline", NULL))
         return false;
     put(&page);
     return gnuplot_end(&page.g);

@@ -6,8 +6,6 @@
 #include <math.h>
 #include <string.h>
 
-GNUPLOT_SCRIPT(plot_phase_gp, "analysis/plot/plot_phase.gp");
-
 enum { MOST_ROWS = 4000 };
 
 /* Row `i` of the exchange as a sum of coordinates, "leg1 + leg2"; *same: it is a coordinate alone,
@@ -145,7 +143,7 @@ static void put_phase(struct gnuplot *g, const struct plot_case *c, int i, char 
     const int legs = own ? 1 : 2;
     if (twin >= 0 && twin < i)
         return; /* it has been drawn with the other one */
-    gnuplot_panel(g, 1, "");
+    gnuplot_panel(g, 300, "");
     for (int leg = 0; leg < legs && c->other; leg++)
         put_curves(&(struct curve){g, c->other, i, leg > 0, range}, "0xb8b8b8", leg ? 2 : 1);
     for (int leg = 0; leg < legs; leg++)
@@ -169,13 +167,15 @@ bool plot_phase(const struct plot_case *c)
     char legend[3][200] = {"", "", ""};
     if (walk_footfalls(c, time) < 2)
         return true;
-    if (!plot_case_begin(c, &g, "phase", plot_phase_gp, "Angles against their rates"))
+    if (!plot_case_begin(c, &g, "phase", NULL, "Angles against their rates"))
         return false;
     for (int j = 0; j < c->scenario.scene->postures; j++)
         put_phase(&g, c, c->scenario.scene->posture[j], legend);
     for (int k = 0; k < 3; k++)
         if (legend[k][0])
             gnuplot_legend(&g, gnuplot_hue((size_t)k), k == 1 ? 2 : 1, 0, legend[k], "");
+    const int panels = g.panels, columns = panels == 4 ? 2 : panels < 4 ? panels : 3;
+    gnuplot_set(&g, "columns = %d; chart_width = 330; scaled = 1", columns);
     gnuplot_note(&g, "dot: the start; dotted: jump at an impact%s",
                  c->other ? "; grey: the second case" : "");
     return gnuplot_end(&g);

@@ -12,8 +12,6 @@
 #include <math.h>
 #include <string.h>
 
-GNUPLOT_SCRIPT(plot_sample_gp, "analysis/plot/plot_sample.gp");
-
 enum {
     BINS = 8,
     TICS = 5, /* most values that have one each */
@@ -113,28 +111,32 @@ static double place_of(const struct page *page, int k, double value)
     return isinf(value) ? span->absent[value > 0] : span->logarithmic ? log10(value) : value;
 }
 
-/* Tells the script of path k as an axis: words, and numbers that are few or among which some are
- * none, are a list. */
-static void put_axis(struct page *page, int k, const char *which)
+/* Path k as the axis x or y of the last panel: words, and numbers that are few or among which some
+ * are none, are a list. */
+static void put_axis(struct page *page, int k, char which)
 {
     const struct results_varied *v = &page->r->vary[k];
     struct gnuplot *g = &page->g;
     struct doe_bins bins;
     const struct span *span = &page->span[k];
+    struct plot_range range = span->shown;
     size_t words = 0;
 
     if (!gnuplot_needs(g, doe_bins_make(&bins, page->r, k, TICS, g->plot->message)))
         return;
-    const bool absent = span->none[0] || span->none[1],
-               listed = absent || (bins.listed && !(page->scale >= 0 && is_offset(v)));
-    plot_label_write(&v->of, g, which);
-    gnuplot_text(g, listed ? "list" : span->logarithmic ? "log" : "linear", "%s_scale", which);
-    gnuplot_set(g, "%s_low = %#.17g; %s_high = %#.17g; %s_wordy = %d", which,
-                v->word ? ceil(span->shown.low) - 0.5 : span->shown.low, which,
-                v->word ? floor(span->shown.high) + 0.5 : span->shown.high, which, v->word != NULL);
+    const bool listed =
+        span->none[0] || span->none[1] || (bins.listed && !(page->scale >= 0 && is_offset(v)));
+    if (v->word)
+        range = (struct plot_range){ceil(range.low) - 0.5, floor(range.high) + 0.5};
+    const char *const axis = gnuplot_axis(g, which,
+                                          listed              ? PLOT_LIST
+                                          : span->logarithmic ? PLOT_LOG
+                                                              : PLOT_LINEAR,
+                                          range, "", "");
+    plot_label_write(&v->of, g, axis);
     if (!listed)
         return;
-    gnuplot_set(g, "array %s_word[%zu]\narray %s_at[%zu]", which, bins.count + 2, which,
+    gnuplot_set(g, "array %s_word[%zu]\narray %s_at[%zu]", axis, bins.count + 2, axis,
                 bins.count + 2);
     for (size_t b = 0; b < bins.count + 2; b++) {
         const bool beside = b >= bins.count, up = b > bins.count;
@@ -143,10 +145,10 @@ static void put_axis(struct page *page, int k, const char *which)
         const double centre = !beside ? bins.bin[b].centre : up ? INFINITY : -INFINITY;
         char text[40];
         results_number_text(centre, 0, text, sizeof text);
-        gnuplot_set(g, "%s_at[%zu] = %#.17g", which, ++words, place_of(page, k, centre));
-        gnuplot_tic(g, v->word ? v->word[(int)centre] : text, "%s_word[%zu]", which, words);
+        gnuplot_set(g, "%s_at[%zu] = %#.17g", axis, ++words, place_of(page, k, centre));
+        gnuplot_tic(g, v->word ? v->word[(int)centre] : text, "%s_word[%zu]", axis, words);
     }
-    gnuplot_set(g, "%s_words = %zu", which, words);
+    gnuplot_set(g, "%s_words = %zu; panel_wordy[panels] = %d", axis, words, v->word != NULL);
 }
 
 /* ---- the scatter -------------------------------------------------------------------------- */
@@ -201,17 +203,23 @@ static void put_shares(struct page *page)
 static void put_scatter(struct page *page)
 {
     const struct results *r = page->r;
-    put_axis(page, page->x, "x");
-    if (page->y >= 0)
-        put_axis(page, page->y, "y");
-    gnuplot_set(&page->g,
-                "plane = %d; shares = bars = %d; points = %llu; judged_colour = colour_%s",
-                page->y >= 0, page->shares,
-                (unsigned long long)(page->shares ? r->axis[r->sample].count : r->cases),
-                results_kind_names[page->judged]);
-    gnuplot_text(&page->g, results_kind_names[page->judged], "judged");
+    const char *const judged = results_kind_names[page->judged];
+    const uint64_t points = page->shares ? r->axis[r->sample].count : r->cases;
     plot_kinds_write(&page->g, !page->shares);
-    gnuplot_block(&page->g, "scatter");
+    gnuplot_panel(&page->g, 380, "");
+    put_axis(page, page->x, 'x');
+    if (page->y >= 0)
+        put_axis(page, page->y, 'y');
+    else
+        gnuplot_set(&page->g, "panel_y[panels] = ''");
+    if (page->shares)
+        gnuplot_set(&page->g, "bars = 1; bar_high = 100; bar_text = '%s (%%)'", judged);
+    gnuplot_series(&page->g, "using 1:2:%s with points pt 7 ps %g lc %s",
+                   page->shares ? "3" : "(kind_colour[$3+1])",
+                   points > 4000  ? 0.25
+                   : points > 400 ? 0.45
+                                  : 0.8,
+                   page->shares ? "palette" : "rgb variable");
     (page->shares ? put_shares : put_cases)(page);
 }
 
@@ -222,13 +230,13 @@ static void put_panel(struct page *page, int k)
 {
     struct gnuplot *const g = &page->g;
     struct doe_bins bins;
-    char which[32];
 
-    snprintf(which, sizeof which, "x%d", k + 1);
-    put_axis(page, k, which);
+    gnuplot_panel(g, 150, "");
+    put_axis(page, k, 'x');
     if (!gnuplot_needs(g, doe_bins_make(&bins, page->r, k, BINS, g->plot->message)))
         return;
-    gnuplot_block(g, "bins%d", k + 1);
+    gnuplot_series(g, "using 1:2:3:4 with yerrorbars lc rgb colour_%s pt 7 ps 0.6 lw 1.4",
+                   results_kind_names[page->judged]);
     for (size_t b = 0; b < bins.count; b++) {
         const struct statistics_counts *c = &bins.bin[b].counts;
         const struct interval *interval = &bins.bin[b].of_kind[page->judged];
@@ -248,11 +256,12 @@ bool plot_sample(const struct plot *plot)
     const struct results *r = plot->r;
     struct page page = {.r = r, .most = 1};
     struct gnuplot *const g = &page.g;
+    char share[64];
     if (r->sample < 0)
         return true;
     const int panels = r->varied < MOST_PANELS ? r->varied : MOST_PANELS;
     const size_t points = r->axis[r->sample].count;
-    if (!gnuplot_begin(g, plot, "sample", plot_sample_gp))
+    if (!gnuplot_begin(g, plot, "sample", NULL))
         return false;
     page.judged = statistics_judged(r);
     page.span = gnuplot_room(g, (size_t)r->varied, sizeof *page.span);
@@ -267,9 +276,13 @@ bool plot_sample(const struct plot *plot)
     plot_say_cut(g, page.judged, true);
     if (panels < r->varied)
         gnuplot_note(g, "%d of the %d paths are drawn", panels, r->varied);
+    snprintf(share, sizeof share, "%s (%%)", results_kind_names[page.judged]);
+    gnuplot_axis(g, 'y', PLOT_LINEAR, (struct plot_range){0, 100}, share, "");
+    gnuplot_set(g, "leads = 1; columns = 3; chart_width = 200; scaled = 1");
+    gnuplot_note(g, "bars: 95 %% interval");
     put_scatter(&page);
     for (int k = 0; k < panels; k++)
         put_panel(&page, k);
-    gnuplot_set(g, "panels = %d; most = %#.10g", panels, fmin(page.most, 100));
+    gnuplot_number(g, fmin(page.most, 100), "y_high");
     return gnuplot_end(g);
 }

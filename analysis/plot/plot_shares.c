@@ -10,8 +10,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-GNUPLOT_SCRIPT(plot_shares_gp, "analysis/plot/plot_shares.gp");
-
 enum { MAX_EXTENTS = 2, SHARES = 6 };
 
 /* A share, the ends of its likely error (95 %), and its bounds where there are any. */
@@ -180,47 +178,72 @@ static double find_most(const struct page *page)
     return most > 0 ? fmin(100, 1.08 * most) : 100;
 }
 
-/* Share k with its interval, in per cent. */
-static void put_share(struct page *page, int k)
+/* The shares in per cent, with their intervals: of words bars, else bands under lines. */
+static void put_shares(struct page *page)
 {
     static const int types[SHARES] = {7, 5, 9, 11, 13, 15}; /* of points */
-    const struct share *const share = &page->share[k];
-    const bool apart = page->second >= 0;
+    static const char *const band = "using 1:%s with filledcurves lc rgb %s fillstyle transparent "
+                                    "solid %g",
+                             *const bar =
+                                 "using 1:2:%s with yerrorbars lc rgb %s pt %d ps 1.1 lw %g";
+    const bool words = page->along.axis->word, apart = page->second >= 0;
     struct gnuplot *const g = &page->g;
-    char colour[32], label[96];
-    gnuplot_block(g, "share%d", k + 1);
-    for (size_t i = 0; i < page->values; i++) {
-        double row[1 + PARTS] = {page->points[i].value};
-        for (int p = 0; p < PARTS; p++)
-            row[1 + p] = 100 * share->part[page->points[i].index][p];
-        gnuplot_row(g, row, 1 + PARTS);
+    char kind[32], label[96];
+    for (int pass = page->bounded ? 0 : 1; pass < (words ? 2 : 3); pass++) {
+        const char *const ends = pass == 0 ? "5:6" : "3:4";
+        for (int k = 0; k < page->count; k++) {
+            const struct share *const share = &page->share[k];
+            snprintf(kind, sizeof kind, "colour_%s", results_kind_names[share->kind]);
+            const char *const colour = apart ? gnuplot_hue((size_t)k) : kind;
+            const int type = apart ? types[k] : 7;
+            if (pass == 2)
+                gnuplot_series(g, "using 1:2 with linespoints lc rgb %s lw 2 dt %d pt %d ps 0.8",
+                               colour, apart ? k + 1 : 1, type);
+            else if (words)
+                gnuplot_series(g, bar, ends, colour, pass ? type : 0, pass ? 2.4 : 0.8);
+            else
+                gnuplot_series(g, band, ends, colour, pass ? 0.35 : 0.12);
+            for (size_t i = 0; i < page->values; i++) {
+                double row[1 + PARTS] = {page->points[i].value};
+                for (int p = 0; p < PARTS; p++)
+                    row[1 + p] = 100 * share->part[page->points[i].index][p];
+                gnuplot_row(g, row, 1 + PARTS);
+            }
+            if (pass != 1)
+                continue;
+            if (apart)
+                results_value_text(&page->r->axis[page->second], (size_t)k, true, label,
+                                   sizeof label);
+            gnuplot_legend(g, colour, apart && !words ? k + 1 : 0, apart ? type : 0,
+                           apart ? label : results_kind_names[share->kind], "");
+        }
     }
-    snprintf(colour, sizeof colour, "colour_%s", results_kind_names[share->kind]);
-    if (apart)
-        results_value_text(&page->r->axis[page->second], (size_t)k, true, label, sizeof label);
-    gnuplot_legend(g, apart ? gnuplot_hue((size_t)k) : colour,
-                   apart && !page->along.axis->word ? k + 1 : 0, apart ? types[k] : 0,
-                   apart ? label : results_kind_names[share->kind], "");
 }
 
 /* ---- extents ------------------------------------------------------------------------------ */
 
-/* Of the stabilised set along an axis of offsets, for every value of the first axis. */
-static void put_extent(struct page *page, int axis, int number)
+/* The panel of the stabilised set along an axis of offsets, for every value of the first axis. */
+static void put_extent(struct page *page, int axis)
 {
     struct gnuplot *const g = &page->g;
     const struct results_axis *of = &page->r->axis[axis];
+    const bool words = page->along.axis->word;
     size_t point[SCENARIO_MAX_AXES] = {0};
     struct statistics_extent extent;
     struct plot_axis range;
     const char *dot = strrchr(of->name, '.');
 
-    gnuplot_text(g, dot ? dot + 1 : of->name, "extent_name[%d]", number);
-    gnuplot_text(g, of->unit, "extent_unit[%d]", number);
     plot_axis_make_curve(&range, of);
-    gnuplot_set(g, "extent_low[%d] = %#.17g; extent_high[%d] = %#.17g", number, range.range.low,
-                number, range.range.high);
-    gnuplot_block(g, "extent%d", number);
+    gnuplot_panel(g, 150, "");
+    gnuplot_axis(g, 'y', PLOT_LINEAR, range.range, dot ? dot + 1 : of->name, of->unit);
+    gnuplot_series(g, "using 1:2 with lines dt 2 lc rgb 0x909090");
+    GNUPLOT_ROW(g, page->along.range.low, 0);
+    GNUPLOT_ROW(g, page->along.range.high, 0);
+    gnuplot_series(g, words ? "using 1:2:($1-0.05):($1+0.05):2:3 with boxxyerror lc rgb hue[1] "
+                              "fillstyle solid noborder"
+                            : "using 1:2:3 with filledcurves lc rgb hue[1] fillstyle transparent "
+                              "solid 0.22 notitle, for [k=2:3] '' using 1:k with linespoints lc "
+                              "rgb hue[1] lw 1.6 pt 7 ps 0.5");
     for (size_t i = 0; i < page->values; i++) {
         point[0] = page->points[i].index;
         const bool any = statistics_extent(page->r, axis, point, &extent) && extent.any;
@@ -274,14 +297,13 @@ static void put(struct page *page)
     plot_axis_write(&page->along, g, 'x');
     if (page->second >= 0)
         gnuplot_text(g, page->r->axis[page->second].name, "legend_head");
-    gnuplot_set(g,
-                "words = %d; volumes = %d; bounded = %d; most = %#.10g; shares = %d; extents = %d",
-                words, page->measured, page->bounded, find_most(page), page->count, extent_count);
-    gnuplot_arrays(g, MAX_EXTENTS, "extent_name extent_unit extent_low extent_high");
-    for (int k = 0; k < page->count; k++)
-        put_share(page, k);
+    gnuplot_panel(g, 300, "");
+    gnuplot_axis(g, 'y', PLOT_LINEAR, (struct plot_range){0, find_most(page)},
+                 page->measured ? "share of the box of starts (%)" : "share of the cases done (%)",
+                 "");
+    put_shares(page);
     for (int k = 0; k < extent_count; k++)
-        put_extent(page, extents[k], k + 1);
+        put_extent(page, extents[k]);
     if (page->measured)
         gnuplot_note(g, "%s: likely error (95 %%)%s", words ? "bars" : "band",
                      !page->bounded ? ""
@@ -297,7 +319,7 @@ bool plot_shares(const struct plot *plot)
     struct page page = {.r = r};
     if (r->axes < 2 || r->axis[0].offset)
         return true;
-    if (!gnuplot_begin(&page.g, plot, "curve", plot_shares_gp))
+    if (!gnuplot_begin(&page.g, plot, "curve", NULL))
         return false;
     choose_parameters(&page);
     plot_axis_make_curve(&page.along, &r->axis[page.first]);

@@ -4,8 +4,6 @@
 
 #include <math.h>
 
-GNUPLOT_SCRIPT(plot_strip_gp, "analysis/plot/plot_strip.gp");
-
 enum { MOST_FIGURES = 14 };
 
 struct strip {
@@ -88,11 +86,18 @@ static void make_strip(struct strip *strip)
 
 /* ---- drawing ------------------------------------------------------------------------------ */
 
-/* In the script's plane the figures stand `spacing` apart. */
-static void put_figures(struct gnuplot *g, struct strip *strip)
+/* A row of figures from `first` on, `columns` of them, `spacing` apart in its plane: their ground,
+ * the other case, segments and points, what belongs to a contact over the rest; under them their
+ * times. */
+static void put_row(struct gnuplot *g, struct strip *strip, int first, int columns, double foot)
 {
-    gnuplot_block(g, "ground");
-    for (int i = 0; i < strip->count; i++) {
+    static const char *const styles[] = {
+        "1:2 with lines lw 2.6 lc rgb 0xb8b8b8",
+        "1:2:(" FIGURE_COLOUR ") with lines lw 2.6 lc rgb variable",
+        "1:2:(" FIGURE_COLOUR ") with points pt 7 ps 0.8 lc rgb variable"};
+    const int end = first + columns < strip->count ? first + columns : strip->count;
+    gnuplot_series(g, "using 1:2 with lines lw 2 lc rgb 0xa0a0a0");
+    for (int i = first; i < end; i++) {
         const size_t points = find_ground(strip, i);
         for (size_t k = 0; k < points; k++)
             GNUPLOT_ROW(g,
@@ -100,15 +105,33 @@ static void put_figures(struct gnuplot *g, struct strip *strip)
                         strip->ground[k][1] - strip->figure[i].base);
         gnuplot_gap(g);
     }
-    static const char *const blocks[] = {"segments", "points", "other"};
     for (int k = 0; k < 3; k++) {
-        gnuplot_block(g, "%s", blocks[k]);
-        for (int i = 0; i < strip->count; i++)
-            figure_put(g, k < 2 ? &strip->figure[i] : &strip->other[i], strip->contacts,
-                       k == 1 ? FIGURE_POINTS : FIGURE_SEGMENTS,
+        gnuplot_series(g, "using %s", styles[k]);
+        for (int i = first; i < end; i++)
+            figure_put(g, k > 0 ? &strip->figure[i] : &strip->other[i], strip->contacts,
+                       k == 2 ? FIGURE_POINTS : FIGURE_SEGMENTS,
                        (i + 0.5) * strip->spacing - strip->figure[i].centre,
                        -strip->figure[i].base);
     }
+    gnuplot_series(g, "using 1:2:(sprintf('%%.3g s', $3)) with labels font ',12'");
+    for (int i = first; i < end; i++)
+        GNUPLOT_ROW(g, (i + 0.5) * strip->spacing, foot, strip->figure[i].time);
+}
+
+/* The scale: a bar at the upper left, of a round length. */
+static void put_bar(struct gnuplot *g, const struct strip *strip, double height)
+{
+    const double third = strip->spacing / 3, power = pow(10, floor(log10(third))),
+                 bar = power * (third >= 5 * power   ? 5
+                                : third >= 2 * power ? 2
+                                                     : 1),
+                 left = 0.05 * strip->spacing;
+    gnuplot_series(g, "using 1:2:3:4 with vectors heads size screen 0.004,90 lw 1.4 lc rgb "
+                      "0x404040 notitle, '' using ($1+$3):2:(sprintf('%%g m', $3)) with labels "
+                      "left offset 1,0 font ',12'");
+    GNUPLOT_ROW(g, left, height, bar, 0);
+    if (strip->follows)
+        gnuplot_note(g, "each figure is centred: it travels");
 }
 
 bool plot_strip(const struct plot_case *c)
@@ -117,22 +140,37 @@ bool plot_strip(const struct plot_case *c)
     bool drawn;
     if (!plot_steps(c, &drawn) || drawn)
         return drawn;
-    if (!plot_case_begin(c, &g, "strip", plot_strip_gp, "Stick figures"))
+    if (!plot_case_begin(c, &g, "strip", NULL, "Stick figures"))
         return false;
     struct strip *const strip = gnuplot_room(&g, 1, sizeof *strip);
-    if (strip) {
-        strip->c = c;
-        make_strip(strip);
-        gnuplot_set(&g,
-                    "count = %d; spacing = %#.17g; low = %#.17g; high = %#.17g; travels = %d; "
-                    "cases = %d",
-                    strip->count, strip->spacing, strip->height.low, strip->height.high,
-                    strip->follows, c->other ? 2 : 1);
-        strip->contacts = figure_names(&g, c->scenario.scene);
-        gnuplot_arrays(&g, (size_t)strip->count, "time");
-        for (int i = 0; i < strip->count; i++)
-            gnuplot_number(&g, strip->figure[i].time, "time[%d]", i + 1);
-        put_figures(&g, strip);
+    if (!strip)
+        return gnuplot_end(&g);
+    const struct look *const look = c->plot->look; /* a page is narrow below 47.5 letters */
+    const int most = look->width > 0 && look->width < 760 / 16. * 25.4 / 72 * look->points ? 5 : 7;
+    strip->c = c;
+    make_strip(strip);
+    strip->contacts = figure_names(&g, c->scenario.scene);
+    for (int k = 0; k < strip->contacts; k++)
+        gnuplot_legend(&g, gnuplot_hue((size_t)k), 0, 0, c->scenario.scene->contact_name[k], "");
+    gnuplot_legend(&g, "0x303030", 0, 0, "body", "");
+    if (c->other)
+        gnuplot_legend(&g, "0xb8b8b8", 0, 0, "the second case", "");
+    /* Figures fill the page, but a lonely one is not to fill a wall; under each is its time. */
+    const int columns = strip->count < most ? strip->count : most;
+    const double width = columns * strip->spacing, high = strip->height.high,
+                 tall = high - strip->height.low, scale = fmin(1072 / width, 320 / tall),
+                 low = strip->height.low - 30 / scale;
+    gnuplot_set(&g, "plain = 1; chart_width = %.10g; scaled = 1", scale * width);
+    for (int first = 0; first < strip->count; first += columns) {
+        const struct plot_range x = {first * strip->spacing, (first + columns) * strip->spacing};
+        const bool barred = first == 0;
+        gnuplot_panel(&g, scale * (high - low) + (barred ? 24 : 0), "");
+        gnuplot_axis(&g, 'x', PLOT_LINEAR, x, "", "");
+        gnuplot_axis(&g, 'y', PLOT_LINEAR,
+                     (struct plot_range){low, high + (barred ? 24 / scale : 0)}, "", "");
+        put_row(&g, strip, first, columns, low + 10 / scale);
+        if (barred)
+            put_bar(&g, strip, high + 12 / scale);
     }
     return gnuplot_end(&g);
 }

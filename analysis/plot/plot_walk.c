@@ -115,7 +115,7 @@ static const char metre[] = "metre(_) = panel_high[1]/(y1_high - y1_low)*(x_high
 #define FIGURE_PLACE_ALONE                                                                         \
     "(int(($4 - figure_begin)/figure_time + 0.5)%%every ? NaN : $4 + metre(0)*$1):"                \
     "($2 - figure_fall*($4 - x_low)/metre(0))"
-#define FIGURE_PLACE FIGURE_PLACE_ALONE ":(figure_colour($3))"
+#define FIGURE_PLACE FIGURE_PLACE_ALONE ":(" FIGURE_COLOUR ")"
 
 static void put_plane(struct case_page *page)
 {
@@ -174,7 +174,6 @@ static void put_figures(struct case_page *page)
     gnuplot_panel(g, 200, "");
     gnuplot_axis(g, 'y', PLOT_LINEAR, height, "height", "m");
     const int contacts = figure_names(g, c->scenario.scene);
-    gnuplot_set(g, "figure_colour(k) = k < contacts ? hue[int(k)%%|hue|+1] : 0x303030");
     gnuplot_series(g, "using 1:($2 > 0 ? y1_high : y1_low) with lines dt 3 lw 1 lc rgb 0x606060");
     for (size_t k = 0; k < page->marks; k++) {
         GNUPLOT_ROW(g, page->mark[k], 0);

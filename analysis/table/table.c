@@ -440,6 +440,14 @@ json_t *table_list(const char *const *text, size_t count)
     return list;
 }
 
+json_t *table_pair(double low, double high)
+{
+    json_t *const list = json_array();
+    table_append(list, as_number(low));
+    table_append(list, as_number(high));
+    return list;
+}
+
 json_t *table_at(const struct results *r, const bool *which, const size_t *point)
 {
     json_t *at = json_object();

@@ -179,6 +179,38 @@ void say_add(json_t *facts, const char *key, const char *format, ...)
     json_decref(more);
 }
 
+/* ---- keys --------------------------------------------------------------------------------- */
+
+static void put_keys(const struct say_key *key, bool inner, FILE *out)
+{
+    const char *const line = inner ? ", " : "\n    ", *before = inner ? "" : "    ";
+    for (; key->name || key->text; key++) {
+        const bool consists = key->text && (key->text[0] == '[' || key->text[0] == '{');
+        if (!key->text)
+            continue;
+        if (!key->name) {
+            fprintf(out, key->text[0] ? "  %s\n" : "", key->text);
+            say_keys(key->of, out);
+            continue;
+        }
+        fprintf(out, "%s%s", key->of && before[0] == ',' ? line : before, key->name);
+        if (key->of) {
+            fputs(inner ? ": {" : "    [{", out);
+            put_keys(key->of, true, out);
+            fprintf(out, "}%s%s%s", inner ? "" : "]", key->text[0] ? "; " : "", key->text);
+        } else {
+            fprintf(out, consists ? ": %s" : key->text[0] ? " (%s)" : "", key->text);
+        }
+        before = key->of ? line : ", ";
+    }
+}
+
+void say_keys(const struct say_key *key, FILE *out)
+{
+    put_keys(key, false, out);
+    fputs(key->name ? "\n" : "", out);
+}
+
 /* ---- JSON --------------------------------------------------------------------------------- */
 
 static void drop_hidden(json_t *of)

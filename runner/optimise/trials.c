@@ -2,6 +2,7 @@
 #include "trials.h"
 
 #include "engine/control/design.h"
+#include "engine/mechanism.h"
 #include "runner/base/message.h"
 #include "runner/base/units.h"
 #include "runner/plan/allowed.h"
@@ -9,10 +10,13 @@
 #include "runner/run/work.h"
 
 #include <math.h>
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
 #define MOST_SHORT 1e3
+enum { MOST_STARTS = 8192 }; /* elsewhere */
+static const double mass_error = 0.05, less_friction = 0.5;
 
 /* ---- making --------------------------------------------------------------------------------- */
 
@@ -95,10 +99,9 @@ void trials_free(struct trials *t)
 /* How fast a loop that is not stable departs: above 0, below MOST_SHORT. */
 static double instability(const struct design_report *r)
 {
-    double largest = 0;
-    for (int i = 0; i < r->states; i++)
-        largest = fmax(largest, r->closed_re[i]);
-    const double excess = r->sampled ? r->radius - 1 : largest;
+    double excess = r->sampled ? r->radius - 1 : 0;
+    for (int i = 0; !r->sampled && i < r->states; i++)
+        excess = fmax(excess, r->closed_re[i]);
     return fmin(fmax(excess, 0), MOST_SHORT - 1);
 }
 
@@ -109,26 +112,29 @@ static void look_at_loop(const struct trials *t, uint64_t index, struct scenario
 {
     const double asked = t->scenario->search.critical;
     stance_message ignored;
-    *loop = (struct trials_loop){.critical = NAN, .exists = 1, .stable = 1, .tried = 1};
+    *loop = (struct trials_loop){.critical = NAN, .tried = 1};
     scenario_case_values(t->at, index, &one->base);
+    const double sample_time = one->base.sample_time;
     if (!scenario_law(&one->base)->designed)
         return;
-    loop->exists = design_loop(report, one, NULL, &ignored);
-    loop->stable = loop->exists && report->stable;
-    loop->tried = loop->stable;
-    loop->short_of = !loop->exists ? MOST_SHORT : loop->stable ? 0 : 1 + instability(report);
-    if (!loop->tried || one->base.sample_time <= 0)
+    const bool exists = design_loop(report, one, NULL, &ignored);
+    loop->tried = exists && report->stable;
+    if (!loop->tried)
+        loop->short_of = exists ? 1 + instability(report) : MOST_SHORT;
+    if (!loop->tried || sample_time <= 0)
         return;
-    const double least = isnan(asked) ? 2 * one->base.sample_time : asked;
-    if (stance_critical_sample_time(report->states, report->inputs, report->A, report->B, report->K,
-                                    0, DESIGN_LONGEST, &loop->critical) != STANCE_OK)
+    const double least = isnan(asked) ? 2 * sample_time : asked;
+    const stance_plant plant = {report->states, report->inputs, report->A, report->B};
+    if (stance_critical_sample_time(&plant, &(stance_sampling){.K = report->K}, DESIGN_LONGEST,
+                                    &loop->critical) != STANCE_OK)
         loop->critical = NAN;
     loop->tried = least <= 0 || loop->critical >= least;
-    loop->short_of = loop->tried ? 0 : isnan(loop->critical) ? 1 : 1 - loop->critical / least;
+    if (!loop->tried)
+        loop->short_of = isnan(loop->critical) ? 1 : 1 - loop->critical / least;
 }
 
 /* Each rank a block of them. */
-static bool look_at_loops(struct trials *t, size_t candidates, uint64_t starts)
+static bool look_at_loops(struct trials *t, size_t candidates)
 {
     const size_t pairs = candidates * t->circumstances;
     const size_t ranks = (size_t)t->parallel->size, rank = (size_t)t->parallel->rank;
@@ -138,7 +144,7 @@ static bool look_at_loops(struct trials *t, size_t candidates, uint64_t starts)
     if (one)
         *one = *t->scenario;
     for (size_t p = first; one && report && p < end; p++)
-        look_at_loop(t, p * starts, one, report, &t->loop[p]);
+        look_at_loop(t, p * t->starts, one, report, &t->loop[p]);
     const bool good = one && report;
     free(one);
     free(report);
@@ -149,23 +155,16 @@ static bool look_at_loops(struct trials *t, size_t candidates, uint64_t starts)
 
 /* ---- cases ---------------------------------------------------------------------------------- */
 
-/* What is computed together. */
-struct batch {
-    struct trials *t;
-    uint64_t starts, cases;
-    const int64_t *weight;
-};
-
 static bool is_tried(void *context, uint64_t row)
 {
-    const struct batch *const batch = context;
-    return batch->t->loop[row / batch->starts].tried;
+    const struct trials *const t = context;
+    return t->loop[row / t->starts].tried;
 }
 
 static bool attend(void *context, double now)
 {
-    const struct batch *const batch = context;
-    return batch->t->attend && batch->t->attend(batch->t->context, now);
+    const struct trials *const t = context;
+    return t->attend && t->attend(t->context, now);
 }
 
 /* What a recovered start is worth: 1 or an answer, less prices. */
@@ -186,18 +185,15 @@ static int64_t worth_of(const struct scenario_search *search, const stance_resul
 
 static void end_case(void *context, uint64_t row, const stance_result *result)
 {
-    struct batch *const batch = context;
-    struct trials *const t = batch->t;
+    struct trials *const t = context;
     if (result->status == STANCE_DONE && trials_recovered(result->outcome + 1))
-        t->worth[row / batch->starts] +=
-            batch->weight[row % batch->starts] * worth_of(&t->scenario->search, result);
-    batch->cases += result->failure != STANCE_FAILURE_INITIAL;
+        t->worth[row / t->starts] +=
+            t->counts[row % t->starts] * worth_of(&t->scenario->search, result);
+    t->own_cases += result->failure != STANCE_FAILURE_INITIAL;
 }
 
-static enum trials_end simulate(struct trials *t, const struct plan *plan, uint64_t starts,
-                                const int64_t *weight, stance_message *message)
+static enum trials_end simulate(struct trials *t, const struct plan *plan, stance_message *message)
 {
-    struct batch batch = {.t = t, .starts = starts, .weight = weight};
     struct work work = {.plan = plan,
                         .parallel = t->parallel,
                         .quiet = true,
@@ -206,8 +202,9 @@ static enum trials_end simulate(struct trials *t, const struct plan *plan, uint6
                         .ends = end_case,
                         .takes = is_tried,
                         .attend = t->parallel->rank == 0 ? attend : NULL,
-                        .context = &batch,
+                        .context = t,
                         .cycle = t->circumstances};
+    t->own_cases = 0;
     parallel_restart(t->parallel);
     const bool good = work_run(&work, NULL, t->label, message);
     t->beats = work.beats;
@@ -217,11 +214,10 @@ static enum trials_end simulate(struct trials *t, const struct plan *plan, uint6
     parallel_sum(t->parallel, &stopped, 1);
     if (stopped)
         return TRIALS_STOPPED;
-    const size_t pairs = plan->rows / starts;
     parallel_largest(t->parallel, t->label, plan->rows);
-    parallel_sum(t->parallel, (uint64_t *)t->worth, (int)pairs);
-    parallel_sum(t->parallel, &batch.cases, 1);
-    t->cases += batch.cases;
+    parallel_sum(t->parallel, (uint64_t *)t->worth, (int)(plan->rows / t->starts));
+    parallel_sum(t->parallel, &t->own_cases, 1);
+    t->cases += t->own_cases;
     return TRIALS_DONE;
 }
 
@@ -249,98 +245,210 @@ static enum trials_end take_kernels(struct trials *t, const struct plan *plan,
                                       : TRIALS_BROKEN;
 }
 
-enum trials_end trials_run(struct trials *t, size_t candidates, double *value,
-                           enum trials_starts which, uint64_t starts, stance_message *message)
+/* What is tried, from which starts. */
+static void take_points(struct trials *t, size_t candidates, double *value,
+                        enum trials_starts which, uint64_t starts)
 {
     struct scenario *const at = t->at;
     struct scenario_axis *const sample = &at->axis[at->axes - 1];
-    struct plan plan;
-    struct plan_error error = {0};
-    const size_t pairs = candidates * t->circumstances;
     at->axis[0].value = value;
     at->axis[0].count = candidates;
     sample->value = t->start[which];
     sample->count = starts;
-    at->cases = pairs * starts;
+    at->cases = candidates * t->circumstances * starts;
     at->seed = trials_seed(t->scenario, which);
-    bool good = plan_make(&plan, at, false, 0, false, &error);
-    if (!good)
-        *message = error.message;
+    t->starts = starts;
+    t->counts = t->weight[which];
+}
+
+/* Room for what comes out of so many pairs of a candidate and a circumstance. */
+static bool make_room(struct trials *t, size_t pairs)
+{
     free(t->label);
     free(t->worth);
     free(t->loop);
-    t->label = calloc(pairs * starts, 1);
+    t->label = calloc(pairs * t->starts, 1);
     t->worth = calloc(pairs, sizeof *t->worth);
     t->loop = calloc(pairs, sizeof *t->loop);
-    if (good && !(t->label && t->worth && t->loop))
-        good = complain(message, "not enough memory for %zu candidates", candidates);
-    if (!parallel_agree(t->parallel, good, message->text, sizeof message->text)) {
-        plan_free(&plan);
+    return t->label && t->worth && t->loop;
+}
+
+static enum trials_end run_plan(struct trials *t, struct plan *plan, size_t candidates,
+                                stance_message *message)
+{
+    struct plan_error error = {0};
+    plan->stop = stop_designs;
+    plan->stop_context = t;
+    /* Where no design exists all candidates are refused. */
+    if (!plan_compute_designs(plan, t->parallel, &error) && !error.message.text[0])
+        return TRIALS_STOPPED;
+    parallel_broadcast(t->parallel, plan->design,
+                       plan->designs * plan->design_size * sizeof *plan->design);
+    parallel_broadcast(t->parallel, plan->design_status, plan->designs);
+    const bool good = look_at_loops(t, candidates) || no_memory(message);
+    if (!parallel_agree(t->parallel, good, message->text, sizeof message->text))
         return TRIALS_BROKEN;
-    }
-    plan.stop = stop_designs;
-    plan.stop_context = t;
-    enum trials_end end = TRIALS_DONE;
-    if (!plan_compute_designs(&plan, t->parallel, &error) && !error.message.text[0])
-        end = TRIALS_STOPPED; /* where none exists all candidates are refused */
-    parallel_broadcast(t->parallel, plan.design,
-                       plan.designs * plan.design_size * sizeof *plan.design);
-    parallel_broadcast(t->parallel, plan.design_status, plan.designs);
-    if (end == TRIALS_DONE) {
-        good = look_at_loops(t, candidates, starts) ||
-               complain(message, "not enough memory for the loops");
-        good = parallel_agree(t->parallel, good, message->text, sizeof message->text);
-        end = good ? take_kernels(t, &plan, message) : TRIALS_BROKEN;
-        if (end == TRIALS_DONE)
-            end = simulate(t, &plan, starts, t->weight[which], message);
-    }
+    const enum trials_end end = take_kernels(t, plan, message);
+    return end == TRIALS_DONE ? simulate(t, plan, message) : end;
+}
+
+enum trials_end trials_run(struct trials *t, size_t candidates, double *value,
+                           enum trials_starts which, uint64_t starts, stance_message *message)
+{
+    struct plan plan;
+    struct plan_error error = {0};
+    take_points(t, candidates, value, which, starts);
+    bool good = plan_make(&plan, t->at, false, 0, false, &error);
+    if (!good)
+        *message = error.message;
+    else if (!make_room(t, candidates * t->circumstances))
+        good = complain(message, "not enough memory for %zu candidates", candidates);
+    good = parallel_agree(t->parallel, good, message->text, sizeof message->text);
+    const enum trials_end end = good ? run_plan(t, &plan, candidates, message) : TRIALS_BROKEN;
     plan_free(&plan);
-    at->axis[0].value = NULL;
-    sample->value = NULL;
     return end;
 }
 
 /* ---- the denominator ------------------------------------------------------------------------ */
 
-static double share_in(const struct trials *t, size_t circumstance, uint64_t starts)
+bool linear_limit_add(const struct scenario *s, size_t circumstance, double *inside)
 {
+    const size_t starts = s->axis[s->axes - 1].count;
     struct allowed allowed;
     stance_message ignored;
-    uint64_t inside = 0;
-    if (!allowed_make(&allowed, t->at, circumstance * starts, &ignored))
-        return NAN;
-    for (uint64_t i = 0; allowed.set && i < starts; i++)
-        inside += allowed_case(&allowed, t->at, circumstance * starts + i);
-    const double share = allowed.set ? (double)inside / (double)starts : NAN;
+    if (!scenario_law(&s->base)->designed ||
+        !allowed_make(&allowed, s, circumstance * starts, &ignored))
+        return false;
+    const bool exists = allowed.set != NULL;
+    for (size_t i = 0; exists && i < starts; i++)
+        inside[i] += allowed_case(&allowed, s, circumstance * starts + i);
     allowed_free(&allowed);
-    return share;
-}
-
-double linear_limit_overall(bool worst, size_t circumstances, const double *share, size_t *least)
-{
-    double sum = 0;
-    *least = circumstances;
-    for (size_t c = 0; c < circumstances; c++) {
-        sum += share[c];
-        if (!isnan(share[c]) && (*least == circumstances || share[c] < share[*least]))
-            *least = c;
-    }
-    if (worst && circumstances > 1)
-        return *least < circumstances ? share[*least] : NAN;
-    *least = circumstances;
-    return sum / (double)circumstances;
+    return exists;
 }
 
 void linear_limit_shares(struct trials *t, double *value, uint64_t starts, double *share)
 {
-    struct scenario_axis *const candidate = &t->at->axis[0];
-    struct scenario_axis *const sample = &t->at->axis[t->at->axes - 1];
-    candidate->value = value;
-    candidate->count = 1;
-    sample->value = t->start[TRIALS_FRESH];
-    sample->count = starts;
-    for (size_t c = 0; c < t->circumstances; c++)
-        share[c] = scenario_law(&t->scenario->base)->designed ? share_in(t, c, starts) : NAN;
-    candidate->value = NULL;
-    sample->value = NULL;
+    double *const inside = malloc(starts * sizeof *inside);
+    take_points(t, 1, value, TRIALS_FRESH, starts);
+    for (size_t c = 0; c < t->circumstances; c++) {
+        double sum = 0;
+        if (inside)
+            memset(inside, 0, starts * sizeof *inside);
+        const bool known = inside && linear_limit_add(t->at, c, inside);
+        for (uint64_t i = 0; known && i < starts; i++)
+            sum += inside[i];
+        share[c] = known ? sum / (double)starts : NAN;
+    }
+    free(inside);
+}
+
+/* ---- elsewhere ------------------------------------------------------------------------------- */
+
+enum { CONTACTS, FRICTION, LATER, SLOWER, HEAVIER, LIGHTER };
+static const char *const name[ELSEWHERE_MOST] = {
+    [CONTACTS] = "with every contact on the ground",
+    [FRICTION] = "with half the friction",
+    [LATER] = "one sample later",
+    [SLOWER] = "with twice the sample time",
+    [HEAVIER] = "with masses 5 % larger than the controller knows",
+    [LIGHTER] = "with masses 5 % smaller than the controller knows"};
+
+/* Whether anything swept or varied lies in [offset, offset + size) of the values. */
+static bool moves(const struct scenario *s, size_t offset, size_t size)
+{
+    for (int a = 0; a <= s->axes; a++) {
+        const struct scenario_axis *const axis = a < s->axes ? &s->axis[a] : &s->search.axis;
+        for (int k = 0; k < axis->paths; k++)
+            if (axis->offset[k] >= offset && axis->offset[k] < offset + size)
+                return true;
+    }
+    return false;
+}
+#define MOVES(s, member) moves(s, offsetof(struct scenario_values, member), sizeof(s)->base.member)
+
+/* The robot's masses, and the model's where they were the robot's. */
+static bool change_masses(const struct scenario *s, double factor, struct scenario_values *to)
+{
+    const stance_carried *const carried = s->scene->mechanism->carried;
+    bool any = false;
+    for (int i = 0; carried && i < carried->parameters; i++) {
+        if (strcmp(s->scene->robot[i].unit, "kg") != 0)
+            continue;
+        any = true;
+        to->model[i] = isnan(to->model[i]) ? to->robot[i] : to->model[i];
+        to->robot[i] *= factor;
+    }
+    return any && !MOVES(s, robot) && !MOVES(s, model);
+}
+
+/* The values there; false: the scenario says nothing of it, or is there itself. */
+static bool change(const struct scenario *s, int where, struct scenario_values *to)
+{
+    const struct scenario_values *const base = &s->base;
+    *to = *base;
+    switch (where) {
+    case CONTACTS:
+        to->contacts = (1 << s->scene->contacts) - 1;
+        return base->contacts != to->contacts;
+    case FRICTION:
+        to->friction *= less_friction;
+        return base->friction > 0 && base->contacts && !MOVES(s, friction);
+    case LATER:
+        to->delay++;
+        return base->sample_time > 0 && base->delay < STANCE_MAX_DELAY && !MOVES(s, delay);
+    case SLOWER:
+        to->sample_time *= 2;
+        return base->sample_time > 0 && !MOVES(s, sample_time);
+    default:
+        return change_masses(s, 1 + (where == HEAVIER ? mass_error : -mass_error), to);
+    }
+}
+
+const char *elsewhere_name(const struct scenario *s, int where)
+{
+    struct scenario_values ignored;
+    return change(s, where, &ignored) ? name[where] : NULL;
+}
+
+uint64_t elsewhere_starts(const struct scenario *s)
+{
+    return s->search.confirm < MOST_STARTS ? s->search.confirm : MOST_STARTS;
+}
+
+enum trials_end elsewhere_run(const struct trials *with, int where, size_t candidates,
+                              double *value, double *share, stance_message *message)
+{
+    const struct scenario *const s = with->scenario;
+    const uint64_t starts = elsewhere_starts(s);
+    struct scenario *const there = malloc(sizeof *there);
+    struct trials trials = {0};
+    enum trials_end end = TRIALS_BROKEN;
+    if (there) {
+        *there = *s; /* what it points to stays the scenario's */
+        change(s, where, &there->base);
+        there->axis[0] = s->axis[s->axes - 1];
+        there->axes = 1;
+        there->cases = there->axis[0].count;
+        there->search.grow[there->search.stages - 1] = 1;
+        there->search.confirm = starts;
+        there->search.critical = 0;
+    }
+    const bool good = (there && trials_make(&trials, there, with->parallel)) || no_memory(message);
+    if (parallel_agree(with->parallel, good, message->text, sizeof message->text)) {
+        trials.has_kernels = true; /* those of `with` */
+        trials.attend = with->attend;
+        trials.context = with->context;
+        trials.until = with->until;
+        trials.beats = with->beats;
+        end = trials_run(&trials, candidates, value, TRIALS_FRESH, starts, message);
+    }
+    for (size_t c = 0; end == TRIALS_DONE && c < candidates; c++) {
+        uint64_t recovered = 0;
+        for (uint64_t i = 0; i < starts; i++)
+            recovered += trials_recovered(trials.label[c * starts + i]);
+        share[c] = (double)recovered / (double)starts;
+    }
+    trials_free(&trials);
+    free(there);
+    return end;
 }

@@ -13,7 +13,6 @@
 #include "resolve.h"
 #include "ground_line.h"
 
-#include "engine/control/design.h"
 #include "engine/tree.h"
 
 #include "runner/base/message.h"
@@ -127,45 +126,42 @@ static bool take_gains(const stance_scene *scene, const struct scenario_values *
 }
 
 bool resolve_gains(const stance_scene *scene, const struct scenario_values *values,
-                   const stance_equilibrium *equilibrium, const double *A, const double *B,
-                   struct resolved_gains *how, stance_message *message)
+                   const stance_equilibrium *equilibrium, const stance_plant *plant, double *K,
+                   stance_robustness *how, stance_message *message)
 {
-    const int n = 2 * equilibrium->freedoms, m = scene->actuators;
+    const int n = plant->states, m = plant->inputs;
     const bool sampled = values->design_time == DESIGN_SAMPLED;
-    const double T = values->sample_time, *const torques = values->torque_weights;
+    const double T = sampled ? values->sample_time : 0;
     const char *key = sampled ? "controller.design_time" : "controller.poles";
     double weights[2 * STANCE_MAX_POSTURE], re[SCENARIO_MAX_POLES], im[SCENARIO_MAX_POLES];
-    double *const K = how->gain;
     const int poles = scenario_poles(values, re, im);
     char idle[260];
 
-    how->sweeps = 0;
-    how->condition = NAN;
+    if (how)
+        *how = (stance_robustness){0, NAN};
     message->text[0] = '\0';
     stance_error error = STANCE_OK;
     if (values->design == DESIGN_GAINS) {
         if (!take_gains(scene, values, equilibrium, K, message))
             return false;
+    } else if (sampled && !(T > 0)) {
+        return complain(message,
+                        "controller.design_time: a design for a sampled model needs a "
+                        "sample time above 0, not %.6g s",
+                        T);
     } else if (values->design == DESIGN_LQR) {
         key = sampled ? key : "controller.weights";
         for (int j = 0; j < n; j++)
             weights[j] = values->state_weights[resolve_state(scene, equilibrium, j)];
-        error = sampled ? stance_lqr_sampled(n, m, A, B, T, weights, torques, K, message)
-                        : stance_lqr(n, m, A, B, weights, torques, K, message);
+        error = stance_lqr(plant, T, weights, values->torque_weights, K, message);
     } else if (poles != n) {
         return complain(message,
                         "controller.poles: %d of them; where the contacts hold there are %d "
                         "states%.100s",
                         poles, n, scenario_idle(scene, equilibrium, idle, sizeof idle));
-    } else if (sampled) {
-        const stance_placement method =
-            values->design == DESIGN_PLACE_SCHUR ? STANCE_SCHUR : STANCE_ROBUST;
-        error = stance_place_sampled(method, n, m, A, B, T, re, im, K, &how->sweeps,
-                                     &how->condition, message);
-    } else if (values->design == DESIGN_PLACE_SCHUR) {
-        error = stance_place_schur(n, m, A, B, re, im, K, message);
     } else {
-        error = stance_place(n, m, A, B, re, im, K, &how->sweeps, &how->condition, message);
+        error = stance_place(values->design == DESIGN_PLACE_SCHUR ? STANCE_SCHUR : STANCE_ROBUST,
+                             plant, T, &(stance_poles){re, im}, K, how, message);
     }
     for (int i = 0; error == STANCE_OK && i < m * n; i++)
         if (!isfinite(K[i]))
@@ -179,14 +175,16 @@ bool resolve_gains(const stance_scene *scene, const struct scenario_values *valu
     return error == STANCE_OK;
 }
 
-stance_error resolve_loop(int n, int m, const double *A, const double *B, const double *K,
-                          double interval, double *loop)
+stance_error resolve_loop(const stance_plant *plant, const double *K, double interval, double *loop)
 {
+    const int n = plant->states, m = plant->inputs;
+    const double *const A = plant->A, *const B = plant->B;
     double Ad[4 * STANCE_MAX_POSTURE * STANCE_MAX_POSTURE];
     double Bd[2 * STANCE_MAX_POSTURE * STANCE_MAX_ACTUATORS];
     if (interval > 0) {
-        const stance_error error = stance_discretise(n, m, A, B, interval, Ad, Bd);
-        return error == STANCE_OK ? resolve_loop(n, m, Ad, Bd, K, 0, loop) : error;
+        const stance_error error = stance_discretise(plant, interval, Ad, Bd);
+        const stance_plant held = {n, m, Ad, Bd};
+        return error == STANCE_OK ? resolve_loop(&held, K, 0, loop) : error;
     }
     for (int i = 0; i < n; i++) {
         for (int j = 0; j < n; j++) {
@@ -212,8 +210,8 @@ static bool design_state_feedback(const stance_scene *scene, const struct scenar
     const stance_error error = scene->linearise(scene, model, &equilibrium, A, B);
     if (error != STANCE_OK)
         return complain(message, "linearisation: %s", stance_error_text(error));
-    if (!resolve_gains(scene, values, &equilibrium, A, B, &(struct resolved_gains){.gain = K},
-                       message))
+    if (!resolve_gains(scene, values, &equilibrium,
+                       &(stance_plant){2 * equilibrium.freedoms, m, A, B}, K, NULL, message))
         return false;
     const int n = 2 * equilibrium.freedoms;
     for (int i = 0; i < m * n; i++)

@@ -1,90 +1,7 @@
-/* changed_scenario.c - see changed_scenario.h. */
-#include "changed_scenario.h"
+/* changed_scenario.c - see adopt.h. */
+#include "adopt.h"
 
 #include "runner/base/message.h"
-
-#include <errno.h>
-#include <fcntl.h>
-#include <libgen.h>
-#include <limits.h>
-#include <stdlib.h>
-#include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
-/* ---- the difference between two texts ------------------------------------------------------- */
-
-enum { MOST_LINES = 2000, MOST_SHOWN = 12, SHOWN_COLUMNS = 120 };
-
-struct lines {
-    char *text, **line; /* in it, each with its end */
-    size_t count;
-};
-
-static struct lines split(const char *text)
-{
-    struct lines lines = {strdup(text), malloc((strlen(text) + 1) * sizeof *lines.line), 0};
-    for (char *rest = lines.line ? lines.text : NULL; rest && *rest;)
-        lines.line[lines.count++] = strsep(&rest, "\n");
-    return lines;
-}
-
-static void show(FILE *to, size_t number, char sign, const char *line)
-{
-    const bool cut = strlen(line) > SHOWN_COLUMNS;
-    if (to && number < MOST_SHOWN)
-        fprintf(to, "  %c %.*s%s\n", sign, SHOWN_COLUMNS, line, cut ? "..." : "");
-}
-
-/* As few lines as can be, unless there are so many that between the first and the last difference
- * all count as different. */
-size_t changed_scenario_differences(FILE *to, const char *before, const char *after)
-{
-    struct lines old = split(before), new = split(after);
-    size_t begin = 0, n = old.count, m = new.count, differing = 0;
-    while (begin < n && begin < m && strcmp(old.line[begin], new.line[begin]) == 0)
-        begin++;
-    while (n > begin && m > begin && strcmp(old.line[n - 1], new.line[m - 1]) == 0) {
-        n--;
-        m--;
-    }
-    const size_t a = n - begin, b = m - begin;
-    char *const *const x = old.line + begin, *const *const y = new.line + begin;
-    /* common[i][j]: most lines that x[i ...] and y[j ...] have in common, in order. */
-    uint16_t *common =
-        a <= MOST_LINES && b <= MOST_LINES ? calloc((a + 1) * (b + 1), sizeof *common) : NULL;
-    for (size_t i = a; common && i-- > 0;) {
-        for (size_t j = b; j-- > 0;) {
-            const uint16_t down = common[(i + 1) * (b + 1) + j],
-                           right = common[i * (b + 1) + j + 1];
-            common[i * (b + 1) + j] = strcmp(x[i], y[j]) == 0
-                                          ? (uint16_t)(common[(i + 1) * (b + 1) + j + 1] + 1)
-                                      : down > right ? down
-                                                     : right;
-        }
-    }
-    for (size_t i = 0, j = 0; i < a || j < b;) {
-        if (common && i < a && j < b && strcmp(x[i], y[j]) == 0) {
-            i++;
-            j++;
-        } else if (i < a && (j == b || !common ||
-                             common[(i + 1) * (b + 1) + j] >= common[i * (b + 1) + j + 1])) {
-            show(to, differing++, '-', x[i++]);
-        } else {
-            show(to, differing++, '+', y[j++]);
-        }
-    }
-    free(common);
-    free(old.text);
-    free(old.line);
-    free(new.text);
-    free(new.line);
-    if (to && differing > MOST_SHOWN)
-        fprintf(to, "  ... and %zu more\n", differing - MOST_SHOWN);
-    return differing;
-}
-
-/* ---- what may change ------------------------------------------------------------------------ */
 
 static bool refuse(stance_message *message, const char *file, const char *what)
 {
@@ -126,9 +43,11 @@ static bool same_designs(const struct scenario *a, const struct scenario *b)
            resolve_keep_design_inputs(b->scene, &y, sampled) && same_bits(&x, &y, sizeof x);
 }
 
-static bool may_follow(const char *file, const struct plan *before, const struct plan *after,
-                       stance_message *message)
+bool changed_scenario_may_follow(const struct adopted *old, const struct plan *after,
+                                 stance_message *message)
 {
+    const char *const file = old->file;
+    const struct plan *const before = &old->plan;
     const struct scenario *a = before->scenario, *b = after->scenario;
     const struct scenario_refine *x = &a->refine, *y = &b->refine;
     const bool equal = same_bits(&a->base, &b->base, sizeof a->base) && a->seed == b->seed &&
@@ -151,6 +70,8 @@ bool changed_scenario_check_sweep(struct adopted *old, const struct scenario *sc
                                   stance_message *message)
 {
     const char *const file = old->file;
+    if (old->origin.ancestors >= STORE_MOST_ANCESTORS)
+        return refuse(message, file, "a file of so many scenarios");
     if (!adopt_scenario(old, message))
         return refuse(message, file, "a scenario that this version cannot read");
     const struct doe *x = &old->scenario->sample.design, *y = &scenario->sample.design;
@@ -166,136 +87,4 @@ bool changed_scenario_check_sweep(struct adopted *old, const struct scenario *sc
     for (int k = 0; equal && k < scenario->axes; k++)
         equal = same_axis(&old->scenario->axis[k], &scenario->axis[k]);
     return equal || refuse(message, file, "the scene or the sweep");
-}
-
-/* ---- the successor -------------------------------------------------------------------------- */
-
-/* Names without symbolic links: the file, and its successor until that takes the name. */
-struct names {
-    char real[PATH_MAX], made[PATH_MAX + 8];
-};
-
-static bool find_names(struct names *names, const char *file)
-{
-    if (!realpath(file, names->real))
-        return false;
-    snprintf(names->made, sizeof names->made, "%s.next", names->real);
-    return true;
-}
-
-static bool system_failed(stance_message *message, const char *file, const char *what)
-{
-    return complain(message, "%.150s: cannot %s: %s", file, what, strerror(errno));
-}
-
-struct copying {
-    const struct plan *plan;
-    bool stopped;
-};
-
-/* A row keeps its place; once told to stop none is copied. */
-static uint64_t same_row(void *context, uint64_t row)
-{
-    struct copying *copying = context;
-    const struct plan *plan = copying->plan;
-    if (row % STORE_ROWS == 0 && plan->stop && plan->stop(plan->stop_context))
-        copying->stopped = true;
-    return copying->stopped ? STORE_NOWHERE : row;
-}
-
-/* Copies the rows that verify. */
-static bool copy_rows(struct store *from, struct store *to, const struct plan *plan,
-                      struct store_copied *copied, stance_message *message)
-{
-    struct copying copying = {plan, false};
-    const bool good = store_copy(from, to, same_row, &copying, copied, message);
-    if (copying.stopped)
-        message->text[0] = '\0';
-    return good && !copying.stopped;
-}
-
-/* To the disk, then under the old one's name. */
-static bool take_place(const struct names *names, const char *file, stance_message *message)
-{
-    char directory[PATH_MAX];
-    struct stat before;
-    int descriptor = open(names->made, O_RDWR | O_CLOEXEC);
-    /* Whoever may write the old file may write this one, as far as the system lets us see to it. */
-    if (descriptor >= 0 && stat(names->real, &before) == 0 &&
-        fchown(descriptor, before.st_uid, before.st_gid) == 0)
-        (void)fchmod(descriptor, before.st_mode & 0777);
-    if (descriptor < 0 || fsync(descriptor) != 0 || close(descriptor) != 0)
-        return system_failed(message, file, "bring its successor to the disk");
-    if (rename(names->made, names->real) != 0)
-        return system_failed(message, file, "replace it by its successor");
-    snprintf(directory, sizeof directory, "%s", names->real);
-    descriptor = open(dirname(directory), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    if (descriptor >= 0) {
-        (void)fsync(descriptor); /* some file systems cannot; then the rename takes its time */
-        close(descriptor);
-    }
-    return true;
-}
-
-/* What a successor begins with, or nothing yet: whatever else has its name is somebody's own. */
-static bool is_ours(const char *file)
-{
-    static const char signature[8] = "\211HDF\r\n\032\n";
-    char begin[sizeof signature] = {0};
-    const int descriptor = open(file, O_RDONLY | O_NOFOLLOW | O_CLOEXEC);
-    struct stat found;
-    const bool regular =
-        descriptor >= 0 && fstat(descriptor, &found) == 0 && S_ISREG(found.st_mode);
-    const bool begun =
-        regular && (found.st_size == 0 || (read(descriptor, begin, sizeof begin) == sizeof begin &&
-                                           memcmp(begin, signature, sizeof begin) == 0));
-    if (descriptor >= 0)
-        close(descriptor);
-    return begun;
-}
-
-void changed_scenario_clear(const char *file)
-{
-    struct names names;
-    if (find_names(&names, file) && is_ours(names.made))
-        unlink(names.made);
-}
-
-bool changed_scenario_make(struct adopted *old, struct plan *plan, int ranks, const char *hosts,
-                           struct store_copied *copied, bool *refused, stance_message *message)
-{
-    struct names names;
-    struct store *to = NULL;
-    struct plan_error error = {0};
-
-    *copied = (struct store_copied){0};
-    *refused = false;
-    if (!find_names(&names, old->file))
-        return system_failed(message, old->file, "prepare its successor");
-    if (old->origin.ancestors >= STORE_MOST_ANCESTORS)
-        return refuse(message, old->file, "a file of so many scenarios");
-    if (!adopt_open(old, message))
-        return false;
-    if (!may_follow(old->file, &old->plan, plan, message)) {
-        *refused = true;
-        return false;
-    }
-    for (size_t d = 0; d < plan->designs; d++)
-        plan_take_design(plan, d, &old->plan, d);
-    bool good = plan_check_cases(plan, &error);
-    if (!good)
-        *message = error.message;
-    unlink(names.made); /* of an attempt that was killed */
-    good = good && store_create(names.made, plan, &old->origin, ranks, hosts, message);
-    plan->ancestors = old->origin.ancestors + 1;
-    good = good && store_open(&to, names.made, plan, 1, message) &&
-           copy_rows(old->store, to, plan, copied, message);
-    if (good)
-        good = store_close(to, message);
-    else
-        store_abandon(to);
-    good = good && take_place(&names, old->file, message);
-    if (!good)
-        unlink(names.made);
-    return good;
 }

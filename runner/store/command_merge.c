@@ -26,76 +26,58 @@ static void name_missing_shards(const struct merge *m)
 {
     enum { NAMED = 8 };
     const uint64_t count = m->kind == MERGE_EQUAL ? m->part[0].of.origin.shard.count : 0;
-    bool *const there = count > 0 ? calloc(count + 1, 1) : NULL;
-    uint64_t missing = count;
-
-    for (size_t p = 0; there && p < m->parts; p++) {
-        const struct shard *const shard = &m->part[p].of.origin.shard;
-        if (shard->count != count) {
-            missing = 0;
-            break;
-        }
-        missing -= !there[shard->number];
-        there[shard->number] = true;
+    uint64_t missing = 0;
+    for (size_t p = 0; p < m->parts; p++)
+        if (m->part[p].of.origin.shard.count != count)
+            return;
+    for (uint64_t k = 1; k <= count; k++) {
+        bool there = false;
+        for (size_t p = 0; p < m->parts && !there; p++)
+            there = m->part[p].of.origin.shard.number == k;
+        if (!there && ++missing <= NAMED)
+            fprintf(stderr, "%s %llu/%llu",
+                    missing == 1 ? "stance merge: not among the files: shard" : ",",
+                    (unsigned long long)k, (unsigned long long)count);
     }
-    if (there && missing > 0) {
-        uint64_t named = 0;
-        fputs("stance merge: not among the files:", stderr);
-        for (uint64_t k = 1; k <= count && named < NAMED; k++)
-            if (!there[k])
-                fprintf(stderr, "%s %llu/%llu", named++ ? "," : " shard", (unsigned long long)k,
-                        (unsigned long long)count);
-        if (missing > named)
-            fprintf(stderr, " and %llu more", (unsigned long long)(missing - named));
+    if (missing > NAMED)
+        fprintf(stderr, " and %llu more", (unsigned long long)(missing - NAMED));
+    if (missing > 0)
         fputc('\n', stderr);
-    }
-    free(there);
 }
 
 static void print_result(const struct request *request, const struct merge *m)
 {
-    const struct store_copied *copied = &m->copied;
-    const uint64_t done = copied->copied;
+    const struct adopted_rows *rows = &m->rows;
+    const struct adopted *const first = &m->part[0].of;
+    const bool one = rows->damaged == 1;
     printf("%s: %llu cases from %zu files", request->output, (unsigned long long)m->scenario->cases,
            m->parts);
     if (m->kind != MERGE_EQUAL)
         printf(" along %s, %zu values", m->path, m->points);
-    if (copied->same > 0)
-        printf("; %llu were in several files, and equal", (unsigned long long)copied->same);
-    if (done < m->scenario->cases)
-        printf("; %llu are not computed yet", (unsigned long long)(m->scenario->cases - done));
+    if (rows->same > 0)
+        printf("; %llu were in several files, and equal", (unsigned long long)rows->same);
+    if (rows->copied < m->scenario->cases)
+        printf("; %llu are not computed yet",
+               (unsigned long long)(m->scenario->cases - rows->copied));
     putchar('\n');
     name_missing_shards(m);
-    if (copied->damaged > 0) {
-        fprintf(stderr, "stance merge: %llu case%s not as %s checksum%s left out\n",
-                (unsigned long long)copied->damaged, copied->damaged == 1 ? " is" : "s are",
-                copied->damaged == 1 ? "its" : "their",
-                copied->damaged == 1 ? " says and was" : "s say and were");
-    }
-    if (m->keyed) {
-        fprintf(stderr,
-                "stance merge: random numbers are keyed by the cases' indices in the parts: one "
-                "run of the whole has other ones (attribute merge_note)\n");
-    }
+    if (rows->damaged > 0)
+        fprintf(stderr, "stance merge: %llu case%s left out: not as %s say%s\n",
+                (unsigned long long)rows->damaged, one ? "" : "s",
+                one ? "its checksum" : "their checksums", one ? "s" : "");
     for (size_t p = 1; p < m->parts; p++) {
-        if (strcmp(m->part[p].of.origin.revision, m->part[0].of.origin.revision) != 0) {
+        const struct adopted *const part = &m->part[p].of;
+        if (strcmp(part->origin.revision, first->origin.revision) != 0) {
             fprintf(stderr,
                     "stance merge: warning: %s was begun by revision %s, %s by %s: results "
                     "may differ\n",
-                    m->part[p].of.file, m->part[p].of.origin.revision, m->part[0].of.file,
-                    m->part[0].of.origin.revision);
+                    part->file, part->origin.revision, first->file, first->origin.revision);
             break;
         }
     }
-    if (m->refined) {
-        fprintf(stderr,
-                "stance merge: the parts were refined each for itself: one run of the whole "
-                "simulates other cases (attribute merge_note)\n");
-    }
-    if (m->designs_differ) {
-        fprintf(stderr, "stance merge: the parts' designs differ in last bits; those of the first "
-                        "part that has them are in the file (attribute merge_note)\n");
-    }
+    for (int k = 0; k < MERGE_NOTES; k++)
+        if (m->noted[k])
+            fprintf(stderr, "stance merge: %s (attribute merge_note)\n", merge_notes[k]);
 }
 
 /* Whether all parts can be read now: nobody writes them. */
@@ -111,35 +93,17 @@ static bool at_rest(const struct request *request)
     return true;
 }
 
-/* The file is made under another name and takes its own when it is whole. */
-static bool write_file(const struct request *request, struct merge *m)
-{
-    char made[1100];
-    struct lock lock;
-    snprintf(made, sizeof made, "%s.merging", request->output);
-    m->usage = false;
-    if (!lock_take(&lock, request->output, &m->message))
-        return false;
-    unlink(made);
-    bool good = merge_write(m, made);
-    if (good && m->copied.copied == 0) {
-        m->usage = true;
-        good = complain(&m->message, "none of the %zu files has a case that is computed", m->parts);
-    }
-    if (good && rename(made, request->output) != 0)
-        good = complain(&m->message, "%.150s: %s", request->output, strerror(errno));
-    if (!good)
-        unlink(made);
-    lock_release(&lock);
-    return good;
-}
-
 static int work(void *context)
 {
     const struct request *request = context;
     struct merge m;
     store_prepare();
-    const bool good = merge_plan(&m, request->files, request->count) && write_file(request, &m);
+    struct lock lock = {.descriptor = -1};
+    bool good = merge_plan(&m, request->files, request->count);
+    m.usage = m.usage && !good;
+    good =
+        good && lock_take(&lock, request->output, &m.message) && merge_write(&m, request->output);
+    lock_release(&lock);
     if (good)
         print_result(request, &m);
     else

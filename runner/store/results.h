@@ -57,8 +57,9 @@ struct results {
     char name[256]; /* file name without directory and .h5 */
     char title[256], version[64], revision[96], date[40], hosts[256];
     int ranks;
-    char *scenario; /* text */
-    bool single;    /* one case, no axes; `index` is its flat index in the sweep, 0 without one */
+    char *scenario;        /* text */
+    struct scenario *read; /* what it says; NULL: this version cannot read it */
+    bool single; /* one case, no axes; `index` is its flat index in the sweep, 0 without one */
     uint64_t index;
     int axes;
     struct results_axis axis[SCENARIO_MAX_AXES];
@@ -89,8 +90,25 @@ void results_warn(const struct results *r);
 bool results_answer(const struct results *r, const char *name, double **values,
                     stance_message *message);
 
+/* The same of some rows at a time, for tables of files of any length. */
+struct results_column {
+    char name[96];
+    int64_t id;   /* HDF5 identifier */
+    size_t width; /* numbers per case: 1, or the length of a last dimension of its own */
+    char *words;  /* flag_meanings, separated by blanks; NULL: none */
+};
+
+/* False with one line in *message; a variable that is not stored gives id < 0 and true. */
+bool results_column_open(const struct results *r, const char *name, struct results_column *column,
+                         stance_message *message);
+void results_column_close(struct results_column *column);
+
+/* Reads rows from `first` on, values[rows * width], whatever the status of the cases. */
+bool results_column_read(const struct results *r, const struct results_column *column,
+                         uint64_t first, size_t rows, double *values, stance_message *message);
+
 /* The scenarios that the file was made from, where a run went on with another one than it was begun
- * with (runner/store/changed_scenario.h). */
+ * with (runner/store/adopt.h). */
 struct ancestry {
     size_t scenarios;                                   /* 1: as usual */
     char date[STORE_MOST_ANCESTORS + 1][SCENARIO_NAME]; /* of each: when it was first run */
@@ -139,10 +157,10 @@ void results_case_text(const struct results *r, uint64_t index, char *buffer, si
 int results_letter(const char *text);
 void results_clean(char *text);
 
-/* The scenario of the file, read by the scenario's own reader; false when this version cannot. */
+/* The scenario once more, to be changed and freed; false when this version cannot read it. */
 bool results_scenario(const struct results *r, struct scenario *s);
-/* The same, whose axes must be the file's: its cases are the file's. */
-bool results_swept(const struct results *r, struct scenario *s, stance_message *message);
+/* r->read, whose axes must be the file's: its cases are the file's. NULL: *message says why not. */
+const struct scenario *results_swept(const struct results *r, stance_message *message);
 
 /* ---- trajectories ------------------------------------------------------------------------- */
 
