@@ -74,30 +74,23 @@ bool basin_map_part(const struct basin_map *map, enum results_kind of, const siz
 
 /* ---- the nearest point of the boundary ---------------------------------------------------- */
 
-struct search {
-    const struct basin_map *map;
-    enum results_kind of;
-    const double *weight;
-    struct basin_distance *distance;
-};
-
-static bool look_nearer(void *context, const struct basin_crossing *crossing)
+static void find_nearest(const struct basin_map *map, enum results_kind of, const double *weight,
+                         struct basin_distance *distance)
 {
-    const struct search *search = context;
-    const struct basin_map *map = search->map;
-    double at[SCENARIO_MAX_AXES], sum = 0;
-
-    if ((crossing->from == search->of) == (crossing->to == search->of))
-        return true; /* between two others */
-    for (int a = 0; a < map->axes; a++) {
-        at[a] = a == crossing->axis ? crossing->middle : map->place[a][crossing->point[a]];
-        sum += pow(at[a] / search->weight[a], 2);
+    struct basin_crossing crossing = {.axis = -1};
+    while (basin_next_crossing(map, &crossing)) {
+        double at[SCENARIO_MAX_AXES], sum = 0;
+        if ((crossing.from == of) == (crossing.to == of))
+            continue; /* between two others */
+        for (int a = 0; a < map->axes; a++) {
+            at[a] = a == crossing.axis ? crossing.middle : map->place[a][crossing.point[a]];
+            sum += pow(at[a] / weight[a], 2);
+        }
+        if (!(sqrt(sum) >= distance->nearest)) { /* true for the first, against NAN */
+            distance->nearest = sqrt(sum);
+            memcpy(distance->at, at, sizeof at);
+        }
     }
-    if (!(sqrt(sum) >= search->distance->nearest)) { /* true for the first, against NAN */
-        search->distance->nearest = sqrt(sum);
-        memcpy(search->distance->at, at, sizeof at);
-    }
-    return true;
 }
 
 /* Distance of the nearest face or unknown case. */
@@ -235,8 +228,7 @@ bool basin_map_distance(const struct basin_map *map, enum results_kind of, const
     find_extent(map, of, origin, distance);
     if (!distance->inside)
         return true;
-    struct search search = {map, of, weight, distance};
-    basin_map_boundary(map, look_nearer, &search);
+    find_nearest(map, of, weight, distance);
     distance->clear = find_clear(map, weight);
     return follow_all(map, of, origin, weight, distance);
 }

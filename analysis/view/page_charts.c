@@ -173,7 +173,7 @@ static bool put_sensitivity(json_t *charts, const struct results *r, stance_mess
     const int code = sensitivity_study_make(&study, r, &request, message);
     if (code != EXIT_DONE) /* too short, say: then there is no chart */
         return code == EXIT_USAGE;
-    for (size_t t = 0; t < study.response.tables && t < MOST_TABLES; t++)
+    for (size_t t = 0; t < study.tables && t < MOST_TABLES; t++)
         put_table(charts, &study, t);
     sensitivity_study_free(&study);
     return true;

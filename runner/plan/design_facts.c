@@ -102,8 +102,7 @@ static void put_matrix(const struct design_report *r, json_t *facts, const char 
     put(facts, key + 1, matrix);
 }
 
-/* The same of complex numbers. */
-static void put_complex(json_t *facts, const char *key, int n, const double *re, const double *im)
+void design_put_complex(json_t *facts, const char *key, int n, const double *re, const double *im)
 {
     const double scale = fmax(largest(n, re), largest(n, im));
     json_t *const list = json_array();
@@ -175,9 +174,9 @@ static json_t *allowed_facts(const struct design_report *r)
     if (!allowed->exists)
         return json_null();
     json_t *const facts = json_object();
-    put_complex(facts, ".unstable_modes", allowed->modes, allowed->re, allowed->im);
-    put_complex(facts, ".unreached_modes", allowed->unreached, allowed->unreached_re,
-                allowed->unreached_im);
+    design_put_complex(facts, ".unstable_modes", allowed->modes, allowed->re, allowed->im);
+    design_put_complex(facts, ".unreached_modes", allowed->unreached, allowed->unreached_re,
+                       allowed->unreached_im);
     json_object_update_new(facts, json_pack("{s:b, s:b}", "glued", allowed_glued(&r->equilibrium),
                                             ".some", allowed->modes + allowed->unreached > 0));
     put_states(r, facts, ".low", allowed->reach[0], allowed->reach[1]);
@@ -219,7 +218,7 @@ static json_t *sampled_facts(const struct design_report *r)
                                     r->scenario->base.sample_time, "delay", r->delay, "lag", r->lag,
                                     ".acting", design_late(r->delay, "acting ", late), ".rated",
                                     isfinite(r->scenario->base.torque_rate));
-    put_complex(facts, ".eigenvalues", r->sampled, r->sampled_re, r->sampled_im);
+    design_put_complex(facts, ".eigenvalues", r->sampled, r->sampled_re, r->sampled_im);
     json_object_update_new(
         facts, json_pack("{s:f, s:s, s:o, s:o?, s:n}", "spectral_radius", r->radius, ".radius",
                          design_radius(r, 6, radius), "critical_delay",
@@ -247,7 +246,7 @@ static json_t *beyond_facts(const struct design_report *r)
                            json_pack("{s:o, s:o, s:o}", "normal", vector(r->states, r->plane),
                                      "push", vector(r->inputs, r->push), ".push", pushes));
     put_matrix(r, facts, ".gain", (struct sides){true, false}, K);
-    put_complex(facts, ".closed_loop_eigenvalues", r->states, r->beyond_re, r->beyond_im);
+    design_put_complex(facts, ".closed_loop_eigenvalues", r->states, r->beyond_re, r->beyond_im);
     return facts;
 }
 
@@ -269,7 +268,7 @@ static void put_design(const struct design_report *r, json_t *facts)
         put(facts, "design_time", json_string(times[values->design_time]));
     if (design == DESIGN_PLACE || design == DESIGN_PLACE_SCHUR) {
         const int poles = scenario_poles(values, re, im);
-        put_complex(facts, ".poles", poles, re, im);
+        design_put_complex(facts, ".poles", poles, re, im);
         put(facts, ".all_poles", json_boolean(poles == r->states));
     }
     for (int i = 0; i < r->states; i++)
@@ -295,7 +294,7 @@ static json_t *controller_facts(const struct design_report *r)
         return json_pack("{s:s, s:b}", "kind", law->name, ".own", law->program);
     json_t *const facts = json_pack("{s:s}", "kind", law->name);
     put_matrix(r, facts, ".gain", (struct sides){true, false}, r->K);
-    put_complex(facts, ".closed_loop_eigenvalues", r->states, r->closed_re, r->closed_im);
+    design_put_complex(facts, ".closed_loop_eigenvalues", r->states, r->closed_re, r->closed_im);
     json_object_update_new(
         facts, json_pack("{s:b, s:o, s:o?, s:o?}", "stable", r->stable, "sampled_loop",
                          sampled_facts(r), "critical_sample_time", json_real(r->critical[0]),
@@ -353,7 +352,7 @@ json_t *design_facts(const struct design_report *r)
                          equilibrium_facts(r), "states", states, "inputs", inputs));
     put_matrix(r, facts, ".A", (struct sides){false, false}, r->A);
     put_matrix(r, facts, ".B", (struct sides){false, true}, r->B);
-    put_complex(facts, ".open_loop_eigenvalues", r->states, r->open_re, r->open_im);
+    design_put_complex(facts, ".open_loop_eigenvalues", r->states, r->open_re, r->open_im);
     json_object_update_new(facts, json_pack("{s:{s:i, s:i, s:o, s:b}, s:o, s:o}", "kalman", "rank",
                                             r->rank, "states", r->states, "singular_values",
                                             vector(r->states, r->singular), ".full",

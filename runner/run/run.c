@@ -62,7 +62,7 @@ static void stage_scenario(struct run *run)
 
 /* ---- the file ----------------------------------------------------------------------------- */
 
-static void name_file(struct run *run)
+void run_name_file(struct run *run)
 {
     const struct options *o = &run->options;
     char ending[64] = "";
@@ -79,7 +79,7 @@ static void name_file(struct run *run)
                                  : snprintf(run->file, sizeof run->file, "results/%s%s.h5",
                                             run->scenario->name, ending);
     if (length >= (int)sizeof run->file - 8)
-        run_fail(run, EXIT_IO, "stance run: the name of the results file is too long");
+        run_fail(run, EXIT_IO, "stance %s: the name of the file is too long", run->argv[0]);
 }
 
 /* Rank 0: where the results go, whether they may, and nobody else writes there. */
@@ -98,7 +98,7 @@ static void take_file(struct run *run)
 
 static void stage_claim(struct run *run)
 {
-    name_file(run);
+    run_name_file(run);
     if (run->parallel.rank == 0 && !run->options.dry_run && run->failure.code == EXIT_DONE)
         take_file(run);
     parallel_broadcast(&run->parallel, &run->resume, sizeof run->resume);

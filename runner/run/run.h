@@ -94,6 +94,8 @@ struct scenario *run_read_scenario(struct run *run, size_t sets);
 /* Collective: rank 0's scenario is read from its text by the others. false: it has none, or this
  * rank cannot, and fails; then there is none. */
 bool run_share_scenario(struct run *run);
+/* The name of the file, of the scenario's unless -o gives it; fails where it is too long. */
+void run_name_file(struct run *run);
 /* Rank 0: the file may be written, --force replaces one that exists, --resume goes on with it, and
  * nobody else writes it: the lock is taken, signs of life are given. Without -o its directory is
  * `results`, which is made. */
