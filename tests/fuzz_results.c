@@ -305,12 +305,10 @@ static bool resume(size_t which, stance_message *message)
         fine = store_open(&store, path, &plan, 1, message) &&
                store_read_designs(store, &plan, message);
         for (uint64_t row = 0; fine && row < plan.rows; row += STORE_ROWS) {
-            stance_result *results = calloc(STORE_ROWS, sizeof *results);
-            bool whole[STORE_ROWS];
+            struct store_found found[STORE_ROWS];
             uint64_t n = plan.rows - row < STORE_ROWS ? plan.rows - row : STORE_ROWS;
             const struct rows rows = {.first = row, .count = n};
-            fine = results && store_verify(store, &rows, results, whole, message);
-            free(results);
+            fine = store_verify(store, &rows, found, message);
         }
         if (store && fine)
             fine = store_close(store, message);

@@ -1,75 +1,12 @@
-/* test_robust.c - signs of life and what others make of them, the difference of two scenarios. */
+/* test_robust.c - signs of life and what others make of them. */
 #include "support.h"
 
 #include "runner/run/heartbeat.h"
-#include "runner/store/changed_scenario.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
-
-/* ---- differences -------------------------------------------------------------------------- */
-
-static void expect_difference(const char *before, const char *after, const char *expected)
-{
-    char *text = NULL;
-    size_t size = 0;
-    FILE *to = open_memstream(&text, &size);
-    assert_non_null(to);
-    changed_scenario_differences(to, before, after);
-    fclose(to);
-    assert_string_equal(text, expected);
-    free(text);
-}
-
-static void test_differences(void **state)
-{
-    (void)state;
-    expect_difference("a\nb\nc\n", "a\nb\nc\n", "");
-    expect_difference("a\nb\nc\n", "a\nx\nc\n", "  - b\n  + x\n");
-    expect_difference("a\nb\nc\nd\n", "a\nc\nd\ne\n", "  - b\n  + e\n");
-    expect_difference("", "a\n", "  + a\n");
-    expect_difference("a\n", "", "  - a\n");
-    expect_difference("a\nb", "a", "  - b\n");
-    assert_int_equal(changed_scenario_differences(NULL, "a\nb\nc\n", "c\nb\n"), 3);
-}
-
-/* Of many differences the first ones are shown, of long lines the beginning. */
-static void test_long_differences(void **state)
-{
-    enum { LINES = 5000, WIDTH = 300 };
-    char *before = malloc(LINES * 8), *after = malloc(LINES * 8), *text = NULL;
-    char wide[WIDTH + 1];
-    size_t size = 0, lines = 0;
-    (void)state;
-    assert_non_null(before);
-    assert_non_null(after);
-    for (int k = 0, at = 0; k < LINES; k++) {
-        sprintf(before + at, "a%05d\n", k);
-        at += sprintf(after + at, "b%05d\n", k);
-    }
-    assert_int_equal(changed_scenario_differences(NULL, before, after), 2 * LINES);
-    FILE *to = open_memstream(&text, &size);
-    assert_non_null(to);
-    changed_scenario_differences(to, before, after);
-    fclose(to);
-    for (const char *c = text; *c; c++)
-        lines += *c == '\n';
-    assert_int_equal(lines, 13);
-    assert_non_null(strstr(text, "  ... and 9988 more\n"));
-    free(text);
-    memset(wide, 'w', WIDTH);
-    wide[WIDTH] = '\0';
-    to = open_memstream(&text, &size);
-    assert_non_null(to);
-    changed_scenario_differences(to, wide, "");
-    fclose(to);
-    assert_true(strlen(text) < 140);
-    free(text);
-    free(before);
-    free(after);
-}
 
 /* ---- signs of life ------------------------------------------------------------------------ */
 
@@ -174,8 +111,6 @@ static void test_strange_notes(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_differences),
-        cmocka_unit_test(test_long_differences),
         cmocka_unit_test_setup_teardown(test_pulse, make_place, remove_place),
         cmocka_unit_test_setup_teardown(test_strange_notes, make_place, remove_place),
     };

@@ -372,15 +372,13 @@ static void write_rows(struct store *store, uint64_t first, size_t n)
 
 static void assert_whole(struct store *store, uint64_t first, size_t n, bool expected)
 {
-    stance_result results[STORE_ROWS];
+    struct store_found found[STORE_ROWS];
     stance_message message;
-    bool whole[STORE_ROWS];
-    assert_true(
-        store_verify(store, &(struct rows){.count = n, .first = first}, results, whole, &message));
+    assert_true(store_verify(store, &(struct rows){.count = n, .first = first}, found, &message));
     for (size_t i = 0; i < n; i++) {
-        assert_int_equal(whole[i], expected);
+        assert_int_equal(found[i].whole, expected);
         if (expected)
-            assert_int_equal(results[i].outcome, STANCE_FELL);
+            assert_int_equal(found[i].outcome, STANCE_FELL);
     }
 }
 
@@ -425,19 +423,14 @@ static void test_listed_rows(void **state)
     assert_true(store_open(&store, f->file, &plan, 1, &message));
     for (uint64_t third = 0; third < 3; third++) {
         const uint64_t begin = 20 * third, step = 7 - 3 * third;
-        stance_result results[20], read[20];
+        stance_result results[20];
         uint64_t rows[20];
-        bool whole[60];
         size_t n = 0;
         for (uint64_t row = begin; row < begin + 20; row += step) {
             results[n] = numbered(row);
             rows[n++] = row;
         }
         store_results(store, (struct rows){.row = rows, .count = n}, results);
-        assert_true(
-            store_verify(store, &(struct rows){.row = rows, .count = n}, read, whole, &message));
-        for (size_t i = 0; i < n; i++)
-            assert_true(whole[i] && read[i].outcome == STANCE_FELL);
         for (uint64_t row = begin; row < 60; row++)
             assert_whole(store, row, 1, row < begin + 20 && (row - begin) % step == 0);
     }
@@ -480,8 +473,8 @@ static void test_plain_scene(void **state)
     struct plan_error error;
     struct store *store;
     stance_message message;
-    bool whole[3];
-    stance_result results[3], read[3];
+    struct store_found found[3];
+    stance_result results[3];
     const double nothing = NAN;
     double data[6 * 7];
     assert_true(scenario_read(&s, "ball.yaml", ball, NULL, 0, stderr));
@@ -506,15 +499,15 @@ static void test_plain_scene(void **state)
         assert_true(store_write_trajectory(store, row, &t, &message));
     }
     store_results(store, (struct rows){.count = 2, .first = 0}, results);
-    assert_true(store_verify(store, &(struct rows){.count = 3, .first = 0}, read, whole, &message));
-    assert_true(whole[0] && whole[1] && !whole[2]);
+    assert_true(store_verify(store, &(struct rows){.count = 3, .first = 0}, found, &message));
+    assert_true(found[0].whole && found[1].whole && !found[2].whole);
     data[41] += 1;
     assert_true(store_write_trajectory(
         store, 2, &(stance_trajectory){0.1, 6, data, data + 12, NULL, data + 24, data + 36},
         &message));
     store_results(store, (struct rows){.count = 1, .first = 2}, &results[2]);
-    assert_true(store_verify(store, &(struct rows){.count = 3, .first = 0}, read, whole, &message));
-    assert_true(whole[2]); /* its checksum is of what was written */
+    assert_true(store_verify(store, &(struct rows){.count = 3, .first = 0}, found, &message));
+    assert_true(found[2].whole); /* its checksum is of what was written */
     assert_true(store_close(store, &message));
     plan_free(&plan);
     scenario_free(&s);

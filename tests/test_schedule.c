@@ -121,14 +121,13 @@ static void run_rows(struct fixture *f, const struct rows *only)
 
 static void assert_whole(struct fixture *f, const bool *expected)
 {
-    stance_result results[240];
+    struct store_found found[240];
     stance_message message;
-    bool whole[240];
-    assert_true(store_verify(f->store, &(struct rows){.count = 240}, results, whole, &message));
+    assert_true(store_verify(f->store, &(struct rows){.count = 240}, found, &message));
     for (int row = 0; row < 240; row++) {
-        assert_int_equal(whole[row], expected[row]);
-        if (whole[row]) /* every other row of three has a trunk of 9 m */
-            assert_int_equal(results[row].status, row / 3 % 2 ? STANCE_FAILED : STANCE_DONE);
+        assert_int_equal(found[row].whole, expected[row]);
+        if (found[row].whole) /* every other row of three has a trunk of 9 m */
+            assert_int_equal(found[row].status, row / 3 % 2 ? STANCE_FAILED : STANCE_DONE);
     }
 }
 

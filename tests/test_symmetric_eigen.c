@@ -11,7 +11,7 @@
 
 #include "cases.h"
 
-#include "runner/optimise/symmetric_eigen.h"
+#include "runner/optimise/cma.h"
 
 enum { MOST = 64 };
 

@@ -164,7 +164,7 @@ says "... with the reason" "--extend: points of method lhs depend on their numbe
 expect "extend to fewer" 2 "$stance" run set.yaml --extend $points --from before.h5 -o no.h5
 says "... with the reason" "--extend $points: before.h5 has sweep.sample.count $points already"
 expect "extend another scenario" 2 "$stance" run set.yaml --extend $more --from before.h5 -o no.h5 --set seed=12
-says "... with the difference" "before.h5 was made from another scenario; 2 lines of the resolved text differ"
+says "... with the difference" "before.h5 was made from another scenario; 1 value of the resolved text differs"
 expect "extend into itself" 2 "$stance" run set.yaml --extend $more --from before.h5 -o ./before.h5 --force
 says "... with the reason" "-o and --from must differ"
 expect "extend what is not there" 3 "$stance" run set.yaml --extend $more --from nowhere.h5 -o no.h5

@@ -102,7 +102,7 @@ expect "a rank of two was killed, and three went on" 0 mpirun -n 3 "$stance" run
 tool "... with the same bits" same map.h5 killed.h5
 expect "another margin is another scenario" 2 "$stance" run map.yaml "${refine[@]}" \
     --set sweep.refine.margin=2 -o killed.h5 --resume
-says "... says where" '^  +.*margin: 2'
+says "... says where" '^  sweep.refine.margin: 1, now 2'
 
 # A shape that is not a multiple of anything, three axes, and cases that do not exist.
 cube=(--set 'sweep.grid=[{path: initial.offset.theta, from: -0.12, to: 0.06, count: 21},

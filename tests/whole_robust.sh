@@ -281,11 +281,16 @@ with h5py.File("changed.h5", "r+") as f:
     status = f["status"][...]; status[30:] = 0; f["status"][...] = status'
 cp changed.h5 before.h5
 expect "another scenario is refused" 2 mpirun -n 2 "$stance" run short.yaml "${other[@]}" -o changed.h5 --resume
-says "... in one line" 'changed.h5 was made from another scenario (--force-scenario .*); 3 lines '
-says "... that shows what was" '^  -   torque_limit: 10$'
-says "... and what is" '^  +   torque_limit: 9$'
+says "... in one line" 'changed.h5 was made from another scenario (--force-scenario .*); 2 values '
+says "... that shows what was and what is" '^  controller.torque_limit: 10, now 9$'
+says "... where there was nothing, too" '^  seed: none, now 5$'
 cmp -s changed.h5 before.h5
 result $? "... and leaves the file as it is"
+many=(title=x seed=9 stop.time=2 ground.friction=0.7 ground.restitution=0.1 robot.foot_mass=1 robot.hip_mass=2
+    robot.trunk_mass=2 robot.leg_length=0.5 controller.torque_limit=3 'controller.poles=[-4,-4,-5,-5,-6,-6]')
+expect "so are many differences" 2 "$stance" run short.yaml "${many[@]/#/--set=}" -o changed.h5 --resume
+[ "$(wc -l <log)" = 14 ] && grep -q '^  \.\.\.$' log
+result $? "... of which the first ones are shown"
 expect "--force-scenario needs --resume" 2 "$stance" run short.yaml -o changed.h5 --force-scenario
 for change in 'sweep.grid[0].count=61' 'record={answers: [outcome]}' 'controller.poles=[-3,-3,-4,-4,-5,-5]' \
     robot.trunk_mass=2 'record={every: 0.5, cases: [1]}' 'sweep.refine={start: 4}'; do

@@ -187,7 +187,6 @@ static bool print_rows(const struct basin *b, const struct row *rows, enum table
 bool basin_print_allowed(const struct basin *b, enum table_form form, bool *usage,
                          stance_message *message)
 {
-    struct scenario s;
     struct motion motion = {0};
     *usage = b->averaged >= 0 || b->rows > MOST_ROWS;
     for (size_t k = 0; k < b->rows; k++)
@@ -200,14 +199,11 @@ bool basin_print_allowed(const struct basin *b, enum table_form form, bool *usag
     struct row *const rows = calloc(b->rows + 1, sizeof *rows);
     if (!rows)
         return statistics_no_memory(b->r, message);
-    bool good = results_swept(b->r, &s, message);
-    if (good) {
-        good = basin_numbers(b->r, "slip_distance", &motion.slip, message) &&
-               basin_numbers(b->r, "footfalls", &motion.footfalls, message) &&
-               basin_numbers(b->r, "least_normal_force", &motion.least, message) &&
-               count_rows(b, &s, rows, &motion, message) && print_rows(b, rows, form);
-        scenario_free(&s);
-    }
+    const struct scenario *const s = results_swept(b->r, message);
+    const bool good = s && basin_numbers(b->r, "slip_distance", &motion.slip, message) &&
+                      basin_numbers(b->r, "footfalls", &motion.footfalls, message) &&
+                      basin_numbers(b->r, "least_normal_force", &motion.least, message) &&
+                      count_rows(b, s, rows, &motion, message) && print_rows(b, rows, form);
     for (size_t k = 0; k < b->rows; k++)
         allowed_free(&rows[k].of);
     free(motion.slip);

@@ -14,7 +14,7 @@
 #include <string.h>
 
 struct simulator {
-    struct scenario s;
+    const struct scenario *s;
     struct starts starts;
     uint8_t of; /* outcome */
     int n;
@@ -52,7 +52,7 @@ static bool simulate(void *context, size_t count, const double *z, bool *inside)
 /* Where the paths of the rays stand in the values. */
 static bool find_paths(struct simulator *own, const struct basin_rays *rays)
 {
-    const struct scenario_axis *axis = &own->s.axis[rays->sample.axis];
+    const struct scenario_axis *axis = &own->s->axis[rays->sample.axis];
     for (int j = 0; j < own->n; j++) {
         const struct basin_factor *factor = &rays->sample.factor[j];
         own->half[j] = 0.5 * fabs(factor->to - factor->from);
@@ -75,12 +75,13 @@ static bool begin(struct simulator *own, const struct basin_rays *rays, size_t r
     };
     const struct results *r = rays->r;
     *own = (struct simulator){.of = outcome[rays->of],
+                              .s = r->read,
                               .n = (int)rays->sample.factors,
                               .starts = {.tell = tell, .context = own},
                               .row = row,
                               .rows = rays->rows,
                               .progress = progress_begin(false)};
-    if (own->n > DESCEND_DIMENSIONS || !results_scenario(r, &own->s))
+    if (own->n > DESCEND_DIMENSIONS || !own->s)
         return complain(message, "%.150s: its scenario cannot be simulated by this version",
                         r->file);
     uint64_t index = 0;
@@ -90,15 +91,11 @@ static bool begin(struct simulator *own, const struct basin_rays *rays, size_t r
             at = rays->by[k] == a ? basin_rays_point(rays, row, k) : at;
         index = index * r->axis[a].count + at;
     }
-    const bool good =
-        find_paths(own, rays)
-            ? starts_begin(&own->starts, &own->s, index, message)
-            : complain(message,
-                       "%.150s: descents need a factor with a range of its own for every offset",
-                       r->file);
-    if (!good)
-        scenario_free(&own->s);
-    return good;
+    return find_paths(own, rays)
+               ? starts_begin(&own->starts, own->s, index, message)
+               : complain(message,
+                          "%.150s: descents need a factor with a range of its own for every offset",
+                          r->file);
 }
 
 /* Unit vectors along the shortest ray and others that end, and their ends. */
@@ -158,7 +155,6 @@ bool basin_rays_nearest(const struct basin_rays *rays, size_t row, size_t starts
         nearest->at[k] = nearest->of[k] * own->half[k];
     }
     progress_end(&own->progress);
-    scenario_free(&own->s);
     free(own);
     return good;
 }

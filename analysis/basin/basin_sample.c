@@ -45,24 +45,20 @@ bool basin_sample_make(struct basin_sample *sample, const struct results *r,
     *sample = (struct basin_sample){.axis = -1, .box = NAN};
     if (r->sample < 0)
         return true;
-    struct scenario *s = calloc(1, sizeof *s);
+    const struct scenario *const s = r->read;
     sample->factor = calloc((size_t)r->varied + 1, sizeof *sample->factor);
     sample->points = r->axis[r->sample].count;
-    const bool good = s && sample->factor && results_scenario(r, s);
+    const bool good = s && sample->factor;
     if (good && s->sample.given) {
         sample->method = s->sample.design.method;
         sample->block = (size_t)doe_block(&s->sample.design);
         take_factors(sample, r, s);
     }
-    if (good) {
-        scenario_free(s);
-    } else {
-        basin_sample_free(sample);
-        complain(message, "%.100s: its scenario cannot be read, or memory does not suffice",
-                 r->file);
-    }
-    free(s);
-    return good;
+    if (good)
+        return true;
+    basin_sample_free(sample);
+    return complain(message, "%.100s: its scenario cannot be read, or memory does not suffice",
+                    r->file);
 }
 
 void basin_sample_free(struct basin_sample *sample)

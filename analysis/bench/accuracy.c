@@ -294,13 +294,12 @@ static bool compare(struct accuracy *a, const struct results *r, stance_message 
 bool accuracy_make(struct accuracy *a, const struct results *r, double budget,
                    stance_message *message)
 {
-    struct scenario *const s = study_scenario(r, message);
+    const struct scenario *const s = r->read;
     *a = (struct accuracy){.rows = 0};
     if (!s)
-        return false;
+        return complain(message, "this version cannot read the file's scenario");
     const bool good = make_rows(a, s, r, message) && read_answers(a, r, message) &&
                       compare(a, r, message) && measure(a, s, r, budget, message);
-    scenario_drop(s);
     if (good && !a->labels)
         fit_orders(a);
     if (!good)

@@ -243,13 +243,12 @@ static bool judge_all(struct failure *f, const struct scenario *s, const struct 
 
 bool failure_make(struct failure *f, const struct results *r, stance_message *message)
 {
-    struct scenario *const s = study_scenario(r, message);
+    const struct scenario *const s = r->read;
     *f = (struct failure){.rows = 0};
     if (!s)
-        return false;
+        return complain(message, "this version cannot read the file's scenario");
     const bool good = make_rows(f, s, r, message) && failure_theory(&f->line, s, message) &&
                       judge_all(f, s, r, message);
-    scenario_drop(s);
     if (!good)
         failure_free(f);
     return good;

@@ -18,16 +18,6 @@ enum { MAX_STUDIES = 64, STEM = 256, FILE_NAME = 1024 };
 
 /* ---- their scenarios ---------------------------------------------------------------------- */
 
-struct scenario *study_scenario(const struct results *r, stance_message *message)
-{
-    struct scenario *const s = calloc(1, sizeof *s);
-    if (s && results_scenario(r, s))
-        return s;
-    free(s);
-    complain(message, "this version cannot read the file's scenario");
-    return NULL;
-}
-
 bool study_plan(struct plan *plan, const struct scenario *s, stance_message *message)
 {
     const struct parallel alone = parallel_alone();

@@ -38,9 +38,7 @@ extern const struct option studies_options[];
 int studies_run(const struct command *command, const struct study_kind *kind, int argc,
                 char **argv);
 
-/* The scenario of a results file, and a plan with its designs; freed by the caller. NULL, false:
- * one line in *message. */
-struct scenario *study_scenario(const struct results *r, stance_message *message);
+/* A plan with its designs; freed by the caller. False: one line in *message. */
 bool study_plan(struct plan *plan, const struct scenario *s, stance_message *message);
 
 /* The tolerance that a method uses; NAN: it does not control its error. */

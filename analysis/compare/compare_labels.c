@@ -20,15 +20,11 @@ struct lattice {
 
 static bool find_refined(const struct results *r, bool *along)
 {
-    struct scenario s;
     bool any = false;
-    if (!results_scenario(r, &s))
-        return false;
-    for (int a = 0; a < s.axes && a < r->axes; a++) {
-        along[a] = along[a] || s.axis[a].refined;
+    for (int a = 0; r->read && a < r->read->axes && a < r->axes; a++) {
+        along[a] = along[a] || r->read->axis[a].refined;
         any = any || along[a];
     }
-    scenario_free(&s);
     return any;
 }
 

@@ -258,7 +258,7 @@ static const struct option asks[] = {
     {"--level", "L", TO(choice.level), .low = 0.5, .high = 0.999999,
      .text = "of intervals, default 0.95"},
     {REPORT_CSV, .text = "a row for each point of the other axes"},
-    {REPORT_JSON, .text = "the same as JSON, with the keys"},
+    {REPORT_JSON, .keys = critical_keys, .text = "the same as JSON, with the keys"},
     {0},
 };
 static const struct option options[] = {
@@ -307,11 +307,5 @@ const struct command command_critical = {
     "is none: least is the share of all that keeps `kept`, at the level L (with n points about 1 - "
     "3 / n). With noise each value is a draw of its own, and the more values the sooner one is "
     "lost\n",
-    "    outcome, within, of, unit, from, to, share (null: no sample), level, points\n"
-    "    rows    [{at: {path: value}, end (lost; kept: up to the last value; outside: lost at the "
-    "first; unknown), kept, lost, outcome_then (what most become at lost), low, high (the "
-    "interval; "
-    "without a sample kept and lost), exact, least_share, unknown (values at which failed or "
-    "pending cases leave it open), unseen (widest gap between values simulated), islands: [{from: "
-    "[a, b], to: [a, b]}]}]; null beyond the ends\n",
+    NULL,
 };

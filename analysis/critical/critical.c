@@ -14,14 +14,11 @@
 /* The one axis that sweep.refine refines; -1: none, or several. */
 static int refined_axis(const struct results *r)
 {
-    struct scenario s;
+    const struct scenario *const s = r->single ? NULL : r->read;
     int found = -1, axes = 0;
-    if (r->single || !results_scenario(r, &s))
-        return -1;
-    for (int a = 0; s.refine.given && a < s.axes && a < r->axes; a++)
-        if (s.axis[a].refined)
+    for (int a = 0; s && s->refine.given && a < s->axes && a < r->axes; a++)
+        if (s->axis[a].refined)
             axes++, found = a;
-    scenario_free(&s);
     return axes == 1 ? found : -1;
 }
 

@@ -61,6 +61,30 @@ static const char *remark(const struct critical_row *row)
                                                 : "";
 }
 
+/* What is said of a row; `again` and `exact` are of add_row. */
+#define ROW(X)                                                                                     \
+    X("end", "lost; kept: up to the last value; outside: lost at the first; unknown",              \
+      as_text(critical_end_words[v->end]))                                                         \
+    X("kept", "", as_number(v->kept), "kept", "%.6g", .width = 11)                                 \
+    X("lost", "", as_number(v->lost), "lost", "%.6g", .width = 11)                                 \
+    X("outcome_then", "what most become at lost",                                                  \
+      row->to == c->of ? as_nothing(NULL) : as_text(results_kind_names[row->to]), "then",          \
+      .width = 10, .left = true, .before = "  ")                                                   \
+    X("low", "", as_number(v->low), "interval", "%.6g", .width = 25, .left = true, .before = "  ") \
+    X("high", "the interval; without a sample kept and lost", as_number(v->high),                  \
+      .format = "%.6g", .joined = true, .before = " ... ", .empty = "-")                           \
+    X("least_share", "", as_number(v->least_share), "least", "%.2f %%", .width = 9,                \
+      .percent = true)                                                                             \
+    X("exact", "", as_truth(exact), .hidden = TABLE_NO_CSV)                                        \
+    X("unknown", "values at which failed or pending cases leave it open", as_whole(v->unknown))    \
+    X("unseen", "widest gap between values simulated", as_number(row->unseen))                     \
+    X("again", NULL, as_text(again[0] ? again : NULL), "again", .left = true, .before = "  ",      \
+      .hidden = TABLE_NO_JSON)                                                                     \
+    X("remark", NULL, as_text(remark(row)), "", .left = true, .before = "  ", .empty = "",         \
+      .hidden = TABLE_VIEW_ONLY)                                                                   \
+    X("islands", "[{from: [a, b], to: [a, b]}]", as_tree(islands_json(c, row)),                    \
+      .hidden = TABLE_NO_CSV)
+
 static void add_row(struct table *t, const struct critical *c, const struct critical_row *row)
 {
     const struct critical_value *const v = &row->value;
@@ -68,26 +92,25 @@ static void add_row(struct table *t, const struct critical *c, const struct crit
     char again[240];
     islands_text(c, row, again, sizeof again);
     table_axes(t, c->r, c->by, c->by_axes, row->point);
-    TABLE_FACTS(
-        t, {{.name = "end"}, as_text(critical_end_words[v->end])},
-        {{"kept", "kept", "%.6g", .width = 11}, as_number(v->kept)},
-        {{"lost", "lost", "%.6g", .width = 11}, as_number(v->lost)},
-        {{"outcome_then", "then", .width = 10, .left = true, .before = "  "},
-         row->to == c->of ? as_nothing(NULL) : as_text(results_kind_names[row->to])},
-        {{"low", "interval", "%.6g", .width = 25, .left = true, .before = "  "}, as_number(v->low)},
-        {{.name = "high", .format = "%.6g", .joined = true, .before = " ... ", .empty = "-"},
-         as_number(v->high)},
-        {{"least_share", "least", "%.2f %%", .width = 9, .percent = true},
-         as_number(v->least_share)},
-        {{.name = "exact", .hidden = TABLE_NO_CSV}, as_truth(exact)},
-        {{.name = "unknown"}, as_whole(v->unknown)}, {{.name = "unseen"}, as_number(row->unseen)},
-        {{"again", "again", .left = true, .before = "  ", .hidden = TABLE_NO_JSON},
-         as_text(again[0] ? again : NULL)},
-        {{"remark", "", .left = true, .before = "  ", .empty = "", .hidden = TABLE_VIEW_ONLY},
-         as_text(remark(row))},
-        {{.name = "islands", .hidden = TABLE_NO_CSV}, as_tree(islands_json(c, row))});
+    TABLE_FACTS(t, ROW(TABLE_FACT));
     table_end_row(t);
 }
+
+/* Of all rows, among what critical_print has. */
+#define HEAD(X)                                                                                    \
+    X("outcome", "", as_text(results_kind_names[c->of]))                                           \
+    X("within", "", as_text(within[0] ? within : NULL))                                            \
+    X("of", "", as_text(axis->name))                                                               \
+    X("unit", "", as_text(axis->unit))                                                             \
+    X("from", "", as_number(c->value[0]))                                                          \
+    X("to", "", as_number(c->value[c->count - 1]))                                                 \
+    X("share", "null: no sample", c->sampled ? as_number(c->choice.share) : as_nothing(NULL))      \
+    X("level", "", as_number(c->choice.level))                                                     \
+    X("points", "", as_whole(c->points))
+
+static const struct say_key row_keys[] = {TABLE_KEY_AT ROW(TABLE_KEY){0}};
+const struct say_key critical_keys[] = {HEAD(TABLE_KEY){"rows", "null beyond the ends", row_keys},
+                                        {0}};
 
 static const char text[] = BASIN_TITLE
     "How far {of} may go from {..from} towards {..to}, up to which [share:at least {share*%.4g} % "
@@ -132,13 +155,8 @@ bool critical_print(const struct critical *c, const char *within, enum table_for
                                       : " low high",
              again ? " again" : "", remarks ? " remark" : "");
     json_t *const facts = TABLE_OBJECT(
-        {"outcome", as_text(results_kind_names[c->of])},
-        {"within", as_text(within[0] ? within : NULL)}, {"of", as_text(axis->name)},
-        {"unit", as_text(axis->unit)}, {"from", as_number(c->value[0])},
-        {"to", as_number(c->value[c->count - 1])},
-        {"share", c->sampled ? as_number(c->choice.share) : as_nothing(NULL)},
-        {"level", as_number(c->choice.level)}, {"points", as_whole(c->points)},
-        {".from", as_place(axis, c->order[0])}, {".to", as_place(axis, c->order[c->count - 1])},
+        HEAD(TABLE_MEMBER){".from", as_place(axis, c->order[0])},
+        {".to", as_place(axis, c->order[c->count - 1])},
         {".interval", as_truth(c->sampled && !c->blocks && !whole)},
         {".least", as_truth(whole && !c->blocks)}, {".blocks", as_truth(c->blocks)},
         {".again", as_truth(again)}, {".unsure", as_truth(unsure)}, {".unseen", as_number(unseen)},

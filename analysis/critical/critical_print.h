@@ -8,6 +8,7 @@
 
 enum { CRITICAL_SHOWN = 60 }; /* rows that people see */
 
+extern const struct say_key critical_keys[]; /* of its JSON */
 /* `within`: what the outcome was narrowed to, "" for nothing. False: memory or the output fails. */
 bool critical_print(const struct critical *critical, const char *within, enum table_form form);
 

@@ -3,110 +3,76 @@
 #include "search_summary.h"
 
 #include "runner/base/message.h"
+#include "runner/base/words.h"
 #include "runner/plan/allowed.h"
 #include "runner/scenario/schema.h"
 #include "runner/scenario/tree.h"
 
-#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 /* ---- scenarios as lists of numbers and words ---------------------------------------------- */
 
-struct leaf {
-    char path[96];
-    const char *text; /* of the tree */
-};
-
-struct leaves {
-    struct tree tree;
-    struct problems *problems;
-    struct leaf *leaf;
-    size_t count, room;
-    bool failed; /* no memory */
-};
-
-static void add_leaves(struct leaves *l, const struct tree_node *node, const char *path)
+static void add_leaves(json_t *leaves, const struct tree_node *node, const char *path)
 {
     char below[96];
     if (node->kind == TREE_SCALAR) {
-        if (l->count == l->room) {
-            l->room = 2 * l->room + 64;
-            struct leaf *const more = realloc(l->leaf, l->room * sizeof *more);
-            l->failed = l->failed || !more;
-            if (!more)
-                return;
-            l->leaf = more;
-        }
-        struct leaf *const leaf = &l->leaf[l->count++];
-        snprintf(leaf->path, sizeof leaf->path, "%s", path);
-        leaf->text = node->text;
+        json_object_set_new(leaves, path, json_string(node->text));
         return;
     }
-    for (size_t i = 0; i < node->count && !l->failed; i++) {
+    for (size_t i = 0; i < node->count; i++) {
         const int length = node->kind == TREE_LIST
                                ? snprintf(below, sizeof below, "%s[%zu]", path, i)
                                : snprintf(below, sizeof below, "%s%s%s", path, path[0] ? "." : "",
                                           node->key[i].name);
         if (length > 0 && (size_t)length < sizeof below)
-            add_leaves(l, node->item[i], below);
+            add_leaves(leaves, node->item[i], below);
     }
 }
 
-/* Of the scenario as it was read; none of one that is none. */
-static bool read_leaves(struct leaves *l, const char *text)
+/* {path: text} of a scenario as it was read; empty of one that is none. NULL: no memory. */
+static json_t *read_leaves(const char *text)
 {
     const size_t length = strlen(text);
-    *l = (struct leaves){.problems = calloc(1, sizeof *l->problems)};
-    if (l->problems && tree_check_text(text, length, l->problems) &&
-        tree_parse(&l->tree, text, length, l->problems))
-        add_leaves(l, l->tree.root, "");
-    return l->problems && !l->failed;
+    struct tree tree = {0};
+    struct problems *const problems = calloc(1, sizeof *problems);
+    json_t *const leaves = problems ? json_object() : NULL;
+    if (leaves && tree_check_text(text, length, problems) &&
+        tree_parse(&tree, text, length, problems))
+        add_leaves(leaves, tree.root, "");
+    tree_free(&tree);
+    free(problems);
+    return leaves;
 }
 
-/* NULL: it is not given. */
-static const char *text_at(const struct leaves *l, const char *path)
+/* In one of the scenarios, a list of leaves; NULL: it is not given. */
+static const char *text_at(const json_t *scenarios, size_t i, const char *path)
 {
-    for (size_t i = 0; i < l->count; i++)
-        if (strcmp(l->leaf[i].path, path) == 0)
-            return l->leaf[i].text;
-    return NULL;
+    return json_string_value(json_object_get(json_array_get(scenarios, i), path));
 }
 
 /* NAN: none. */
-static double number_at(const struct leaves *l, const char *path)
+static double number_at(const json_t *scenarios, size_t i, const char *path)
 {
-    const char *const text = text_at(l, path);
+    const char *const text = text_at(scenarios, i, path);
     char *end = NULL;
-    errno = 0;
     const double number = text ? strtod(text, &end) : NAN;
     return text && end != text && !*end && isfinite(number) ? number : NAN;
 }
 
 /* ---- what differs ------------------------------------------------------------------------- */
 
-static bool differs(const struct leaves *l, size_t count, const char *path)
-{
-    const char *const first = text_at(&l[0], path);
-    bool differ = false;
-    for (size_t i = 1; i < count; i++) {
-        const char *const other = text_at(&l[i], path);
-        differ = differ || !first != !other || (first && strcmp(first, other) != 0);
-    }
-    return differ;
-}
-
 /* Different numbers; 0: some scenario has none. */
-static size_t values_of(const struct leaves *l, size_t count, const char *path)
+static size_t values_of(const json_t *scenarios, const char *path)
 {
     size_t values = 0;
-    for (size_t i = 0; i < count; i++) {
-        const double number = number_at(&l[i], path);
+    for (size_t i = 0; i < json_array_size(scenarios); i++) {
+        const double number = number_at(scenarios, i, path);
         size_t same = 0;
         if (isnan(number))
             return 0;
-        while (same < i && number_at(&l[same], path) != number)
+        while (same < i && number_at(scenarios, same, path) != number)
             same++;
         values += same == i;
     }
@@ -130,12 +96,14 @@ static bool is_effort(const char *path)
 }
 
 /* The path, into against.name; false: there is none. */
-static bool find_against(struct search_front *front, const struct leaves *l)
+static bool find_against(struct search_front *front, json_t *scenarios)
 {
     size_t most = 1;
-    for (size_t i = 0; i < l[0].count; i++) {
-        const char *const path = l[0].leaf[i].path;
-        const size_t values = is_effort(path) ? 0 : values_of(l, front->count, path);
+    const char *path;
+    json_t *leaf;
+    json_object_foreach(json_array_get(scenarios, 0), path, leaf)
+    {
+        const size_t values = is_effort(path) ? 0 : values_of(scenarios, path);
         if (values > most) {
             most = values;
             snprintf(front->against.name, sizeof front->against.name, "%s", path);
@@ -144,45 +112,47 @@ static bool find_against(struct search_front *front, const struct leaves *l)
     return most > 1;
 }
 
-static void find_also(struct search_front *front, const struct leaves *l)
+/* Paths in the order in which the scenarios have them. */
+static void find_also(struct search_front *front, json_t *scenarios)
 {
-    size_t used = 0;
-    for (size_t f = 0; f < front->count; f++) {
-        for (size_t i = 0; i < l[f].count && used + 100 < sizeof front->also; i++) {
-            const char *const path = l[f].leaf[i].path;
-            bool met = strcmp(path, "title") == 0 || strcmp(path, front->against.name) == 0;
-            for (size_t before = 0; before < f; before++)
-                met = met || text_at(&l[before], path);
-            if (!met && differs(l, front->count, path))
-                used += (size_t)snprintf(front->also + used, sizeof front->also - used, "%s%s",
-                                         used ? ", " : "", path);
+    json_t *const all = json_object();
+    const char *path;
+    json_t *leaf;
+    for (size_t i = 0; i < front->count; i++)
+        json_object_update_missing(all, json_array_get(scenarios, i));
+    json_object_foreach(all, path, leaf)
+    {
+        bool differs = false;
+        for (size_t i = 0; i < front->count; i++) {
+            const char *const text = text_at(scenarios, i, path);
+            differs = differs || !text || strcmp(text, json_string_value(leaf)) != 0;
         }
+        if (differs && strcmp(path, "title") != 0 && strcmp(path, front->against.name) != 0 &&
+            strlen(front->also) + 100 < sizeof front->also)
+            words_add(front->also, sizeof front->also, "%s%s", front->also[0] ? ", " : "", path);
     }
+    json_decref(all);
     results_clean(front->also);
 }
 
-static bool compare_scenarios(struct search_front *front, struct leaves *l, stance_message *message)
+static bool compare_scenarios(struct search_front *front, stance_message *message)
 {
-    size_t read = 0;
+    json_t *const scenarios = json_array();
     bool good = true;
-    while (good && read < front->count)
-        good =
-            read_leaves(&l[read], front->study[read].f.scenario) ? ++read > 0 : no_memory(message);
+    for (size_t i = 0; good && i < front->count; i++)
+        good = json_array_append_new(scenarios, read_leaves(front->study[i].f.scenario)) == 0 ||
+               no_memory(message);
     good = good &&
-           (find_against(front, l) ||
+           (find_against(front, scenarios) ||
             complain(message,
                      "%.70s, %.70s%s: no number of their scenarios differs, but "
                      "for seed and effort",
                      front->study[0].file, front->study[1].file, front->count > 2 ? " ..." : ""));
     for (size_t i = 0; good && i < front->count; i++)
-        front->at[i] = number_at(&l[i], front->against.name);
+        front->at[i] = number_at(scenarios, i, front->against.name);
     if (good)
-        find_also(front, l);
-    for (size_t i = 0; i < front->count; i++) {
-        tree_free(&l[i].tree);
-        free(l[i].leaf);
-        free(l[i].problems);
-    }
+        find_also(front, scenarios);
+    json_decref(scenarios);
     return good;
 }
 
@@ -208,8 +178,7 @@ bool search_front_open(struct search_front *front, const char *const *file, size
 {
     *front = (struct search_front){.study = calloc(count, sizeof *front->study),
                                    .at = calloc(count, sizeof *front->at)};
-    struct leaves *const l = calloc(count, sizeof *l);
-    bool good = (front->study && front->at && l) || no_memory(message);
+    bool good = (front->study && front->at) || no_memory(message);
     while (good && front->count < count) {
         struct search_study *const study = &front->study[front->count];
         good = search_study_open(study, file[front->count], message);
@@ -218,9 +187,7 @@ bool search_front_open(struct search_front *front, const char *const *file, size
             good = complain(message, "%.150s: not finished: stance optimise --resume goes on",
                             study->file);
     }
-    good = good && compare_scenarios(front, l, message);
-    free(l);
-    if (!good) {
+    if (!good || !compare_scenarios(front, message)) {
         search_front_close(front);
         return false;
     }
@@ -249,8 +216,7 @@ static void make_table(struct table *t, const struct search_front *front)
         const struct search_study *const study = &front->study[i];
         const struct search_file *const f = &study->f;
         const size_t chosen = (size_t)f->chosen, circumstances = f->length[SEARCH_CIRCUMSTANCE];
-        const char *where;
-        const double allowed = search_limit(study, chosen, &where);
+        const double allowed = search_limit(study, chosen, NULL);
         TABLE_FACTS(
             t,
             {{front->against.name, schema_last_name(front->against.name), .width = 10},

@@ -14,21 +14,6 @@
 
 /* ---- opening ------------------------------------------------------------------------------ */
 
-static void clean(struct search_file *f)
-{
-    const struct {
-        char **word;
-        size_t count;
-    } list[] = {{f->parameter, f->length[SEARCH_PARAMETER]},
-                {f->circumstance, f->length[SEARCH_CIRCUMSTANCE]},
-                {f->varied, f->length[SEARCH_VARIED]},
-                {f->elsewhere, f->length[SEARCH_ELSEWHERE]},
-                {(char *[]){f->title, f->revision, f->date, f->note}, 4}};
-    for (size_t k = 0; k < sizeof list / sizeof *list; k++)
-        for (size_t i = 0; i < list[k].count; i++)
-            results_clean(list[k].word[i]);
-}
-
 bool search_study_open(struct search_study *study, const char *file, stance_message *message)
 {
     *study = (struct search_study){.file = file};
@@ -46,7 +31,6 @@ bool search_study_open(struct search_study *study, const char *file, stance_mess
         search_study_close(study);
         return complain(message, "%.150s: has other outcomes than this version knows", file);
     }
-    clean(f);
     const char *const slash = strrchr(file, '/');
     snprintf(study->name, sizeof study->name, "%s", slash ? slash + 1 : file);
     char *const dot = strrchr(study->name, '.');
@@ -80,36 +64,14 @@ static bool counts_worst(const struct search_study *study)
     return study->first && study->first->search.worst && study->f.length[SEARCH_CIRCUMSTANCE] > 1;
 }
 
-static int64_t count_in(const struct search_study *study, size_t k, size_t circumstance, int label)
-{
-    const struct search_file *const f = &study->f;
-    return f->confirmed_count[(k * f->length[SEARCH_CIRCUMSTANCE] + circumstance) * TRIAL_LABELS +
-                              (size_t)label];
-}
-
-static int64_t recovered_in(const struct search_study *study, size_t k, size_t circumstance)
-{
-    int64_t sum = 0;
-    for (int label = 0; label < TRIAL_LABELS; label++)
-        sum += trials_recovered(label) ? count_in(study, k, circumstance, label) : 0;
-    return sum;
-}
-
-int64_t search_count(const struct search_study *study, size_t k, int label)
-{
-    int64_t sum = 0;
-    for (size_t c = 0; c < study->f.length[SEARCH_CIRCUMSTANCE]; c++)
-        sum += count_in(study, k, c, label);
-    return sum;
-}
-
 size_t search_worst(const struct search_study *study, size_t k)
 {
+    const size_t circumstances = study->f.length[SEARCH_CIRCUMSTANCE];
     size_t worst = 0;
     if (!counts_worst(study))
-        return study->f.length[SEARCH_CIRCUMSTANCE] > 1 ? SEARCH_OVERALL : 0;
-    for (size_t c = 1; c < study->f.length[SEARCH_CIRCUMSTANCE]; c++)
-        if (recovered_in(study, k, c) < recovered_in(study, k, worst))
+        return circumstances > 1 ? SEARCH_OVERALL : 0;
+    for (size_t c = 1; c < circumstances; c++)
+        if (search_share(study, k, c) < search_share(study, k, worst))
             worst = c;
     return worst;
 }
@@ -186,13 +148,52 @@ double search_limit(const struct search_study *study, size_t k, const char **cir
     size_t least;
     const double limit = linear_limit_overall(counts_worst(study), circumstances,
                                               &f->confirmed_allowed[k * circumstances], &least);
-    *circumstance = least < circumstances ? f->circumstance[least] : NULL;
+    if (circumstance)
+        *circumstance = least < circumstances ? f->circumstance[least] : NULL;
     return limit;
 }
 
 bool search_chosen_apart(const struct search_study *study)
 {
     return study->done && !isnan(study->f.choice_objective[study->f.chosen]);
+}
+
+/* ---- what linear theory allows ------------------------------------------------------------ */
+
+/* Whether the scenario's last axis has what the file's starts are over. */
+static bool has_starts(const struct scenario *s, const struct search_file *f)
+{
+    const struct scenario_axis *const axis = &s->axis[s->axes - 1];
+    bool same = s->axes > 0 && s->sample.given && axis->value &&
+                (size_t)axis->paths == f->length[SEARCH_VARIED];
+    for (int k = 0; same && k < axis->paths; k++)
+        same = strcmp(axis->path[k], f->varied[k]) == 0;
+    return same;
+}
+
+bool search_allowed(const struct search_study *study, double *allowed)
+{
+    const struct search_file *const f = &study->f;
+    const size_t starts = f->length[SEARCH_START];
+    size_t from, to;
+    if (!study->best || !has_starts(study->best, f))
+        return false;
+    search_circumstances(study, search_worst(study, (size_t)f->chosen), &from, &to);
+    /* What it points to stays that of `best`; the points are the file's. */
+    struct scenario *const fresh = malloc(sizeof *fresh);
+    bool good = fresh != NULL;
+    if (good) {
+        *fresh = *study->best;
+        fresh->axis[fresh->axes - 1].value = f->start_value;
+        fresh->axis[fresh->axes - 1].count = starts;
+    }
+    memset(allowed, 0, starts * sizeof *allowed);
+    for (size_t c = from; good && c < to; c++)
+        good = linear_limit_add(fresh, c, allowed);
+    for (size_t i = 0; good && i < starts; i++)
+        allowed[i] /= (double)(to - from);
+    free(fresh);
+    return good;
 }
 
 /* ---- words -------------------------------------------------------------------------------- */
@@ -261,11 +262,6 @@ void search_describe(const struct search_study *study, struct results_axis *axis
         snprintf(axis->text, sizeof axis->text, "%s", field->text);
     }
     free(schema);
-}
-
-int64_t search_best(const struct search_study *study)
-{
-    return study->f.best[study->f.length[SEARCH_GENERATION] - 1];
 }
 
 size_t search_stages(const struct search_study *study, size_t *generation, size_t room)

@@ -30,15 +30,13 @@ struct search_study {
     struct scenario *best;  /* of the chosen one; NULL: there is none */
 };
 
-/* False: one line in *message. Texts are clean. */
+/* False: one line in *message. */
 bool search_study_open(struct search_study *study, const char *file, stance_message *message);
 void search_study_close(struct search_study *study);
 
 /* Of confirmed candidate k in a circumstance, or overall. */
 double search_share(const struct search_study *study, size_t k, size_t circumstance);
 struct interval search_interval(const struct search_study *study, size_t k, size_t circumstance);
-/* Fresh starts by what became of them, a label of trials.h, in all circumstances. */
-int64_t search_count(const struct search_study *study, size_t k, int label);
 /* Whether a fresh start is recovered. */
 static inline bool search_recovers(const struct search_study *study, size_t k, size_t circumstance,
                                    size_t start)
@@ -64,7 +62,7 @@ void search_circumstances(const struct search_study *study, size_t circumstance,
 
 /* Share from which linear theory allows any controller to recover, about the equilibrium of
  * confirmed candidate k, overall: no more than in the worst circumstance, which *circumstance
- * names, or the mean, NULL. NAN: it sets no bound. */
+ * names, or the mean, NULL. NAN: it sets no bound. `circumstance` may be NULL. */
 double search_limit(const struct search_study *study, size_t k, const char **circumstance);
 /* Whether the chosen one was chosen by other starts than the fresh ones; by these in files of
  * earlier versions, whose share of it is too large. */
@@ -77,10 +75,8 @@ bool search_allowed(const struct search_study *study, double *allowed);
 void search_name(const struct search_study *study, size_t k, char *text, size_t size);
 /* What is maximised: "share of stabilised starts, in the worst of 6 circumstances". */
 void search_aim(const struct search_study *study, char *text, size_t size);
-/* The best candidate so far, the last stage's. */
 /* Unit ("": none) and meaning of the path that is the axis's name, where the format has them. */
 void search_describe(const struct search_study *study, struct results_axis *axis);
-int64_t search_best(const struct search_study *study);
 
 /* Stages, over all beginnings: the last generation of each, in their order. */
 size_t search_stages(const struct search_study *study, size_t *generation, size_t room);

@@ -12,6 +12,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+enum { MOST_STAGES = SCENARIO_MAX_STAGES * (SCENARIO_MAX_RESTARTS + 1) };
+
 /* ---- what was sought ---------------------------------------------------------------------- */
 
 /* "[0][3]" of a path is left out: what is varied together is told together. */
@@ -86,9 +88,9 @@ static void add_required(const struct search_study *study, json_t *facts)
 static json_t *limit(const struct search_study *study)
 {
     const size_t chosen = (size_t)study->f.chosen;
-    const char *where, *first_where;
+    const char *where;
     const double allowed = search_limit(study, chosen, &where),
-                 before = search_limit(study, 0, &first_where),
+                 before = search_limit(study, 0, NULL),
                  first = 100 * search_share(study, 0, SEARCH_OVERALL) / before;
     if (!(allowed > 0))
         return NULL;
@@ -106,15 +108,20 @@ static json_t *limit(const struct search_study *study)
 
 static void add_counts(const struct search_study *study, json_t *facts)
 {
+    const struct search_file *const f = &study->f;
+    const size_t circumstances = f->length[SEARCH_CIRCUMSTANCE],
+                 first = (size_t)f->chosen * circumstances;
     json_t *const counts = json_object();
     for (int label = 0; label < TRIAL_LABELS; label++) {
-        const int64_t count = search_count(study, (size_t)study->f.chosen, label);
-        table_put(counts, study->f.kind[label], as_whole((uint64_t)count));
+        int64_t count = 0;
+        for (size_t c = 0; c < circumstances; c++)
+            count += f->confirmed_count[(first + c) * TRIAL_LABELS + (size_t)label];
+        table_put(counts, f->kind[label], as_whole((uint64_t)count));
         if (count > 0 || label == STANCE_UNDECIDED + 1 || label == STANCE_RESTED + 1 ||
             label == TRIAL_FAILED)
             say_add(facts, ".counts", "%s%lld %s", json_object_get(facts, ".counts") ? ", " : "",
                     (long long)count,
-                    label == STANCE_STABILISED + 1 ? "recovered" : study->f.kind[label]);
+                    label == STANCE_STABILISED + 1 ? "recovered" : f->kind[label]);
     }
     table_put(facts, "starts", as_tree(counts));
 }
@@ -195,6 +202,110 @@ static json_t *chosen(const struct search_study *study)
     return facts;
 }
 
+/* ---- stages ------------------------------------------------------------------------------- */
+
+static void put_stages(struct table *t, const struct search_study *study)
+{
+    const struct search_file *const f = &study->f;
+    size_t last[MOST_STAGES], first = 0;
+    const size_t stages = search_stages(study, last, MOST_STAGES);
+    for (size_t i = 0; i < stages; i++) {
+        const size_t g = last[i];
+        TABLE_FACTS(t,
+                    {{"beginning", "beginning", .width = 9}, as_whole((uint64_t)f->restart[g] + 1)},
+                    {{"stage", "stage", .width = 5}, as_whole((uint64_t)f->stage[g] + 1)},
+                    {{"starts", "starts", .width = 8}, as_whole((uint64_t)f->starts[g])},
+                    {{"generations", "generations", .width = 9}, as_whole(g + 1 - first)},
+                    {{"candidates", "candidates", .width = 9},
+                     as_whole((uint64_t)(f->candidates[g] - search_first(f, first)))},
+                    {{"best", "best", .format = study->plain ? "%.2f %%" : NULL, .width = 9,
+                      .percent = study->plain},
+                     as_number(f->objective[f->best[g]])},
+                    {{"best_candidate", "candidate", .width = 9}, as_whole((uint64_t)f->best[g])},
+                    {{"step", "last step", "%.3g", .width = 9}, as_number(f->step[g])});
+        table_end_row(t);
+        first = g + 1;
+    }
+}
+
+/* ---- fresh starts ------------------------------------------------------------------------- */
+
+static void put_confirmed(struct table *t, const struct search_study *study)
+{
+    const struct search_file *const f = &study->f;
+    const char *const format = study->plain ? "%.2f" : NULL;
+    char name[80];
+    for (size_t k = 0; study->done && k < f->length[SEARCH_CONFIRMED]; k++) {
+        const bool chosen = (int64_t)k == f->chosen;
+        search_name(study, k, name, sizeof name);
+        TABLE_FACTS(
+            t, {{"mark", "", .hidden = TABLE_VIEW_ONLY, .width = 1}, as_text(chosen ? "*" : " ")},
+            {{"which", "", .left = true}, as_text(name)},
+            {{"candidate", "candidate", .width = 9},
+             f->confirmed_candidate[k] < 0 ? as_nothing(NULL)
+                                           : as_whole((uint64_t)f->confirmed_candidate[k])},
+            {{"share", study->plain ? "share %" : "recovered %", "%.2f", .width = 7,
+              .percent = true},
+             as_number(search_share(study, k, SEARCH_OVERALL))},
+            SEARCH_INTERVAL("low", "high", search_interval(study, k, SEARCH_OVERALL)),
+            {{"objective", "objective", .width = 9}, as_number(f->confirmed_objective[k])},
+            {{"training", "training", .format = format, .width = 8, .percent = study->plain},
+             as_number(f->confirmed_training[k])},
+            {{"gap", "gap", study->plain ? "%+.2f" : "%+.6g", .width = 6, .percent = study->plain},
+             as_number(f->confirmed_training[k] - f->confirmed_objective[k])},
+            {{"choice", "choice", .format = format, .width = 7, .percent = study->plain},
+             as_number(f->choice_objective[k])},
+            {{"chosen", .hidden = TABLE_NO_CSV}, as_truth(chosen)});
+        table_end_row(t);
+    }
+}
+
+/* ---- circumstances ------------------------------------------------------------------------ */
+
+static void put_circumstances(struct table *t, const struct search_study *study)
+{
+    const struct search_file *const f = &study->f;
+    const size_t circumstances = f->length[SEARCH_CIRCUMSTANCE], chosen = (size_t)f->chosen;
+    for (size_t c = 0; study->done && c < circumstances; c++) {
+        const struct search_gain gain = search_gain(study, c);
+        const double share = search_share(study, chosen, c),
+                     allowed = f->confirmed_allowed[chosen * circumstances + c];
+        TABLE_FACTS(
+            t, {{"circumstance", "", .left = true}, as_text(f->circumstance[c])},
+            {{"first", "first %", "%.2f", .width = 7, .percent = true},
+             as_number(search_share(study, 0, c))},
+            {{"chosen", "chosen %", "%.2f", .width = 8, .percent = true}, as_number(share)},
+            SEARCH_INTERVAL("chosen_low", "chosen_high", search_interval(study, chosen, c)),
+            {{"gain", "gained", "%+.2f", .width = 7, .percent = true}, as_number(gain.share)},
+            SEARCH_INTERVAL("gain_low", "gain_high", gain.interval),
+            {{"won", .heading = NULL}, as_whole(gain.won)},
+            {{"lost", .heading = NULL}, as_whole(gain.lost)},
+            {{"allowed", "allowed %", "%.2f", .width = 9, .percent = true}, as_number(allowed)},
+            {{"of_allowed", "of that", "%.1f", .width = 7, .percent = true},
+             as_number(share / allowed)},
+            {{"critical_first", "T* first (s)", "%.4g", .width = 12},
+             as_number(f->confirmed_critical[c])},
+            {{"critical_chosen", "T* chosen (s)", "%.4g", .width = 13},
+             as_number(f->confirmed_critical[chosen * circumstances + c])});
+        table_end_row(t);
+    }
+}
+
+/* ---- elsewhere ---------------------------------------------------------------------------- */
+
+static void put_elsewhere(struct table *t, const struct search_study *study)
+{
+    const struct search_file *const f = &study->f;
+    for (size_t e = 0; study->done && e < f->length[SEARCH_ELSEWHERE]; e++) {
+        TABLE_FACTS(t, {{"where", "", .left = true}, as_text(f->elsewhere[e])},
+                    {{"first", "first %", "%.2f", .width = 8, .percent = true},
+                     as_number(f->elsewhere_first[e])},
+                    {{"chosen", "chosen %", "%.2f", .width = 9, .percent = true},
+                     as_number(f->elsewhere_chosen[e])});
+        table_end_row(t);
+    }
+}
+
 /* ---- all of it ---------------------------------------------------------------------------- */
 
 static bool give(json_t *facts, const char *key, const struct search_study *study,
@@ -218,11 +329,11 @@ static bool add_tables(const struct search_study *study, json_t *facts)
         limited = limited || isfinite(f->confirmed_allowed[(size_t)f->chosen * circumstances + c]);
     snprintf(view, sizeof view, "%sstage starts generations candidates best best_candidate step",
              begins ? "beginning " : "");
-    bool good = give(facts, "stages", study, search_table_stages, view);
+    bool good = give(facts, "stages", study, put_stages, view);
     table_put(facts, "fresh_starts", as_whole(f->length[SEARCH_START]));
     snprintf(view, sizeof view, "mark which candidate share low high%s training gap%s",
              study->plain ? "" : " objective", apart ? " choice" : "");
-    good = give(facts, "confirmed", study, search_table_confirmed, view) && good;
+    good = give(facts, "confirmed", study, put_confirmed, view) && good;
     const double allowed = study->done ? search_limit(study, (size_t)f->chosen, &where) : NAN;
     TABLE_PUT(facts, {"linear_limit", as_number(allowed)}, {"linear_limit_in", as_text(where)},
               {"linear_limit_glued", as_truth(study->glued)},
@@ -233,8 +344,8 @@ static bool add_tables(const struct search_study *study, json_t *facts)
              "circumstance first chosen chosen_low chosen_high gain gain_low gain_high%s "
              "critical_chosen",
              limited ? " allowed of_allowed" : "");
-    return give(facts, "circumstances", study, search_table_circumstances, view) &&
-           give(facts, "elsewhere", study, search_table_elsewhere, "where first chosen") && good;
+    return give(facts, "circumstances", study, put_circumstances, view) &&
+           give(facts, "elsewhere", study, put_elsewhere, "where first chosen") && good;
 }
 
 static bool add_facts(const struct search_study *study, json_t *facts)
@@ -310,7 +421,7 @@ static int summarise(const struct report *report, stance_message *message)
         json_decref(facts);
         return EXIT_IO;
     }
-    search_table_confirmed(&t, &study);
+    put_confirmed(&t, &study);
     const bool made = add_facts(&study, facts);
     search_study_close(&study);
     return table_say(report->form, facts, text, &t) && made ? EXIT_DONE : EXIT_IO;

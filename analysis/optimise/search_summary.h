@@ -20,12 +20,6 @@ int search_summarise(struct report *report, stance_message *message);
             as_number((interval).high)                                                             \
     }
 
-/* Rows: a stage; a candidate tried from fresh starts; a circumstance; a change of the scenario. */
-void search_table_stages(struct table *t, const struct search_study *study);
-void search_table_confirmed(struct table *t, const struct search_study *study);
-void search_table_circumstances(struct table *t, const struct search_study *study);
-void search_table_elsewhere(struct table *t, const struct search_study *study);
-
 /* What `stance summary -h` says of it. */
 #define SEARCH_SUMMARY_HELP                                                                        \
     "\n"                                                                                           \

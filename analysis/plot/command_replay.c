@@ -111,21 +111,18 @@ static bool add_distances(const struct results_varied *v, const char *name, cons
 static int find_along(const struct results *r, const char *name, const char *text,
                       struct near *near, bool *good)
 {
-    struct scenario s;
+    const struct scenario *const s = r->read;
     int at = 0, path = 0, found = 0;
-    if (!results_scenario(r, &s))
-        return 0;
-    for (int a = 0; a < s.axes && a < r->axes; a++)
-        for (int k = 1; k < s.axis[a].paths; k++)
-            if (a != r->sample && !s.axis[a].enumeration[k] && is_meant(s.axis[a].path[k], name))
+    for (int a = 0; s && a < s->axes && a < r->axes; a++)
+        for (int k = 1; k < s->axis[a].paths; k++)
+            if (a != r->sample && !s->axis[a].enumeration[k] && is_meant(s->axis[a].path[k], name))
                 at = a, path = k, found++;
     struct results_axis along = {.count = found == 1 ? r->axis[at].count : 0};
     along.value = along.count > 0 ? malloc(along.count * sizeof *along.value) : NULL;
     for (size_t i = 0; along.value && i < along.count; i++)
-        along.value[i] = scenario_axis_value(&s.axis[at], i % s.axis[at].count, path);
+        along.value[i] = scenario_axis_value(&s->axis[at], i % s->axis[at].count, path);
     *good = along.value && find_value(&along, name, text, &near->point[at]);
     free(along.value);
-    scenario_free(&s);
     return found;
 }
 
@@ -210,14 +207,7 @@ static bool find_case(const struct results *r, const struct request *request, si
 /* A law of the user's own, which is in the file, is to be trusted. */
 static bool check_law(const struct results *r, const struct request *request)
 {
-    struct scenario *const s = calloc(1, sizeof *s);
-    bool good = request->trust || !s || !results_scenario(r, s);
-    if (!good) {
-        good = asked_law(s);
-        scenario_free(s);
-    }
-    free(s);
-    return good;
+    return request->trust || !r->read || asked_law(r->read);
 }
 
 /* A case has its own values of what is varied: --set would change nothing. */

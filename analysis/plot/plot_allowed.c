@@ -22,7 +22,7 @@ struct picture {
     const struct plot_layout *layout;
     struct plot_axis along[2];
     size_t end[2][2]; /* of each axis: places of its least and its largest value */
-    struct scenario s;
+    const struct scenario *s;
     struct scenario_values values; /* of the start that is looked at */
     /* Of the panel that is made: its set, its plane, a point inside, in parts of the picture. */
     struct plot_allowed_panel *panel;
@@ -36,7 +36,7 @@ static bool check_axes(struct picture *p, stance_message *why)
 {
     for (int k = 0; k < 2; k++) {
         const struct results_axis *const axis = p->along[k].axis;
-        const struct scenario_axis *const of = &p->s.axis[k == 0 ? p->layout->x : p->layout->y];
+        const struct scenario_axis *const of = &p->s->axis[k == 0 ? p->layout->x : p->layout->y];
         for (int i = 0; i < of->paths; i++)
             if (!scenario_is_start(of->path[i]))
                 return complain(why, "%.90s is no coordinate of a start", of->path[i]);
@@ -87,8 +87,8 @@ static bool holds_at(const struct picture *p, const double part[2])
 static void start_of(struct picture *p, size_t i, size_t j, double *x)
 {
     double position[STANCE_MAX_COORDINATES], velocity[STANCE_MAX_COORDINATES];
-    scenario_case_values(&p->s, plot_layout_index(p->layout, p->number, i, j), &p->values);
-    resolve_start(p->s.scene, &p->values, &p->of.design, position, velocity);
+    scenario_case_values(p->s, plot_layout_index(p->layout, p->number, i, j), &p->values);
+    resolve_start(p->s->scene, &p->values, &p->of.design, position, velocity);
     allowed_state(&p->of, position, velocity, x);
 }
 
@@ -219,7 +219,7 @@ static bool make_panel(struct picture *p, stance_message *why, stance_message *m
 {
     struct plot_allowed_panel *const panel = p->panel;
     panel->share = NAN;
-    if (!allowed_make(&p->of, &p->s, plot_layout_index(p->layout, p->number, 0, 0), message))
+    if (!allowed_make(&p->of, p->s, plot_layout_index(p->layout, p->number, 0, 0), message))
         return false;
     const stance_null_set *const set = p->of.set;
     const bool unreached = set && stance_null_set_unreached(set, NULL, NULL) > 0;
@@ -249,7 +249,10 @@ bool plot_allowed_make(struct plot_allowed *allowed, struct gnuplot *g,
         return true;
     struct picture *const p = gnuplot_room(g, 1, sizeof *p);
     allowed->panel = gnuplot_room(g, (size_t)layout->panels, sizeof *allowed->panel);
-    if (!p || !allowed->panel || !gnuplot_needs(g, results_swept(r, &p->s, g->plot->message)))
+    if (!p || !allowed->panel)
+        return false;
+    p->s = results_swept(r, g->plot->message);
+    if (!gnuplot_needs(g, p->s != NULL))
         return false;
     p->layout = layout;
     memcpy(p->along, along, sizeof p->along);
@@ -273,7 +276,6 @@ bool plot_allowed_make(struct plot_allowed *allowed, struct gnuplot *g,
             fprintf(stderr, " in %d of %d panels", without, allowed->panels);
         fprintf(stderr, ": %s\n", first.text);
     }
-    scenario_free(&p->s);
     return good;
 }
 

@@ -109,7 +109,7 @@ static void put_frames(struct animation *a, int contacts)
 bool plot_animation(const struct plot_case *c)
 {
     struct animation a = {.follows = false};
-    if (!c->readable || (c->other && !c->other->readable))
+    if (!c->scenario || (c->other && !c->other->scenario))
         return complain(c->plot->message,
                         "%.150s: no stick figures: this version cannot read its scenario",
                         c->plot->r->file);
@@ -126,7 +126,7 @@ bool plot_animation(const struct plot_case *c)
             figure_make(&figure[f], k, figure_row(k->t, f * step));
         a.figure[cases++] = figure;
     }
-    const int contacts = figure_names(&a.g, c->scenario.scene);
+    const int contacts = figure_names(&a.g, c->scenario->scene);
     if (a.figure[0]) {
         put_view(&a, c);
         put_frames(&a, contacts);

@@ -28,7 +28,7 @@ double figure_fall(const struct plot_case *c)
 
 static bool is_outline(const struct plot_case *c)
 {
-    const stance_mechanism *const m = c->scenario.scene->mechanism;
+    const stance_mechanism *const m = c->scenario->scene->mechanism;
     stance_mechanism_numbers number;
     bool round = m->carried && m->carried->outline;
     stance_mechanism_expand(m, c->values.robot, &number);
@@ -51,7 +51,7 @@ static double radius_of(const stance_mechanism *m, const stance_mechanism_number
  * so that a leg has the colour of its foot. Of other outlines none is. */
 static void find_feet(struct figure *figure, const struct plot_case *c)
 {
-    const stance_scene *const scene = c->scenario.scene;
+    const stance_scene *const scene = c->scenario->scene;
     stance_mechanism_numbers number;
     double sine, cosine;
     stance_mechanism_expand(scene->mechanism, c->values.robot, &number);
@@ -78,7 +78,7 @@ static void find_feet(struct figure *figure, const struct plot_case *c)
 /* Of legs that are alike, what turns with the joints of one of them is of its first foot. */
 static void find_legs(struct figure *figure, const struct plot_case *c, const double *position)
 {
-    const stance_scene *const scene = c->scenario.scene;
+    const stance_scene *const scene = c->scenario->scene;
     const stance_exchange *const e = &scene->exchange;
     for (int leg = 0; leg < 2 && e->any; leg++) {
         double bent[STANCE_MAX_COORDINATES] = {0}, point[STANCE_MAX_POINTS][2];
@@ -98,7 +98,7 @@ static void find_legs(struct figure *figure, const struct plot_case *c, const do
 
 void figure_make(struct figure *figure, const struct plot_case *c, size_t row)
 {
-    const stance_scene *scene = c->scenario.scene;
+    const stance_scene *scene = c->scenario->scene;
     const struct results_trajectory *t = c->t;
     const double *position = t->position + row * t->coordinates;
     const double rest[STANCE_MAX_COORDINATES] = {0};

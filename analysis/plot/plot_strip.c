@@ -149,9 +149,9 @@ bool plot_strip(const struct plot_case *c)
     const int most = look->width > 0 && look->width < 760 / 16. * 25.4 / 72 * look->points ? 5 : 7;
     strip->c = c;
     make_strip(strip);
-    strip->contacts = figure_names(&g, c->scenario.scene);
+    strip->contacts = figure_names(&g, c->scenario->scene);
     for (int k = 0; k < strip->contacts; k++)
-        gnuplot_legend(&g, gnuplot_hue((size_t)k), 0, 0, c->scenario.scene->contact_name[k], "");
+        gnuplot_legend(&g, gnuplot_hue((size_t)k), 0, 0, c->scenario->scene->contact_name[k], "");
     gnuplot_legend(&g, "0x303030", 0, 0, "body", "");
     if (c->other)
         gnuplot_legend(&g, "0xb8b8b8", 0, 0, "the second case", "");

@@ -62,7 +62,7 @@ static bool ends_at_footfall(const struct plot_case *c, size_t footfalls)
 size_t walk_footfalls(const struct plot_case *c, double time[WALK_FOOTFALLS])
 {
     const struct results_trajectory *const t = c->t;
-    const stance_scene *const scene = c->readable ? c->scenario.scene : NULL;
+    const stance_scene *const scene = c->scenario ? c->scenario->scene : NULL;
     size_t count = 0, made = 0;
     int foot = -1, stands = -1;
     bool both = false;
@@ -129,7 +129,7 @@ static void put_plane(struct case_page *page)
 static void put_plates(struct case_page *page, const struct figure *figure)
 {
     static double point[PLOT_GROUND][2]; /* large, as the figures */
-    const int contacts = plot_case_grounded(page->c->scenario.scene);
+    const int contacts = plot_case_grounded(page->c->scenario->scene);
     gnuplot_series(&page->g, "using " FIGURE_PLACE_ALONE " with lines lw 2 lc rgb 0xa0a0a0");
     for (int i = 0; i <= STEPS * FIGURES; i++) {
         struct plot_range x = PLOT_NOTHING;
@@ -173,7 +173,7 @@ static void put_figures(struct case_page *page)
     gnuplot_set(g, "%s", metre);
     gnuplot_panel(g, 200, "");
     gnuplot_axis(g, 'y', PLOT_LINEAR, height, "height", "m");
-    const int contacts = figure_names(g, c->scenario.scene);
+    const int contacts = figure_names(g, c->scenario->scene);
     gnuplot_series(g, "using 1:($2 > 0 ? y1_high : y1_low) with lines dt 3 lw 1 lc rgb 0x606060");
     for (size_t k = 0; k < page->marks; k++) {
         GNUPLOT_ROW(g, page->mark[k], 0);

@@ -96,12 +96,8 @@ static int choose_axes(const struct results *r, const struct sensitivity_request
 
 bool sensitivity_study_fits(const struct results *r)
 {
-    struct scenario s;
-    if (r->sample < 0 || !results_scenario(r, &s))
-        return false;
-    const bool fits = s.sample.given && s.sample.design.method != DOE_SPHERE && !r->other_points;
-    scenario_free(&s);
-    return fits;
+    return r->sample >= 0 && r->read && r->read->sample.given &&
+           r->read->sample.design.method != DOE_SPHERE && !r->other_points;
 }
 
 /* The scenario of the file, whose design must be the one that the file's axes say. */
@@ -113,9 +109,8 @@ static int read_design(struct sensitivity_study *study, stance_message *message)
                       "has no sampled factors: its scenario needs sweep.sample "
                       "(stance describe sweep.sample)");
     }
-    struct scenario *s = calloc(1, sizeof *s);
-    if (!s || !results_scenario(r, s)) {
-        free(s);
+    const struct scenario *const s = r->read;
+    if (!s) {
         complain(message, "%.150s: its scenario cannot be read by this version", r->file);
         return EXIT_IO;
     }
@@ -357,6 +352,5 @@ void sensitivity_study_free(struct sensitivity_study *study)
     free(study->table);
     free(study->order);
     response_free(&study->response);
-    scenario_drop(study->scenario);
     *study = (struct sensitivity_study){0};
 }

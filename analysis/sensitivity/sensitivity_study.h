@@ -39,7 +39,7 @@ struct sensitivity_table {
 struct sensitivity_study {
     const struct results *r;
     struct sensitivity_request request; /* `of` resolved */
-    struct scenario *scenario;
+    const struct scenario *scenario;
     const struct doe *design; /* of the scenario */
     size_t block, factors;
     struct response response;

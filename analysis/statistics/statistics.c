@@ -213,32 +213,22 @@ bool statistics_inferred(const struct results *r, uint64_t *count, bool **which,
                          stance_message *message)
 {
     double *evidence = NULL;
-    bool *flag = NULL;
-    struct scenario s;
     *count = 0;
     if (which)
         *which = NULL;
-    if (r->single || !results_scenario(r, &s))
+    if (r->single)
         return true;
-    const bool refined = s.refine.given;
-    scenario_free(&s);
-    if (!refined)
-        return true;
-    bool good = results_answer(r, "evidence", &evidence, message);
-    if (good && which && !(flag = calloc(r->cases, sizeof *flag))) {
-        statistics_no_memory(r, message);
-        good = false;
-    }
-    for (uint64_t i = 0; good && evidence && i < r->cases; i++) {
-        bool inferred = evidence[i] == STANCE_INFERRED;
-        *count += inferred;
-        if (flag)
-            flag[i] = inferred;
-    }
+    if (!results_answer(r, "evidence", &evidence, message))
+        return false;
+    for (uint64_t i = 0; evidence && i < r->cases; i++)
+        *count += evidence[i] == STANCE_INFERRED;
+    bool *const flag = which && *count > 0 ? malloc(r->cases * sizeof *flag) : NULL;
+    for (uint64_t i = 0; flag && i < r->cases; i++)
+        flag[i] = evidence[i] == STANCE_INFERRED;
     free(evidence);
     if (which)
         *which = flag;
-    return good;
+    return !which || *count == 0 || flag || statistics_no_memory(r, message);
 }
 
 bool statistics_no_memory(const struct results *r, stance_message *message)

@@ -96,12 +96,10 @@ static bool collect(struct summary *summary, struct table *csv)
 
 static int summarise(struct report *report, const struct results *r, stance_message *message)
 {
-    struct scenario s;
     struct table csv = {0};
-    const bool readable = results_scenario(r, &s);
     struct summary summary = {.r = r,
-                              .s = readable ? &s : NULL,
-                              .judged = readable ? summary_judged(&s) : RESULTS_STABILISED,
+                              .s = r->read,
+                              .judged = r->read ? summary_judged(r->read) : RESULTS_STABILISED,
                               .facts = json_object(),
                               .message = message};
     statistics_count(r, -1, 0, &summary.counts);
@@ -112,8 +110,6 @@ static int summarise(struct report *report, const struct results *r, stance_mess
         good = table_say(report->form, json_incref(summary.facts), text, &csv);
     table_free(&csv);
     json_decref(summary.facts);
-    if (readable)
-        scenario_free(&s);
     return good ? EXIT_DONE : EXIT_IO;
 }
 

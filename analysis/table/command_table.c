@@ -82,14 +82,11 @@ static bool add_parameter(struct listing *t, const char *path, int axis)
 static bool find_parameters(struct listing *t, stance_message *message)
 {
     const struct results *r = t->r;
-    struct scenario s;
+    const struct scenario *const s = r->single ? NULL : r->read;
     bool good = true;
-    if (r->single || !results_scenario(r, &s))
-        return true;
-    for (int a = 0; a < s.axes && a < r->axes; a++)
-        for (int k = 1; good && !s.axis[a].sample && k < s.axis[a].paths; k++)
-            good = t->parameters == MOST_PATHS || add_parameter(t, s.axis[a].path[k], a);
-    scenario_free(&s);
+    for (int a = 0; s && a < s->axes && a < r->axes; a++)
+        for (int k = 1; good && !s->axis[a].sample && k < s->axis[a].paths; k++)
+            good = t->parameters == MOST_PATHS || add_parameter(t, s->axis[a].path[k], a);
     return good || no_memory(message);
 }
 

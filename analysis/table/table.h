@@ -130,6 +130,21 @@ void table_end_row(struct table *t); /* of facts */
 #define TABLE_COLUMNS(t, ...) table_columns(t, TABLE_LIST(table_column, __VA_ARGS__))
 #define TABLE_VALUES(t, ...) table_values(t, TABLE_LIST(table_value, __VA_ARGS__))
 #define TABLE_FACTS(t, ...) table_facts(t, TABLE_LIST(table_fact, __VA_ARGS__))
+/* What is said of something may be listed once, a row a fact, from which come its values and its
+ * keys in -h (struct say_key); the values stand where they are at hand:
+ *
+ *   #define ROW(X)                                                                             \
+ *       X("cases", "", as_whole(row->cases), "cases", .width = 10)                             \
+ *       X("lost", "of these, null: unknown", as_number(row->lost), "lost", "%.3f %%")
+ *
+ *   TABLE_FACTS(&t, ROW(TABLE_FACT)), or TABLE_OBJECT(ROW(TABLE_MEMBER)) of what is no table
+ *   static const struct say_key keys[] = {ROW(TABLE_KEY){0}};
+ *
+ * X(name, text, value, what the column is behind its name). Text NULL: JSON has no such key. */
+#define TABLE_FACT(key, text, value, ...) {{.name = key, __VA_ARGS__}, value},
+#define TABLE_MEMBER(key, text, value, ...) {key, value},
+#define TABLE_KEY(key, text, ...) {key, text, NULL},
+#define TABLE_KEY_AT {"at", "{path: value}", NULL}, /* of table_axes */
 /* The values of some axes at one point[] of all axes; programs find them in JSON's object `at`. */
 void table_axes(struct table *t, const struct results *r, const int *axis, int count,
                 const size_t *point);

@@ -23,7 +23,7 @@ struct page {
     FILE *out, *more; /* see page_data_write */
     const struct results *r;
     const struct page_request *request;
-    struct scenario scenario;
+    struct scenario *scenario; /* whose cases are the file's; NULL: there is none */
     struct plan plan;
     json_t *head, *blocks, *left_out;
     double bytes; /* of answers so far */
@@ -84,7 +84,7 @@ static void put_axes(struct page *p)
  * follow from the scenario to the last bit everywhere. */
 static bool put_axis_values(struct page *p)
 {
-    struct scenario *const s = &p->scenario;
+    struct scenario *const s = p->scenario;
     bool good = true;
     for (int a = 0; a < s->axes && good && !p->r->single; a++) {
         struct scenario_axis *const axis = &s->axis[a];
@@ -107,7 +107,7 @@ static bool put_designs(struct page *p)
     struct plan *const plan = &p->plan;
     struct plan_error error;
     struct store *store = NULL;
-    if (!plan_make(plan, &p->scenario, p->r->single, p->r->index, false, &error)) {
+    if (!plan_make(plan, p->scenario, p->r->single, p->r->index, false, &error)) {
         *p->message = error.message;
         return false;
     }
@@ -144,14 +144,14 @@ static bool put_stored(struct page *p)
  * and the page shows what the file holds. */
 static bool put_law(struct page *p)
 {
-    const struct law_file *const law = &p->scenario.law;
+    const struct law_file *const law = &p->scenario->law;
     const struct program_text text = {
         .file = law->name, .source = law->source, .data = law->data, .count = law->data_count};
     struct image image;
     stance_message why;
     if (!law->source)
         return true;
-    if (!program_for_page(&text, p->scenario.scene, &image, &why)) {
+    if (!program_for_page(&text, p->scenario->scene, &image, &why)) {
         fprintf(stderr,
                 "stance view: the page shows what is in the file and simulates nothing: %s\n",
                 why.text);
@@ -166,13 +166,13 @@ static bool put_law(struct page *p)
 static bool put_engine(struct page *p)
 {
     char *const wire = page_wire(p->r->scenario);
-    const bool known = wire && (p->r->single ? results_scenario(p->r, &p->scenario)
-                                             : results_swept(p->r, &p->scenario, p->message));
-    table_put(p->head, "wire", as_text(known ? wire : NULL));
+    if (wire && (p->r->single || results_swept(p->r, p->message)))
+        p->scenario = p->r->read;
+    table_put(p->head, "wire", as_text(p->scenario ? wire : NULL));
     free(wire);
-    if (!known)
+    if (!p->scenario)
         return true;
-    const stance_scene *const scene = p->scenario.scene;
+    const stance_scene *const scene = p->scenario->scene;
     size_t size;
     const stance_kernel *const kernel = stance_kernel_find(scene, stance_methods()[0], NULL);
     const uint8_t *const engine = put_law(p) ? page_engine(kernel->structure, &size) : NULL;
@@ -215,9 +215,9 @@ static bool put_checksums(struct page *p)
 static json_t *answer_words(const struct page *p, int answer)
 {
     const char *word[STANCE_MAX_WORDS];
-    if (answer == STANCE_ANSWER_fall_cause && !p->scenario.scene)
+    if (answer == STANCE_ANSWER_fall_cause && !p->scenario)
         return NULL;
-    const int words = stance_answer_words(p->scenario.scene, answer, word);
+    const int words = stance_answer_words(p->scenario ? p->scenario->scene : NULL, answer, word);
     return table_list(words ? word : NULL, (size_t)words);
 }
 
@@ -365,7 +365,6 @@ bool page_data_write(FILE *out, FILE *more, const struct results *r,
     }
     json_decref(p->head), json_decref(p->blocks), json_decref(p->left_out);
     plan_free(&p->plan);
-    scenario_free(&p->scenario);
     free(p);
     return good;
 }

@@ -122,12 +122,13 @@ static void advance_free(struct advance *a)
     (void)a;
 }
 
-/* What happens from one motion to another, a time h later, between both. */
-COLD void capture_inside(const struct setting *set, const struct motion *from,
-                         const struct motion *to, lanes h, mask where, struct step_report *report)
+/* What happens in a step that ends in *to, between its ends. */
+COLD void capture_inside(const struct step *step, const struct motion *to, mask where,
+                         struct step_report *report)
 {
+    const struct motion *const from = step->from;
     const struct inside_way way = {
-        set, {from->s, to->s}, {from->w, to->w}, {&from->trig, &to->trig}, from->t, h};
+        step->set, {from->s, to->s}, {from->w, to->w}, {&from->trig, &to->trig}, from->t, step->h};
     inside_watch(&way, where, report);
 }
 
@@ -161,13 +162,21 @@ static inline mask capture_strikes(const struct setting *set, const struct motio
     return LANES_NOT(lost);
 }
 
-/* The interval of length h by the implicit law, in one step and in two. *next and *report are
- * those of the two; returns the lanes where both agree to the tolerance, or `instant` holds. */
-static inline mask capture_implicit(const struct setting *set, const struct motion *now,
-                                    const lanes *stood, const lanes *torque, lanes h, mask run,
-                                    bool coupled, lanes tolerance, lanes acceleration, mask instant,
-                                    struct motion *next, struct step_report *report)
+/* What a crossing is judged by. */
+struct capture_bounds {
+    lanes tolerance, acceleration;
+    mask brief;   /* no velocity changes by more than the tolerance ... */
+    mask instant; /* ... and nothing moves */
+};
+
+/* An interval by the implicit law, in one step and in two. *next and *report are those of the two;
+ * returns the lanes where both agree to the tolerance, or nothing moves. */
+static inline mask capture_implicit(const struct step *interval, const lanes *stood, mask run,
+                                    const struct capture_bounds *bounds, struct motion *next,
+                                    struct step_report *report)
 {
+    const struct setting *const set = interval->set;
+    const struct motion *const now = interval->from;
     struct motion here = *now;
     motion_energy(set, &here);
     for (int c = 0; c < OWN_CONTACTS; c++) { /* any impulse of a contact that stands, or none */
@@ -177,21 +186,21 @@ static inline mask capture_implicit(const struct setting *set, const struct moti
     struct motion coarse = here, middle = here;
     struct step_report whole, half;
     struct setting law = *set;
-    const mask rebounds = capture_rebounds(set, now, h, acceleration);
+    const mask rebounds = capture_rebounds(set, now, interval->h, bounds->acceleration);
     for (int c = 0; c < OWN_CONTACTS; c++)
         law.restitution[c] = choose(rebounds, set->restitution[c], lanes_of(0));
     report_clear(report);
     *next = *now;
-    mask good =
-        take_step(&law, &here, torque, h, run, coupled, STEP_MAX_ITERATIONS, &coarse, &whole);
-    good &=
-        take_step(&law, &here, torque, 0.5 * h, good, coupled, STEP_MAX_ITERATIONS, &middle, &half);
-    const mask brief = mask_less_equal(acceleration * h, tolerance);
-    good &= brief | (capture_strikes(set, now, &whole) & capture_strikes(set, now, &half));
+    struct step step = *interval;
+    step.set = &law, step.from = &here;
+    mask good = take_step(&step, run, &coarse, &whole);
+    step.h = 0.5 * interval->h;
+    good &= take_step(&step, good, &middle, &half);
+    good &= bounds->brief | (capture_strikes(set, now, &whole) & capture_strikes(set, now, &half));
     report_add(report, &half);
     *next = middle;
-    good &=
-        take_step(&law, &middle, torque, 0.5 * h, good, coupled, STEP_MAX_ITERATIONS, next, &half);
+    step.from = &middle;
+    good &= take_step(&step, good, next, &half);
     report_add(report, &half);
     report->evaluations += whole.evaluations;
     lanes position = lanes_of(0), rate = lanes_of(0);
@@ -199,7 +208,7 @@ static inline mask capture_implicit(const struct setting *set, const struct moti
         position = lanes_max(lanes_abs(next->s[i] - coarse.s[i]), position);
         rate = lanes_max(lanes_abs(next->w[i] - coarse.w[i]), rate);
     }
-    return good & (instant | mask_less_equal(lanes_max(rate, position), tolerance));
+    return good & (bounds->instant | mask_less_equal(lanes_max(rate, position), bounds->tolerance));
 }
 
 /* Adds an attempt to the step's report: all of it where it was taken, its cost where it was not. */
@@ -231,26 +240,27 @@ static inline lanes capture_largest(const struct dynamics *e)
     return largest;
 }
 
-/* Smooth motion over `length` from *now in the lanes of `try`; *stuck: there is none. Returns the
- * lanes where *step is defined and inside the mode; its error estimate is still to be judged. */
-static inline mask capture_smooth(const struct setting *set, const struct motion *now,
-                                  const lanes *torque, lanes length, mask try, bool coupled,
-                                  lanes *stood, struct explicit_step *step, mask *stuck,
-                                  lanes *acceleration)
+/* Smooth motion over an interval in the lanes of `try`; *stuck: there is none. Returns the lanes
+ * where *step is defined and inside the mode; its error estimate is still to be judged. */
+static inline mask capture_smooth(const struct step *asked, mask try, lanes *stood,
+                                  struct explicit_step *step, mask *stuck, lanes *acceleration)
 {
+    const struct setting *const set = asked->set;
+    const struct motion *const now = asked->from;
     struct dynamics begin;
     struct contact_state mode;
     struct between_trouble trouble;
     const contact_set touching = step_touching(set, now->gap, LANES_ALL);
-    const struct drive drive = {torque, coupled, NULL};
-    between_evaluate(set, now->t, now->s, now->w, now->integral, &drive, touching, &begin);
+    const struct drive drive = {asked->torque, asked->coupled, NULL};
+    const struct state at = state_of(now);
+    between_evaluate(set, &at, &drive, touching, &begin);
     between_mode(set, &begin, touching, stood, &mode, &trouble);
     between_stands(&mode, stood);
     *acceleration = capture_largest(&begin);
     if (touching)
         between_solve(set, &mode, &begin);
     *acceleration = lanes_max(capture_largest(&begin), *acceleration);
-    explicit_take(set, now, torque, length, try, coupled, &mode, &begin, step);
+    explicit_take(asked, try, &mode, &begin, step);
     step->report.ambiguous_steps =
         choose(trouble.chosen, lanes_of(1), step->report.ambiguous_steps);
     step->report.unranked_steps = choose(trouble.unranked, lanes_of(1), lanes_of(0));
@@ -273,32 +283,31 @@ static inline lanes capture_size(const struct motion *now)
 
 /* Lanes of `run` that are at the beginning of a step which may be taken as a whole, with exactly
  * the contacts in `touching` closed, which all stood. */
-HOT mask capture_stands(contact_set touching, const struct advance *a, const struct setting *set,
-                        lanes h, mask run, const struct motion *now)
+HOT mask capture_stands(contact_set touching, const struct advance *a, const struct step *step,
+                        mask run)
 {
+    const struct setting *const set = step->set;
+    const lanes h = step->h;
     const lanes none = lanes_of(0);
     mask fit = run & mask_less_equal(a->wait, none) & mask_less_equal(a->hunting, none) &
                mask_less_equal(a->done, none) & mask_less_equal(h, a->part) &
                mask_less_equal(h, scene_longest_step(&set->body));
     EACH_CONTACT (c, 0) {
         const mask closed = mask_less(none, set->may_touch[c]) &
-                            mask_less_equal(now->gap[c], lanes_of(STEP_CLOSED));
+                            mask_less_equal(step->from->gap[c], lanes_of(STEP_CLOSED));
         fit &= touching >> c & 1 ? closed & mask_less(none, a->stood[c]) : LANES_NOT(closed);
     }
     return fit;
 }
 
 /* Tries a standing step in the lanes of `run`; returns those where *next and *report are its. */
-PER_SET mask capture_stand(contact_set touching, const struct advance *a, const struct setting *set,
-                           const lanes *torque, bool coupled, lanes h, mask run,
-                           const struct motion *now, struct motion *next,
-                           struct step_report *report)
+PER_SET mask capture_stand(contact_set touching, const struct advance *a, const struct step *step,
+                           mask run, struct motion *next, struct step_report *report)
 {
     lanes error;
     const mask anew = run & mask_less_equal(lanes_of(TRIG_TURNS), a->turns);
-    const mask good =
-        standing_take(touching, set, now, torque, coupled, h, run, anew, next, report, &error);
-    return good & mask_less_equal(error, a->tolerance * capture_size(now));
+    const mask good = standing_take(touching, step, run, anew, next, report, &error);
+    return good & mask_less_equal(error, a->tolerance * capture_size(step->from));
 }
 /* Such a step was taken in the lanes of m. */
 HOT void capture_stood(struct advance *a, mask m)
@@ -309,42 +318,37 @@ HOT void capture_stood(struct advance *a, mask m)
 }
 
 /* What it did between its ends, where that may count. */
-HOT void capture_watch(const struct advance *a, const struct setting *set, const struct motion *now,
-                       const struct motion *next, lanes h, mask good, struct step_report *report)
+HOT void capture_watch(const struct advance *a, const struct step *step, const struct motion *next,
+                       mask good, struct step_report *report)
 {
     const mask watched = good & mask_less(lanes_of(0), a->near);
     if (mask_any(watched))
-        capture_inside(set, now, next, h, watched, report);
+        capture_inside(step, next, watched, report);
 }
 
 /* Compiled for sets of contacts, and for any. */
 #define CAPTURE_STAND(name, there, touching)                                                       \
-    COLD mask capture_##name(const struct advance *a, const struct setting *set,                   \
-                             const lanes *torque, bool coupled, lanes h, mask run,                 \
-                             const struct motion *now, struct motion *next,                        \
-                             struct step_report *report)                                           \
+    COLD mask capture_##name(const struct advance *a, const struct step *step, mask run,           \
+                             struct motion *next, struct step_report *report)                      \
     {                                                                                              \
-        if (!(there))                                                                              \
-            return MASK_NONE;                                                                      \
-        return capture_stand(touching, a, set, torque, coupled, h, run, now, next, report);        \
+        return (there) ? capture_stand(touching, a, step, run, next, report) : MASK_NONE;          \
     }
 CONTACT_SETS(CAPTURE_STAND)
-COLD mask capture_any(contact_set touching, const struct advance *a, const struct setting *set,
-                      const lanes *torque, bool coupled, lanes h, mask run,
-                      const struct motion *now, struct motion *next, struct step_report *report)
+COLD mask capture_any(contact_set touching, const struct advance *a, const struct step *step,
+                      mask run, struct motion *next, struct step_report *report)
 {
-    return capture_stand(touching, a, set, torque, coupled, h, run, now, next, report);
+    return capture_stand(touching, a, step, run, next, report);
 }
-HOT mask capture_take(contact_set touching, const struct advance *a, const struct setting *set,
-                      const lanes *torque, bool coupled, lanes h, mask run,
-                      const struct motion *now, struct motion *next, struct step_report *report)
+HOT mask capture_take(contact_set touching, const struct advance *a, const struct step *step,
+                      mask run, struct motion *next, struct step_report *report)
 {
+    const struct step same = *step; /* a copy: what is passed by address has to stay in memory */
 #define TRY(name, there, contacts)                                                                 \
     if ((there) && touching == (contacts))                                                         \
-        return capture_##name(a, set, torque, coupled, h, run, now, next, report);
+        return capture_##name(a, &same, run, next, report);
     CONTACT_SETS(TRY)
 #undef TRY
-    return capture_any(touching, a, set, torque, coupled, h, run, now, next, report);
+    return capture_any(touching, a, &same, run, next, report);
 }
 
 /* One standing step of all lanes; false: it is none in some, and nothing has happened. */
@@ -353,45 +357,44 @@ static bool advance_was_ordinary(const struct advance *a, int lane)
 {
     return lane_get(&a->ordinary, lane) > 0;
 }
-HOT bool advance_ordinary(struct advance *a, const struct setting *set, const lanes *torque,
-                          bool coupled, lanes h, mask live, contact_set touching,
-                          struct motion *now, struct step_report *report)
+HOT bool advance_ordinary(struct advance *a, const struct step *step, mask live,
+                          contact_set touching, struct motion *now, struct step_report *report)
 {
     struct motion next;
-    if (mask_any(live & LANES_NOT(capture_stands(touching, a, set, h, live, now))))
+    if (mask_any(live & LANES_NOT(capture_stands(touching, a, step, live))))
         return false;
-    const mask good = capture_take(touching, a, set, torque, coupled, h, live, now, &next, report);
+    const mask good = capture_take(touching, a, step, live, &next, report);
     if (mask_any(live & LANES_NOT(good)))
         return false;
-    capture_watch(a, set, now, &next, h, live, report);
+    capture_watch(a, step, &next, live, report);
     *now = next;
     capture_stood(a, live);
     return true;
 }
 
 /* Standing steps in the lanes of `run` where there are such; returns them. */
-COLD mask capture_standing(struct advance *a, const struct setting *set, const lanes *torque,
-                           bool coupled, lanes h, mask run, struct motion *now,
-                           struct step_report *report)
+COLD mask capture_standing(struct advance *a, const struct step *asked, mask run,
+                           struct motion *now, struct step_report *report)
 {
     mask done = MASK_NONE, tried = MASK_NONE, left = run;
     struct motion from = *now, next;
+    struct step step = *asked;
+    step.from = &from;
     struct step_report part;
     for (int lane = 0; lane < LANES && mask_any(left); lane++) {
         if (!mask_get(left, lane))
             continue;
         contact_set touching = 0;
         EACH_CONTACT (c, 0)
-            if (lane_get(&set->may_touch[c], lane) > 0 &&
+            if (lane_get(&step.set->may_touch[c], lane) > 0 &&
                 lane_get(&from.gap[c], lane) <= STEP_CLOSED)
                 touching |= contact_with(c);
-        const mask fit = capture_stands(touching, a, set, h, left, &from);
+        const mask fit = capture_stands(touching, a, &step, left);
         left &= LANES_NOT(fit | mask_of_lane(lane));
         if (!mask_any(fit))
             continue;
-        const mask good =
-            capture_take(touching, a, set, torque, coupled, h, fit, &from, &next, &part);
-        capture_watch(a, set, &from, &next, h, good, &part);
+        const mask good = capture_take(touching, a, &step, fit, &next, &part);
+        capture_watch(a, &step, &next, good, &part);
         choose_all(good, &next, now, sizeof next);
         choose_all(good, &part, report, sizeof part);
         tried |= fit;
@@ -409,11 +412,11 @@ COLD mask capture_standing(struct advance *a, const struct setting *set, const l
 
 /* One attempt in every lane: at a smooth step and, over an interval known to hold an event, at the
  * implicit law. */
-static inline mask capture_attempt(struct advance *a, const struct setting *set,
-                                   const lanes *torque, lanes h, mask live, bool coupled,
+static inline mask capture_attempt(struct advance *a, const struct step *whole, mask live,
                                    struct motion *now, struct step_report *report, mask *failed)
 {
-    const lanes none = lanes_of(0), one = lanes_of(1);
+    const struct setting *const set = whole->set;
+    const lanes none = lanes_of(0), one = lanes_of(1), h = whole->h;
     const lanes tolerance = a->tolerance * capture_size(now);
     const lanes left = h - a->done;
     const mask hunt = live & mask_less(none, a->hunting);
@@ -426,8 +429,9 @@ static inline mask capture_attempt(struct advance *a, const struct setting *set,
     a->attempts += choose(live, one, none);
     lanes acceleration, stood[CONTACTS];
     memcpy(stood, a->stood, sizeof stood);
-    const mask inside = capture_smooth(set, now, torque, length, live, coupled, stood, &step,
-                                       &stuck, &acceleration);
+    struct step part_of = *whole;
+    part_of.h = length;
+    const mask inside = capture_smooth(&part_of, live, stood, &step, &stuck, &acceleration);
     const mask event = live & LANES_NOT(inside);
     const mask brief = mask_less_equal(acceleration * interval, tolerance);
     const mask chatters = mask_less_equal(lanes_of(CAPTURE_CHATTER), a->crossings);
@@ -436,12 +440,13 @@ static inline mask capture_attempt(struct advance *a, const struct setting *set,
         struct motion next;
         struct step_report over;
         const lanes fastest = lanes_max(acceleration, capture_size(now));
-        const mask instant =
-            stuck & mask_less_equal(fastest * interval, CAPTURE_INSTANT * tolerance);
-        if (coupled) /* a decoupling law is held over the crossing */
-            torque = step.torque;
-        crossed = capture_implicit(set, now, a->stood, torque, interval, cross, coupled, tolerance,
-                                   acceleration, instant, &next, &over);
+        const struct capture_bounds bounds = {
+            tolerance, acceleration, brief,
+            stuck & mask_less_equal(fastest * interval, CAPTURE_INSTANT * tolerance)};
+        if (whole->coupled) /* a decoupling law is held over the crossing */
+            part_of.torque = step.torque;
+        part_of.h = interval;
+        crossed = capture_implicit(&part_of, a->stood, cross, &bounds, &next, &over);
         over.events = choose(crossed, one, none);
         law_integrate(&set->law, crossed, interval, step.integral_rate, next.integral);
         choose_all(crossed, &next, now, sizeof next);
@@ -452,7 +457,8 @@ static inline mask capture_attempt(struct advance *a, const struct setting *set,
     /* What a dip hides in so short a step changes no velocity by more than the tolerance. */
     const mask seen = LANES_NOT(step.dipped) | mask_less_equal(acceleration * length, tolerance);
     const mask good = inside & smooth & seen & mask_less_equal(step.error, tolerance);
-    capture_inside(set, now, &step.end, length, good, &step.report);
+    part_of.h = length;
+    capture_inside(&part_of, &step.end, good, &step.report);
     choose_all(good, &step.end, now, sizeof step.end);
     capture_add(a, good, live, &step.report);
     for (int c = 0; c < OWN_CONTACTS; c++)
@@ -489,18 +495,17 @@ static inline mask capture_attempt(struct advance *a, const struct setting *set,
 }
 
 /* One attempt in every lane, at what is ordinary first. */
-static inline mask advance(struct advance *a, const struct setting *set, const lanes *torque,
-                           lanes h, mask live, bool coupled, struct motion *now,
-                           struct step_report *report, mask *failed)
+static inline mask advance(struct advance *a, const struct step *step, mask live,
+                           struct motion *now, struct step_report *report, mask *failed)
 {
     struct step_report told;
     report_clear(&told);
     *failed = MASK_NONE;
-    const mask stood = capture_standing(a, set, torque, coupled, h, live, now, &told);
+    const mask stood = capture_standing(a, step, live, now, &told);
     const mask rest = live & LANES_NOT(stood);
     mask arrived = MASK_NONE;
     if (mask_any(rest))
-        arrived = capture_attempt(a, set, torque, h, rest, coupled, now, report, failed);
+        arrived = capture_attempt(a, step, rest, now, report, failed);
     choose_all(stood, &told, report, sizeof told);
     return arrived | stood;
 }

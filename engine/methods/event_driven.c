@@ -449,8 +449,8 @@ static stance_failure event_begin(struct advance *a, struct event_point *p, stru
         bool below = false;
         const contact_set touching = step_touching(a->problem.set, now->gap, LANES_ALL);
         const struct drive drive = {a->problem.torque, a->problem.coupled, NULL};
-        between_evaluate(a->problem.set, a->problem.begin + p->tau, s, w, p->y + EVENT_INTEGRAL,
-                         &drive, touching, &p->e);
+        const struct state at = {a->problem.begin + p->tau, s, w, p->y + EVENT_INTEGRAL};
+        between_evaluate(a->problem.set, &at, &drive, touching, &p->e);
         between_mode(a->problem.set, &p->e, touching, a->stood, &m->contact, &trouble);
         a->problem.evaluations++;
         for (int c = 0; c < OWN_CONTACTS; c++)
@@ -509,7 +509,7 @@ static void event_report(const struct advance *a, const struct event_point *p,
         report->impulse[c][1] += p->y[EVENT_IMPULSE + 2 * c + 1];
         report->slip[c] = p->y[EVENT_SLIDE + c];
         report_residuals(report, c, a->problem.mode.contact.closed, a->problem.set->friction,
-                         (const double(*)[2])p->e.force, p->e.u[c]);
+                         p->e.force, p->e.u[c]);
     }
     for (int i = 0; i < SCENE_ACTUATORS; i++)
         report->torque[i] = p->e.torque[i];
@@ -517,16 +517,16 @@ static void event_report(const struct advance *a, const struct event_point *p,
 }
 
 /* The whole step, or what of it there is up to an impact. */
-static inline mask advance(struct advance *a, const struct setting *set, const lanes *torque,
-                           lanes h, mask live, bool coupled, struct motion *now,
-                           struct step_report *report, mask *failed)
+static inline mask advance(struct advance *a, const struct step *step, mask live,
+                           struct motion *now, struct step_report *report, mask *failed)
 {
+    const double h = step->h;
     report_clear(report);
     a->report = report;
     *failed = false;
     if (!live)
         return false;
-    const double longest = fmin(EVENT_LONGEST, scene_longest_step(&set->body));
+    const double longest = fmin(EVENT_LONGEST, scene_longest_step(&step->set->body));
     stance_failure failure =
         event_create(a, longest) ? STANCE_FAILURE_NONE : STANCE_FAILURE_TOLERANCE;
     struct event_point *const here = &a->here;
@@ -542,9 +542,9 @@ static inline mask advance(struct advance *a, const struct setting *set, const l
         a->problem.evaluations = a->attempts = a->events = 0;
     }
     a->within = false;
-    a->problem.set = set;
-    a->problem.torque = torque;
-    a->problem.coupled = coupled;
+    a->problem.set = step->set;
+    a->problem.torque = step->torque;
+    a->problem.coupled = step->coupled;
     a->most = EVENT_ATTEMPTS + 4 * h / longest;
     enum event_result result = EVENT_ON;
     for (; failure == STANCE_FAILURE_NONE && result != EVENT_ARRIVED; a->events++) {

@@ -68,11 +68,11 @@ static void advance_free(struct advance *a)
 }
 
 /* One attempt in every lane. */
-static inline mask advance(struct advance *a, const struct setting *set, const lanes *torque,
-                           lanes h, mask live, bool coupled, struct motion *now,
-                           struct step_report *report, mask *failed)
+static inline mask advance(struct advance *a, const struct step *asked, mask live,
+                           struct motion *now, struct step_report *report, mask *failed)
 {
-    const lanes none = lanes_of(0), one = lanes_of(1);
+    const struct setting *const set = asked->set;
+    const lanes none = lanes_of(0), one = lanes_of(1), h = asked->h;
     const lanes left = h - a->done;
     /* Halves add up to the step but for rounding: what is left of it then is no interval. */
     const lanes interval = choose(mask_less(a->part, left - LAGRANGE_SMALLEST * h), a->part, left);
@@ -84,12 +84,15 @@ static inline mask advance(struct advance *a, const struct setting *set, const l
     struct between_trouble trouble;
     struct explicit_step step;
     const contact_set touching = step_touching(set, now->gap, LANES_ALL);
-    const struct drive drive = {torque, coupled, NULL};
-    between_evaluate(set, now->t, now->s, now->w, now->integral, &drive, touching, &begin);
+    const struct drive drive = {asked->torque, asked->coupled, NULL};
+    const struct state at = state_of(now);
+    struct step part = *asked;
+    part.h = length;
+    between_evaluate(set, &at, &drive, touching, &begin);
     between_mode(set, &begin, touching, a->stood, &mode, &trouble);
     if (touching)
         between_solve(set, &mode, &begin);
-    explicit_take(set, now, torque, length, live, coupled, &mode, &begin, &step);
+    explicit_take(&part, live, &mode, &begin, &step);
 
     const mask painleve = live & (trouble.none | trouble.several) & LANES_NOT(trouble.impact);
     const mask able = live & LANES_NOT(painleve | trouble.impact | step.bad);

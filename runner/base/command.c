@@ -1,6 +1,7 @@
 /* command.c - options of the commands. */
 #include "command.h"
 #include "problem.h"
+#include "say.h"
 #include "units.h"
 #include "words.h"
 
@@ -250,6 +251,19 @@ static void print_paragraphs(const char *text)
         print_text(text, 0);
 }
 
+static void print_keys(const struct say_key *keys)
+{
+    char *text = NULL;
+    size_t size;
+    FILE *const to = keys ? open_memstream(&text, &size) : NULL;
+    if (!to)
+        return;
+    say_keys(keys, to);
+    fclose(to);
+    print_text(text, 0);
+    free(text);
+}
+
 static void print_help(const struct table *t)
 {
     bool above = false; /* an option: they stand together */
@@ -269,6 +283,8 @@ static void print_help(const struct table *t)
         above = option || t->row[i].option->text[0] == ' ';
     }
     print_paragraphs(t->command->after);
+    for (size_t i = 0; i < t->rows; i++)
+        print_keys(t->row[i].option->keys);
 }
 
 void command_print_rows(const struct command *command)

@@ -41,6 +41,8 @@ enum option_kind {
                      double: OPTION_NUMBER, int: OPTION_WORD, unsigned: OPTION_WORD,                \
                      default: OPTION_READ)
 
+struct say_key;
+
 /* A row of a command's table, of which all is made that is known of an option: parsing, what is
  * said of mistakes, -h, completion and manual pages.
  *
@@ -63,6 +65,7 @@ struct option {
     const char *needs;          /* ... and with at least one of these */
     const struct option *rows;  /* others stand here, whose members count from `at` */
     const struct command *part; /* first of all: "bench plot" of "bench", which "plot" leads to */
+    const struct say_key *keys; /* of --json: what it gives (say.h), which -h ends with */
     const char *text; /* what -h says, see struct command; of operands: what must be given */
 };
 

@@ -179,6 +179,39 @@ void say_add(json_t *facts, const char *key, const char *format, ...)
     json_decref(more);
 }
 
+/* ---- keys --------------------------------------------------------------------------------- */
+
+static void put_keys(const struct say_key *key, bool inner, FILE *out)
+{
+    const char *const line = inner ? ", " : "\n    ", *before = inner ? "" : "    ";
+    for (; key->name || key->text; key++) {
+        if (key->name && !key->text)
+            continue;
+        const bool consists = key->text[0] == '[' || key->text[0] == '{';
+        if (!key->name) {
+            fprintf(out, "%s  %s", before[0] == ' ' ? "" : "\n", key->text);
+        } else if (key->of) {
+            fprintf(out, "%s%s%s[{", before[0] == ',' ? line : before, key->name,
+                    inner ? ": " : "    ");
+            put_keys(key->of, true, out);
+            fprintf(out, "}]%s%s", key->text[0] ? "; " : "", key->text);
+        } else {
+            fprintf(out, "%s%s%s%s%s", before, key->name,
+                    consists       ? ": "
+                    : key->text[0] ? " ("
+                                   : "",
+                    key->text, consists || !key->text[0] ? "" : ")");
+        }
+        before = key->of || !key->name ? line : ", ";
+    }
+}
+
+void say_keys(const struct say_key *key, FILE *out)
+{
+    put_keys(key, false, out);
+    putc('\n', out);
+}
+
 /* ---- JSON --------------------------------------------------------------------------------- */
 
 static void drop_hidden(json_t *of)

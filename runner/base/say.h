@@ -24,6 +24,16 @@
 #include <stdbool.h>
 #include <stdio.h>
 
+/* A key of what programs get, for -h, which lists these where `struct command` names them. */
+struct say_key {
+    const char *name;         /* NULL: a line of its own, which says of what the next ones are */
+    const char *text;         /* "what it is", "[low, high]" of what it consists; "": its name says
+                               * it; NULL: it is not told, as columns of CSV alone */
+    const struct say_key *of; /* it is a list of objects with these keys; `text` goes behind */
+};
+/* Up to one without both: "a, b (what it is), c: [low, high]", lists in lines of their own. */
+void say_keys(const struct say_key *key, FILE *out);
+
 /* Adds to the end of a text among the facts, which is there or becomes so. */
 __attribute__((format(printf, 3, 4))) void say_add(json_t *facts, const char *key,
                                                    const char *format, ...);

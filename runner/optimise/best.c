@@ -24,15 +24,10 @@ static char *gains_text(const struct design_report *r)
                 r->K[i * r->states + j];
     if (!to)
         return NULL;
-    fputs("controller.gains=[", to);
-    for (int i = 0; i < r->inputs; i++)
-        for (int j = 0; j < columns; j++)
-            fprintf(to, "%s%.17g%s",
-                    j   ? ", "
-                    : i ? ", ["
-                        : "[",
-                    gain[i * columns + j], j + 1 < columns ? "" : "]");
-    fputs("]", to);
+    fputs("controller.gains=", to);
+    for (int k = 0; k < r->inputs * columns; k++)
+        fprintf(to, "%s%.17g", k % columns ? ", " : k ? "], [" : "[[", gain[k]);
+    fputs("]]", to);
     if (fclose(to) != 0) {
         free(text);
         return NULL;

@@ -1,9 +1,6 @@
 /* cma.c - evolution strategy with covariance matrix adaptation, see cma.h. */
 #include "cma.h"
 
-#include "bounds.h"
-#include "symmetric_eigen.h"
-
 #include <Random123/philox.h>
 #include <float.h>
 #include <gsl/gsl_cdf.h>
@@ -23,24 +20,120 @@ struct ranked {
     int candidate;
 };
 
-struct cma {
-    int n, lambda, better; /* better: candidates with a positive weight */
-    uint64_t seed, restart, generation;
-    double first_step, step;
-    /* Table 1 of the tutorial. */
-    double mu, c_step, damping, c_path, c_one, c_mu, weights, chi; /* weights: sum; chi: E|z| */
-    struct ranked *rank;
-    double *weight;                   /* [lambda] */
-    struct bounds *bounds;            /* [n] */
-    double *centre;                   /* [n]: of the normal distribution, without bounds */
-    double *mean;                     /* [n]: its image */
-    double *path, *path_step;         /* [n] */
-    double *axis;                     /* [n] */
-    double *covariance, *root, *back; /* [n][n]: C, C^(1/2), C^(-1/2) */
-    double *vector, *work;            /* [n][n] */
-    double *y;                        /* [lambda][n] */
-    double memory[];
-};
+/* ---- ranges ------------------------------------------------------------------------------------
+ */
+
+/* Whether u and x are the same there. */
+static bool plain(const struct bounds *b, double u)
+{
+    return b->low + b->margin <= u && u <= b->high - b->margin;
+}
+
+/* Of u from the nearest vertex of the lower bound, or of the upper one where it is the only one;
+ * then there is one vertex: remainder by infinity changes nothing. */
+static double from_vertex(const struct bounds *b, double u)
+{
+    const double vertex = isinf(b->low) ? b->high + b->margin : b->low - b->margin;
+    return remainder(u - vertex, 2 * (b->high - b->low + 2 * b->margin));
+}
+
+double bounds_image(const struct bounds *b, double u)
+{
+    if (plain(b, u))
+        return u;
+    const double d = fabs(from_vertex(b, u)), span = b->high - b->low, a = b->margin;
+    const double rest = span + 2 * a - d; /* to the other bound's vertex */
+    if (rest < 2 * a)
+        return b->high - fmin(rest * rest / (4 * a), span);
+    const double inward = d < 2 * a ? d * d / (4 * a) : d - a;
+    return isinf(b->low) ? b->high - inward : b->low + fmin(inward, span);
+}
+
+double bounds_preimage(const struct bounds *b, double x, double beside)
+{
+    if (bounds_image(b, beside) == x)
+        return beside;
+    if (plain(b, x) && plain(b, beside))
+        return x;
+    const double r = from_vertex(b, beside), span = b->high - b->low, a = b->margin;
+    const double inward = isinf(b->low) ? b->high - x : x - b->low;
+    double d = inward < a ? 2 * sqrt(a * inward) : inward + a;
+    if (b->high - x < a && !isinf(b->low))
+        d = span + 2 * a - 2 * sqrt(a * (b->high - x));
+    return beside - r + copysign(d, r);
+}
+
+/* ---- eigenvectors -----------------------------------------------------------------------------
+ */
+
+/* Convergence is quadratic: about ten are needed for n = 64. */
+enum { MOST_SWEEPS = 60 };
+
+/* The rotation of rows and columns p < q after which a[p][q] is 0. */
+static void rotate(int n, double *a, double *vector, int p, int q)
+{
+    double *const row_p = a + p * n, *const row_q = a + q * n;
+    const double off = row_p[q], app = row_p[p], aqq = row_q[q];
+    const double theta = (aqq - app) / (2 * off);
+    const double t = copysign(1 / (fabs(theta) + sqrt(theta * theta + 1)), theta);
+    const double c = 1 / sqrt(t * t + 1), s = t * c;
+
+    for (int k = 0; k < n; k++) {
+        const double g = row_p[k], h = row_q[k], v = vector[p * n + k], w = vector[q * n + k];
+        a[k * n + p] = row_p[k] = c * g - s * h;
+        a[k * n + q] = row_q[k] = s * g + c * h;
+        vector[p * n + k] = c * v - s * w;
+        vector[q * n + k] = s * v + c * w;
+    }
+    row_p[p] = app - t * off;
+    row_q[q] = aqq + t * off;
+    row_p[q] = row_q[p] = 0;
+}
+
+/* Whether anything was left to rotate. */
+static bool sweep(int n, double *a, double *vector)
+{
+    bool rotated = false;
+    for (int p = 0; p < n; p++) {
+        for (int q = p + 1; q < n; q++) {
+            const double beside = sqrt(fabs(a[p * n + p])) * sqrt(fabs(a[q * n + q]));
+            if (fabs(a[p * n + q]) > DBL_EPSILON / 2 * beside) {
+                rotate(n, a, vector, p, q);
+                rotated = true;
+            }
+        }
+    }
+    return rotated;
+}
+
+static void sort(int n, double *value, double *vector)
+{
+    for (int k = 0; k < n; k++) {
+        int least = k;
+        for (int i = k + 1; i < n; i++)
+            least = value[i] < value[least] ? i : least;
+        const double swapped = value[k];
+        value[k] = value[least];
+        value[least] = swapped;
+        for (int j = 0; j < n; j++) {
+            const double element = vector[k * n + j];
+            vector[k * n + j] = vector[least * n + j];
+            vector[least * n + j] = element;
+        }
+    }
+}
+
+void symmetric_eigen(int n, double *a, double *value, double *vector)
+{
+    memset(vector, 0, (size_t)n * n * sizeof *vector);
+    for (int k = 0; k < n; k++)
+        vector[k * n + k] = 1;
+    for (int i = 0; i < MOST_SWEEPS && sweep(n, a, vector); i++) {
+    }
+    for (int k = 0; k < n; k++)
+        value[k] = a[k * n + k];
+    sort(n, value, vector);
+}
 
 /* ---- the state ------------------------------------------------------------------------------- */
 
@@ -122,27 +215,25 @@ static void decompose(struct cma *s)
     }
 }
 
-static bool sensible(int n, int lambda, const double *mean, double step, const double *low,
-                     const double *high)
+static bool sensible(const struct cma_start *s)
 {
-    bool good = n >= 1 && n <= CMA_MAX_COORDINATES && lambda >= 2 && lambda <= CMA_MAX_CANDIDATES &&
-                step >= least_step && step <= most_step;
-    for (int j = 0; good && j < n; j++) {
-        good = fabs(mean[j]) <= farthest && low[j] <= mean[j] && mean[j] <= high[j] &&
-               high[j] - low[j] >= 1 / farthest && (isinf(low[j]) || low[j] >= -farthest) &&
-               (isinf(high[j]) || high[j] <= farthest);
+    bool good = s->n >= 1 && s->n <= CMA_MAX_COORDINATES && s->lambda != 1 && s->lambda >= 0 &&
+                s->lambda <= CMA_MAX_CANDIDATES && s->step >= least_step && s->step <= most_step;
+    for (int j = 0; good && j < s->n; j++) {
+        const double low = s->low[j], high = s->high[j];
+        good = fabs(s->mean[j]) <= farthest && low <= s->mean[j] && s->mean[j] <= high &&
+               high - low >= 1 / farthest && (isinf(low) || low >= -farthest) &&
+               (isinf(high) || high <= farthest);
     }
     return good;
 }
 
-struct cma *cma_make(int n, int lambda, const double *mean, double step, const double *low,
-                     const double *high, uint64_t seed, uint64_t restart)
+struct cma *cma_make(const struct cma_start *start)
 {
-    if (n >= 1 && lambda == 0)
-        lambda = cma_default_lambda(n);
-    if (!sensible(n, lambda, mean, step, low, high))
+    if (!sensible(start))
         return NULL;
-    const size_t of_n = (size_t)n, of_lambda = (size_t)lambda, matrix = of_n * of_n;
+    const int lambda = start->lambda > 0 ? start->lambda : cma_default_lambda(start->n);
+    const size_t of_n = (size_t)start->n, of_lambda = (size_t)lambda, matrix = of_n * of_n;
     const size_t numbers = of_lambda + 5 * of_n + 5 * matrix + of_lambda * of_n;
     struct cma *s = calloc(1, sizeof *s + numbers * sizeof *s->memory);
     if (s) {
@@ -162,16 +253,17 @@ struct cma *cma_make(int n, int lambda, const double *mean, double step, const d
         *matrices[i] = next;
     s->weight = next;
     s->y = next + of_lambda;
-    s->n = n;
+    s->n = start->n;
     s->lambda = lambda;
-    s->seed = seed;
-    s->restart = restart;
-    s->first_step = s->step = step;
-    memcpy(s->mean, mean, of_n * sizeof *mean);
-    for (int j = 0; j < n; j++) {
-        s->bounds[j] = (struct bounds){low[j], high[j], fmin(step, (high[j] - low[j]) / 4)};
-        s->centre[j] = bounds_preimage(&s->bounds[j], mean[j], mean[j]);
-        s->covariance[j * n + j] = 1;
+    s->seed = start->seed;
+    s->restart = start->restart;
+    s->first_step = s->step = start->step;
+    memcpy(s->mean, start->mean, of_n * sizeof *s->mean);
+    for (int j = 0; j < s->n; j++) {
+        const double low = start->low[j], high = start->high[j];
+        s->bounds[j] = (struct bounds){low, high, fmin(s->step, (high - low) / 4)};
+        s->centre[j] = bounds_preimage(&s->bounds[j], s->mean[j], s->mean[j]);
+        s->covariance[j * s->n + j] = 1;
     }
     confine(s);
     parameters(s);
@@ -354,34 +446,4 @@ enum cma_stop cma_stop(const struct cma *s)
     if (s->axis[s->n - 1] > sqrt(most_condition) * s->axis[0])
         return CMA_CONDITION;
     return s->step * s->axis[s->n - 1] > most_growth * s->first_step ? CMA_DIVERGED : CMA_GOES_ON;
-}
-
-int cma_lambda(const struct cma *s)
-{
-    return s->lambda;
-}
-
-uint64_t cma_generation(const struct cma *s)
-{
-    return s->generation;
-}
-
-const double *cma_mean(const struct cma *s)
-{
-    return s->mean;
-}
-
-double cma_step(const struct cma *s)
-{
-    return s->step;
-}
-
-const double *cma_covariance(const struct cma *s)
-{
-    return s->covariance;
-}
-
-const double *cma_axes(const struct cma *s)
-{
-    return s->axis;
 }

@@ -19,8 +19,8 @@
  * is one.
  *
  * Coordinates are in units of their own: that a step below 1e-3 is small is all that is said of
- * their size. Those with bounds are searched as bounds.h says, and no standard deviation gets above
- * a third of its range; m and C are those of the search, x and cma_mean within bounds.
+ * their size. Those with bounds are searched as struct bounds says, and no standard deviation gets
+ * above a third of its range; m and C are those of the search, x and cma_mean within bounds.
  *
  * The state is a function of what cma_make got and of the generations told, in their order: told
  * again, it is the same to the bit.
@@ -45,18 +45,44 @@ enum cma_stop {
     CMA_STOPS,
 };
 
-struct cma;
+/* What is searched from where. */
+struct cma_start {
+    int n, lambda;                   /* coordinates, 1 ... CMA_MAX_COORDINATES; candidates in a
+                                      * generation, 2 ... CMA_MAX_CANDIDATES, 0: the default */
+    const double *mean, *low, *high; /* [n]: mean within bounds, low < high; -INFINITY, INFINITY:
+                                      * none */
+    double step;                     /* > 0: the first one, C being 1 where a third of the range is
+                                      * not less */
+    uint64_t seed, restart; /* from which, and generation, candidate, coordinate, random numbers
+                             * follow */
+};
+
+struct cma {
+    int n, lambda, better; /* better: candidates with a positive weight */
+    uint64_t seed, restart;
+    uint64_t generation; /* how many were told */
+    double first_step, step;
+    /* Table 1 of the tutorial. */
+    double mu, c_step, damping, c_path, c_one, c_mu, weights, chi; /* weights: sum; chi: E|z| */
+    struct ranked *rank;
+    double *weight;           /* [lambda] */
+    struct bounds *bounds;    /* [n] */
+    double *centre;           /* [n]: of the normal distribution, without bounds */
+    double *mean;             /* [n]: its image, of the next generation */
+    double *path, *path_step; /* [n] */
+    double *axis;             /* [n]: square roots of C's eigenvalues, ascending: times step,
+                               * standard deviations along the axes */
+    double *covariance, *root, *back; /* [n][n]: C, C^(1/2), C^(-1/2) */
+    double *vector, *work;            /* [n][n] */
+    double *y;                        /* [lambda][n] */
+    double memory[];
+};
 
 /* 4 + floor(3 ln n). */
 int cma_default_lambda(int n);
 
-/* n: 1 ... CMA_MAX_COORDINATES. lambda: candidates in a generation, 2 ... CMA_MAX_CANDIDATES; 0:
- * the default. mean[n], within bounds. step > 0: the first one, C being 1 where a third of the
- * range is not less. low[n] < high[n]: bounds, -INFINITY and INFINITY: none. The random numbers
- * follow from seed and restart (and from generation, candidate, coordinate). NULL: out of memory,
- * or something of that is not so or beyond 1e100. */
-struct cma *cma_make(int n, int lambda, const double *mean, double step, const double *low,
-                     const double *high, uint64_t seed, uint64_t restart);
+/* NULL: out of memory, or something of the start is not as it says or beyond 1e100. */
+struct cma *cma_make(const struct cma_start *start);
 void cma_free(struct cma *cma);
 
 /* The candidates of this generation, x[lambda][n], within bounds. */
@@ -71,14 +97,43 @@ enum cma_stop cma_stop(const struct cma *cma);
 /* Of each reason a few words; of CMA_GOES_ON "". */
 extern const char *const cma_stop_words[CMA_STOPS];
 
-int cma_lambda(const struct cma *cma);
-/* Generations told. */
-uint64_t cma_generation(const struct cma *cma);
-/* The distribution of the next generation: mean[n], step, C[n][n], and the square roots of C's
- * eigenvalues, [n], ascending: times step, standard deviations along the axes. */
-const double *cma_mean(const struct cma *cma);
-double cma_step(const struct cma *cma);
-const double *cma_covariance(const struct cma *cma);
-const double *cma_axes(const struct cma *cma);
+/* ---- what it is made of ---------------------------------------------------------------------- */
+
+/* A range as the image of all real numbers.
+ *
+ * Where the best lies on a bound, a normal distribution that is cut or clipped there is repelled
+ * from it and loses its width before the other coordinates have arrived. So the search goes on in u
+ * without bounds, and x(u) is within them (as pycma does, N. Hansen). More than a margin from the
+ * bounds x is u; nearer it is a parabola with its vertex on the bound
+ *
+ *   x = low + (u - low + margin)^2 / (4 margin),    low - margin <= u <= low + margin
+ *
+ * and beyond the vertex, where u is low - margin or high + margin, the same mirrored, and so on.
+ * The slope of x(u) is continuous: what grows towards a bound has a smooth optimum in u.
+ *
+ * low < high; -INFINITY, INFINITY: none. margin: above 0, at most half of high - low. Finite ones
+ * up to 1e100. */
+struct bounds {
+    double low, high, margin;
+};
+
+/* x(u), low ... high. u finite. */
+double bounds_image(const struct bounds *b, double u);
+/* A number whose image is x, low ... high: `beside` if it is one, otherwise on the same side of all
+ * vertices. */
+double bounds_preimage(const struct bounds *b, double x, double beside);
+
+/* Eigenvalues and eigenvectors of a small symmetric matrix.
+ *
+ * Jacobi's method, cyclic by rows (Golub, Van Loan, Matrix Computations, 8.5): rotations in a fixed
+ * order, each makes one element off the diagonal zero, until all of them are negligible beside
+ * their diagonal elements. So small eigenvalues of a positive definite matrix that is badly scaled
+ * are accurate, too (Demmel, Veselic, SIAM J. Matrix Anal. Appl. 13, 1992). No library, no sum
+ * whose order a compiler chooses: the same bits everywhere.
+ *
+ * a[n][n], symmetric and finite, is overwritten. Row k of vector[n][n] is the eigenvector of length
+ * 1 that belongs to value[k]; ascending. Signs follow no rule. n >= 1; n = 64 takes some
+ * ms. */
+void symmetric_eigen(int n, double *a, double *value, double *vector);
 
 #endif

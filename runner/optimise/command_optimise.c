@@ -30,10 +30,9 @@ struct optimise {
     struct search_file origin; /* of a search that is gone on with, on rank 0 */
     bool resumes;
     struct search search;
-    bool made;
     double before; /* s that earlier parts of the search took */
     double save_at;
-    char doing[40];
+    char doing[80];
 };
 
 static struct optimise *of(struct run *run)
@@ -180,40 +179,33 @@ static void stage_claim(struct run *run)
 
 /* ---- signs of life -------------------------------------------------------------------------- */
 
-static void describe_work(struct optimise *o, char *text, size_t size)
-{
-    const struct search_file *const f = &o->search.record;
-    const size_t g = f->length[SEARCH_GENERATION];
-    if (f->length[SEARCH_CONFIRMED] > 0 && o->search.confirming)
-        snprintf(text, size, "fresh starts");
-    else if (g == 0)
-        snprintf(text, size, "first generation");
-    else
-        snprintf(text, size, "generation %zu of at most %zu, best %.4g", g + 1,
-                 o->search.generations, f->objective[f->best[g - 1]]);
-}
-
 /* Rank 0, about every millisecond. */
 static bool attend(void *context, double now)
 {
     struct optimise *const o = context;
     struct heartbeat *const h = &o->run.heartbeat;
-    const uint64_t candidates = o->search.record.length[SEARCH_CANDIDATE];
-    const double left = outlook_left(&o->search.outlook);
-    if (now >= h->due) {
-        describe_work(o, o->doing, sizeof o->doing);
-        h->doing = o->doing;
-        h->left = left;
-        if (!heartbeat_beat(h, now, candidates, candidates, 0, &o->run.message))
-            return !run_fail_io(&o->run);
-    }
-    if (progress_due(&o->run.progress, now)) {
-        char text[80], time[32];
-        describe_work(o, text, sizeof text);
-        text_of_seconds(time, sizeof time, left);
-        progress_say(&o->run.progress, "%s%s%s%s", text, left >= 0 ? "; at most about " : "",
-                     left >= 0 ? time : "", left >= 0 ? " left" : "");
-    }
+    const struct search_file *const f = &o->search.record;
+    const size_t g = f->length[SEARCH_GENERATION], candidates = f->length[SEARCH_CANDIDATE];
+    const bool says = progress_due(&o->run.progress, now);
+    if (now < h->due && !says)
+        return false;
+    if (o->search.confirming)
+        snprintf(o->doing, sizeof o->doing, "fresh starts");
+    else if (g == 0)
+        snprintf(o->doing, sizeof o->doing, "first generation");
+    else
+        snprintf(o->doing, sizeof o->doing, "generation %zu of at most %zu, best %.4g", g + 1,
+                 o->search.generations, f->objective[f->best[g - 1]]);
+    h->doing = o->doing;
+    h->left = outlook_left(&o->search.outlook);
+    if (!heartbeat_beat(h, now, candidates, candidates, 0, &o->run.message))
+        return !run_fail_io(&o->run);
+    char time[32] = "", left[64] = "";
+    text_of_seconds(time, sizeof time, h->left);
+    if (h->left >= 0)
+        snprintf(left, sizeof left, "; at most about %s left", time);
+    if (says)
+        progress_say(&o->run.progress, "%s%s", o->doing, left);
     return false;
 }
 
@@ -238,16 +230,12 @@ static void stage_make(struct run *run)
 {
     struct optimise *const o = of(run);
     const char *const text = run->parallel.rank == 0 ? o->asked->text : "";
-    if (!parallel_share(&run->parallel)) {
-        run_fail(run, EXIT_IO, "stance optimise: not enough memory");
-        return;
-    }
-    if (!search_make(&o->search, run->scenario, text, &run->parallel,
-                     o->resumes ? &o->origin : NULL, &run->message)) {
+    const bool good = parallel_share(&run->parallel) || no_memory(&run->message);
+    if (!good || !search_make(&o->search, run->scenario, text, &run->parallel,
+                              o->resumes ? &o->origin : NULL, &run->message)) {
         run_fail_io(run);
         return;
     }
-    o->made = true;
     struct trials *const trials = &o->search.trials;
     trials->quiet = run->options.quiet;
     trials->until = run->start + run->options.time_limit;
@@ -288,123 +276,118 @@ static void stage_search(struct run *run)
 
 /* ---- what came out -------------------------------------------------------------------------- */
 
+#define WARN(text, ...) fprintf(stderr, "stance optimise: warning: " text "\n", ##__VA_ARGS__)
+
 /* Share of fresh starts of the best one that end so, in the circumstance where most do. */
 static double most_ending(const struct search_file *f, stance_outcome outcome)
 {
     const size_t circumstances = f->length[SEARCH_CIRCUMSTANCE];
-    const int64_t *const count =
-        &f->confirmed_count[(size_t)f->chosen * circumstances * TRIAL_LABELS];
     int64_t most = 0;
-    for (size_t c = 0; c < circumstances; c++)
-        most = count[c * TRIAL_LABELS + outcome + 1] > most ? count[c * TRIAL_LABELS + outcome + 1]
-                                                            : most;
+    for (size_t c = 0; c < circumstances; c++) {
+        const size_t pair = (size_t)f->chosen * circumstances + c;
+        const int64_t count = f->confirmed_count[pair * TRIAL_LABELS + outcome + 1];
+        most = count > most ? count : most;
+    }
     return (double)most / (double)f->length[SEARCH_START];
 }
 
 /* Share of the candidates that were not tried in any circumstance. */
 static double refused(const struct search_file *f)
 {
-    const size_t circumstances = f->length[SEARCH_CIRCUMSTANCE];
+    const size_t circumstances = f->length[SEARCH_CIRCUMSTANCE], all = f->length[SEARCH_CANDIDATE];
     size_t count = 0;
-    for (size_t i = 0; i < f->length[SEARCH_CANDIDATE]; i++) {
-        bool all = true;
-        for (size_t c = 0; c < circumstances; c++)
-            all = all && f->count[(i * circumstances + c) * TRIAL_LABELS + TRIAL_REFUSED] > 0;
-        count += all;
+    for (size_t i = 0; i < all; i++) {
+        size_t c = 0;
+        while (c < circumstances &&
+               f->count[(i * circumstances + c) * TRIAL_LABELS + TRIAL_REFUSED] > 0)
+            c++;
+        count += c == circumstances;
     }
-    return (double)count / (double)f->length[SEARCH_CANDIDATE];
+    return (double)count / (double)all;
+}
+
+static void warn_of_bound(const struct scenario_varied *v, const char *path, double value)
+{
+    const bool even = v->scale == SCALE_EVEN;
+    const double edge = 0.01 * (even ? v->high - v->low : log(v->high / v->low));
+    const bool low = value <= (even ? v->low + edge : v->low * exp(edge)),
+               high = value >= (even ? v->high - edge : v->high * exp(-edge));
+    if (v->bounded && (low || high))
+        WARN("%s of the best is at its %s bound, %g: better ones may lie beyond", path,
+             low ? "lower" : "upper", value);
 }
 
 /* What linear theory and the counts say against the best. */
-static void warn(const struct optimise *o)
+static void warn(const struct search *search)
 {
-    const struct search *const search = &o->search;
     const struct search_file *const f = &search->record;
-    const struct space *const space = &search->space;
-    const size_t n = (size_t)space->n;
-    const double *const value = &f->confirmed_value[(size_t)f->chosen * n];
-    static const char who[] = "stance optimise: warning:";
-    for (size_t k = 0; k < n; k++) {
-        const struct scenario_varied *const v = &space->search->varied[k];
-        const bool even = v->scale == SCALE_EVEN;
-        const double edge = 0.01 * (even ? v->high - v->low : log(v->high / v->low));
-        const bool low = value[k] <= (even ? v->low + edge : v->low * exp(edge)),
-                   high = value[k] >= (even ? v->high - edge : v->high * exp(-edge));
-        if (v->bounded && (low || high))
-            fprintf(stderr,
-                    "%s %s of the best is at its %s bound, %g: better ones may lie beyond\n", who,
-                    f->parameter[k], low ? "lower" : "upper", value[k]);
-    }
+    const struct scenario_search *const sought = &search->scenario->search;
+    const size_t n = f->length[SEARCH_PARAMETER];
+    const double untried = refused(f), undecided = most_ending(f, STANCE_UNDECIDED),
+                 recovered = most_ending(f, STANCE_STABILISED) + most_ending(f, STANCE_WALKS);
+    for (size_t k = 0; k < n; k++)
+        warn_of_bound(&sought->varied[k], f->parameter[k],
+                      f->confirmed_value[(size_t)f->chosen * n + k]);
     for (size_t e = 0; e < f->length[SEARCH_ELSEWHERE]; e++)
         if (f->elsewhere_chosen[e] < f->elsewhere_first[e] ||
-            f->elsewhere_chosen[e] <
-                0.5 * (most_ending(f, STANCE_STABILISED) + most_ending(f, STANCE_WALKS)))
-            fprintf(stderr, "%s %s the best recovers %.1f %% of the starts, the first %.1f %%\n",
-                    who, f->elsewhere[e], 100 * f->elsewhere_chosen[e],
-                    100 * f->elsewhere_first[e]);
-    if (most_ending(f, STANCE_UNDECIDED) > most_undecided)
-        fprintf(stderr,
-                "%s %.2f %% of the best one's starts are undecided when stop.time is up and do not "
-                "count: a longer one would tell\n",
-                who, 100 * most_ending(f, STANCE_UNDECIDED));
+            f->elsewhere_chosen[e] < 0.5 * recovered)
+            WARN("%s the best recovers %.1f %% of the starts, the first %.1f %%", f->elsewhere[e],
+                 100 * f->elsewhere_chosen[e], 100 * f->elsewhere_first[e]);
+    if (undecided > most_undecided)
+        WARN("%.2f %% of the best one's starts are undecided when stop.time is up and do not "
+             "count: a longer one would tell",
+             100 * undecided);
     if (f->objective[f->best[0]] < 0.01 && scenario_search_plain(search->scenario))
-        fprintf(stderr,
-                "%s hardly a start recovers in the first generation: begin with another "
-                "controller, or with restarts\n",
-                who);
-    if (refused(f) > 0.5)
-        fprintf(
-            stderr,
-            "%s %.0f %% of the candidates were not tried, as their loops are unstable or do not "
-            "have what optimise.require asks for: a smaller optimise.first_step may find more\n",
-            who, 100 * refused(f));
-    if (search->scenario->search.grow[0] < 128)
-        fprintf(stderr,
-                "%s %" PRIu64 " starts tell little of a candidate: optimise.grow, from 128 on\n",
-                who, search->scenario->search.grow[0]);
+        WARN("hardly a start recovers in the first generation: begin with another controller, or "
+             "with restarts");
+    if (untried > 0.5)
+        WARN("%.0f %% of the candidates were not tried, as their loops are unstable or do not have "
+             "what optimise.require asks for: a smaller optimise.first_step may find more",
+             100 * untried);
+    if (sought->grow[0] < 128)
+        WARN("%" PRIu64 " starts tell little of a candidate: optimise.grow, from 128 on",
+             sought->grow[0]);
 }
 
 /* Beside the share of the worst circumstance what is allowed in that which allows least. */
-static void print_limit(const struct optimise *o)
+static void print_limit(const struct search *search)
 {
-    const struct search_file *const f = &o->search.record;
+    const struct search_file *const f = &search->record;
     const size_t circumstances = f->length[SEARCH_CIRCUMSTANCE];
     size_t least;
     const double limit =
-        linear_limit_overall(o->run.scenario->search.worst, circumstances,
+        linear_limit_overall(search->scenario->search.worst, circumstances,
                              &f->confirmed_allowed[(size_t)f->chosen * circumstances], &least);
     if (!isfinite(limit))
         return;
     printf(", linear theory allows any %.2f %%", 100 * limit);
     if (least < circumstances)
         printf(" in its worst circumstance (%s)", f->circumstance[least]);
-    if (allowed_glued_in(o->run.scenario))
+    if (allowed_glued_in(search->scenario))
         fputs(" (" ALLOWED_GLUED ")", stdout);
 }
 
 static int conclude(struct run *run)
 {
-    struct optimise *const o = of(run);
+    const struct optimise *const o = of(run);
     const struct search_file *const f = &o->search.record;
-    if (o->run.parallel.rank != 0)
+    if (run->parallel.rank != 0)
         return EXIT_DONE;
-    warn(o);
-    if (o->run.options.quiet)
+    warn(&o->search);
+    if (run->options.quiet)
         return EXIT_DONE;
-    const bool plain = scenario_search_plain(o->run.scenario);
-    printf("%s: %zu candidates in %zu generation%s, %s; %s", o->run.file,
-           f->length[SEARCH_CANDIDATE], f->length[SEARCH_GENERATION],
-           f->length[SEARCH_GENERATION] == 1 ? "" : "s", f->note, plain ? "" : "objective ");
+    const size_t generations = f->length[SEARCH_GENERATION], starts = f->length[SEARCH_START];
     const double chosen = f->confirmed_objective[f->chosen], first = f->confirmed_objective[0];
-    if (plain)
-        printf("%.2f %% of %zu fresh starts, the first %.2f %%", 100 * chosen,
-               f->length[SEARCH_START], 100 * first);
-    else
-        printf("%.6g of %zu fresh starts, the first %.6g", chosen, f->length[SEARCH_START], first);
-    if (plain)
-        print_limit(o);
-    printf("; %.1f s on %d rank%s\n%s: the scenario of the best\n", clock_seconds() - o->run.start,
-           o->run.parallel.size, o->run.parallel.size == 1 ? "" : "s", o->best);
+    printf("%s: %zu candidates in %zu generation%s, %s; ", run->file, f->length[SEARCH_CANDIDATE],
+           generations, generations == 1 ? "" : "s", f->note);
+    if (scenario_search_plain(run->scenario)) {
+        printf("%.2f %% of %zu fresh starts, the first %.2f %%", 100 * chosen, starts, 100 * first);
+        print_limit(&o->search);
+    } else {
+        printf("objective %.6g of %zu fresh starts, the first %.6g", chosen, starts, first);
+    }
+    printf("; %.1f s on %d rank%s\n%s: the scenario of the best\n", clock_seconds() - run->start,
+           run->parallel.size, run->parallel.size == 1 ? "" : "s", o->best);
     return EXIT_DONE;
 }
 
@@ -420,8 +403,7 @@ static int run_optimise(int argc, char **argv)
     struct optimise *const o = calloc(1, sizeof *o);
     const int code = run_through(o ? &o->run : NULL, argc, argv, stages, conclude);
     if (o) {
-        if (o->made)
-            search_free(&o->search);
+        search_free(&o->search);
         search_file_free(&o->origin);
         scenario_drop(o->asked);
         run_end(&o->run);

@@ -2,6 +2,7 @@
 #include "elsewhere.h"
 
 #include "engine/mechanism.h"
+#include "runner/base/message.h"
 
 #include <math.h>
 #include <stddef.h>
@@ -11,17 +12,14 @@
 enum { MOST_STARTS = 8192 };
 static const double mass_error = 0.05, less_friction = 0.5;
 
-const char *elsewhere_name(enum elsewhere where)
-{
-    static const char *const name[ELSEWHERE_MOST] = {
-        [ELSEWHERE_CONTACTS] = "with every contact on the ground",
-        [ELSEWHERE_FRICTION] = "with half the friction",
-        [ELSEWHERE_LATER] = "one sample later",
-        [ELSEWHERE_SLOWER] = "with twice the sample time",
-        [ELSEWHERE_HEAVIER] = "with masses 5 % larger than the controller knows",
-        [ELSEWHERE_LIGHTER] = "with masses 5 % smaller than the controller knows"};
-    return name[where];
-}
+enum { CONTACTS, FRICTION, LATER, SLOWER, HEAVIER, LIGHTER };
+static const char *const name[ELSEWHERE_MOST] = {
+    [CONTACTS] = "with every contact on the ground",
+    [FRICTION] = "with half the friction",
+    [LATER] = "one sample later",
+    [SLOWER] = "with twice the sample time",
+    [HEAVIER] = "with masses 5 % larger than the controller knows",
+    [LIGHTER] = "with masses 5 % smaller than the controller knows"};
 
 /* Whether anything swept or varied lies in [offset, offset + size) of the values. */
 static bool moves(const struct scenario *s, size_t offset, size_t size)
@@ -52,32 +50,32 @@ static bool change_masses(const struct scenario *s, double factor, struct scenar
 }
 
 /* The values there; false: the scenario says nothing of it, or is there itself. */
-static bool change(const struct scenario *s, enum elsewhere where, struct scenario_values *to)
+static bool change(const struct scenario *s, int where, struct scenario_values *to)
 {
     const struct scenario_values *const base = &s->base;
     *to = *base;
     switch (where) {
-    case ELSEWHERE_CONTACTS:
+    case CONTACTS:
         to->contacts = (1 << s->scene->contacts) - 1;
         return base->contacts != to->contacts;
-    case ELSEWHERE_FRICTION:
+    case FRICTION:
         to->friction *= less_friction;
         return base->friction > 0 && base->contacts && !MOVES(s, friction);
-    case ELSEWHERE_LATER:
+    case LATER:
         to->delay++;
         return base->sample_time > 0 && base->delay < STANCE_MAX_DELAY && !MOVES(s, delay);
-    case ELSEWHERE_SLOWER:
+    case SLOWER:
         to->sample_time *= 2;
         return base->sample_time > 0 && !MOVES(s, sample_time);
     default:
-        return change_masses(s, 1 + (where == ELSEWHERE_HEAVIER ? mass_error : -mass_error), to);
+        return change_masses(s, 1 + (where == HEAVIER ? mass_error : -mass_error), to);
     }
 }
 
-bool elsewhere_exists(const struct scenario *s, enum elsewhere where)
+const char *elsewhere_name(const struct scenario *s, int where)
 {
     struct scenario_values ignored;
-    return change(s, where, &ignored);
+    return change(s, where, &ignored) ? name[where] : NULL;
 }
 
 uint64_t elsewhere_starts(const struct scenario *s)
@@ -85,16 +83,15 @@ uint64_t elsewhere_starts(const struct scenario *s)
     return s->search.confirm < MOST_STARTS ? s->search.confirm : MOST_STARTS;
 }
 
-enum trials_end elsewhere_run(const struct scenario *s, const struct trials *with,
-                              enum elsewhere where, size_t candidates, double *value, double *share,
-                              stance_message *message)
+enum trials_end elsewhere_run(const struct trials *with, int where, size_t candidates,
+                              double *value, double *share, stance_message *message)
 {
+    const struct scenario *const s = with->scenario;
     const uint64_t starts = elsewhere_starts(s);
     struct scenario *const there = malloc(sizeof *there);
     struct trials trials = {0};
     enum trials_end end = TRIALS_BROKEN;
-    bool good = there != NULL;
-    if (good) {
+    if (there) {
         *there = *s; /* what it points to stays the scenario's */
         change(s, where, &there->base);
         there->axis[0] = s->axis[s->axes - 1];
@@ -103,8 +100,8 @@ enum trials_end elsewhere_run(const struct scenario *s, const struct trials *wit
         there->search.grow[there->search.stages - 1] = 1;
         there->search.confirm = starts;
         there->search.critical = 0;
-        good = trials_make(&trials, there, with->parallel);
     }
+    const bool good = (there && trials_make(&trials, there, with->parallel)) || no_memory(message);
     if (parallel_agree(with->parallel, good, message->text, sizeof message->text)) {
         trials.has_kernels = true; /* those of `with` */
         trials.attend = with->attend;
@@ -119,8 +116,7 @@ enum trials_end elsewhere_run(const struct scenario *s, const struct trials *wit
             recovered += trials_recovered(trials.label[c * starts + i]);
         share[c] = (double)recovered / (double)starts;
     }
-    if (there)
-        trials_free(&trials);
+    trials_free(&trials);
     free(there);
     return end;
 }

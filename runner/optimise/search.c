@@ -1,4 +1,6 @@
-/* search.c - stages and generations; rank 0 decides, all try. */
+/* search.c - stages and generations: every rank goes through all of them, in step. What follows
+ * from libraries that may differ between machines, coordinates and whether a stage is over, is rank
+ * 0's. */
 #include "search.h"
 #include "cma.h"
 #include "elsewhere.h"
@@ -60,18 +62,16 @@ static double cases_at_end(const struct search *search)
     const struct scenario *const s = search->scenario;
     double elsewhere = 0;
     for (int e = 0; e < ELSEWHERE_MOST; e++)
-        elsewhere += elsewhere_exists(s, (enum elsewhere)e) ? 1 : 0;
-    const double confirmed = 1 + 2.0 * s->search.stages * (s->search.restarts + 1);
+        elsewhere += elsewhere_name(s, e) ? 1 : 0;
     const double starts =
         (double)trials_count(s, TRIALS_CHOICE) + (double)trials_count(s, TRIALS_FRESH);
-    return confirmed * (double)search->trials.circumstances * starts +
+    return (1 + 2.0 * search->stages) * (double)search->trials.circumstances * starts +
            elsewhere * COMPARED * (double)elsewhere_starts(s);
 }
 
 static void plan_stages(struct search *search)
 {
     const struct scenario *const s = search->scenario;
-    double behind = cases_at_end(search);
     for (int r = 0; r <= s->search.restarts; r++) {
         const int lambda = cma_default_lambda(search->space.n) << r;
         const double all = (double)s->search.candidates / lambda;
@@ -87,6 +87,7 @@ static void plan_stages(struct search *search)
             search->candidates += generations * (size_t)lambda;
         }
     }
+    double behind = cases_at_end(search);
     for (int k = search->stages; k-- > 0; behind += search->stage[k].cases)
         search->stage[k].behind = behind;
 }
@@ -99,62 +100,63 @@ static void outlook_begin(struct outlook *outlook, double cases)
     outlook->begun = clock_seconds();
 }
 
-/* They are done: so many were simulated; `apart` s were spent on something else. */
-static void outlook_end(struct outlook *outlook, double simulated, double apart)
-{
-    const double taken = clock_seconds() - outlook->begun - apart;
-    outlook->seconds = remembered * outlook->seconds + taken;
-    outlook->cases = remembered * outlook->cases + simulated;
-    outlook->now = 0;
-}
-
 double outlook_left(const struct outlook *outlook)
 {
     if (!(outlook->cases > 0))
         return -1;
     const double each = outlook->seconds / outlook->cases;
-    const double spent = outlook->now > 0 ? clock_seconds() - outlook->begun : 0;
-    return outlook->ahead * each + fmax(0, outlook->now * each - spent);
+    return outlook->ahead * each +
+           fmax(0, outlook->now * each - (clock_seconds() - outlook->begun));
 }
 
 /* ---- making --------------------------------------------------------------------------------- */
+
+static char **words_of(const struct scenario_axis *axis)
+{
+    char **const word = calloc((size_t)axis->paths + 1, sizeof *word);
+    for (int k = 0; word && k < axis->paths; k++)
+        word[k] = strdup(axis->path[k]);
+    return word;
+}
 
 static bool make_record(struct search *search, const char *text)
 {
     struct search_file *const f = &search->record;
     const struct scenario *const s = search->scenario;
+    const struct scenario_axis *const sample = &s->axis[s->axes - 1];
+    const size_t n = (size_t)search->space.n, compared = 1 + 2 * (size_t)search->stages;
     char date[40];
     time_t now = time(NULL);
     struct tm utc;
     strftime(date, sizeof date, "%Y-%m-%dT%H:%M:%SZ", gmtime_r(&now, &utc));
-    *f = (struct search_file){.chosen = -1,
+    *f = (struct search_file){.length = {[SEARCH_CANDIDATE] = search->candidates,
+                                         [SEARCH_PARAMETER] = n,
+                                         [SEARCH_OTHER] = n,
+                                         [SEARCH_CIRCUMSTANCE] = search->trials.circumstances,
+                                         [SEARCH_KIND] = TRIAL_LABELS,
+                                         [SEARCH_GENERATION] = search->generations,
+                                         [SEARCH_CONFIRMED] = compared,
+                                         [SEARCH_START] = s->search.confirm,
+                                         [SEARCH_VARIED] = (size_t)sample->paths,
+                                         [SEARCH_ELSEWHERE] = ELSEWHERE_MOST},
+                              .parameter = words_of(&s->search.axis),
+                              .varied = words_of(sample),
+                              .title = strdup(s->title),
+                              .scenario = strdup(text),
+                              .first_scenario = strdup(s->text),
+                              .revision = strdup(build_revision),
+                              .date = strdup(date),
+                              .chosen = -1,
                               .most_generations = (int64_t)search->generations,
                               .most_cases = scenario_search_cases(s),
                               .linear_limit = NAN};
-    f->length[SEARCH_CANDIDATE] = search->candidates;
-    f->length[SEARCH_PARAMETER] = f->length[SEARCH_OTHER] = (size_t)search->space.n;
-    f->length[SEARCH_CIRCUMSTANCE] = search->trials.circumstances;
-    f->length[SEARCH_KIND] = TRIAL_LABELS;
-    f->length[SEARCH_GENERATION] = search->generations;
-    f->length[SEARCH_CONFIRMED] = 1 + 2 * (size_t)search->stages;
-    f->length[SEARCH_START] = s->search.confirm;
-    f->length[SEARCH_VARIED] = (size_t)s->axis[s->axes - 1].paths;
-    f->length[SEARCH_ELSEWHERE] = ELSEWHERE_MOST;
-    f->title = strdup(s->title);
-    f->scenario = strdup(text);
-    f->first_scenario = strdup(s->text);
-    f->revision = strdup(build_revision);
-    f->date = strdup(date);
-    const bool good = search_file_room(f) && f->title && f->scenario && f->first_scenario &&
-                      f->revision && f->date;
-    for (size_t i = 0; good && i < f->length[SEARCH_PARAMETER]; i++)
-        f->parameter[i] = strdup(s->search.axis.path[i]);
+    search->compare = calloc(compared * n, sizeof *search->compare);
+    const bool good = search_file_room(f) && f->parameter && f->varied && f->title && f->scenario &&
+                      f->first_scenario && f->revision && f->date && search->compare;
     for (size_t i = 0; good && i < TRIAL_LABELS; i++)
         f->kind[i] = strdup(search_kinds[i]);
-    for (size_t i = 0; good && i < f->length[SEARCH_VARIED]; i++)
-        f->varied[i] = strdup(s->axis[s->axes - 1].path[i]);
-    for (size_t c = 0; good && c < search->trials.circumstances; c++)
-        f->circumstance[c] = circumstance_text(s, c);
+    for (size_t i = 0; good && i < f->length[SEARCH_CIRCUMSTANCE]; i++)
+        f->circumstance[i] = circumstance_text(s, i);
     f->length[SEARCH_CANDIDATE] = f->length[SEARCH_GENERATION] = f->length[SEARCH_CONFIRMED] = 0;
     f->length[SEARCH_START] = f->length[SEARCH_ELSEWHERE] = 0;
     return good;
@@ -163,134 +165,94 @@ static bool make_record(struct search *search, const char *text)
 /* The generations that an earlier part left. */
 static bool take_over(struct search *search, const struct search_file *from)
 {
+    static const enum search_dimension grows[] = {SEARCH_CANDIDATE, SEARCH_GENERATION},
+                                       stays[] = {SEARCH_PARAMETER, SEARCH_CIRCUMSTANCE,
+                                                  SEARCH_KIND};
     struct search_file *const f = &search->record;
-    const size_t c = from->length[SEARCH_CANDIDATE], g = from->length[SEARCH_GENERATION];
-    if (c > search->candidates || g > search->generations ||
-        from->length[SEARCH_PARAMETER] != (size_t)search->space.n ||
-        from->length[SEARCH_CIRCUMSTANCE] != search->trials.circumstances ||
-        from->length[SEARCH_KIND] != TRIAL_LABELS)
-        return false;
-    search_file_copy(f, from, SEARCH_CANDIDATE);
-    search_file_copy(f, from, SEARCH_GENERATION);
-    f->length[SEARCH_CANDIDATE] = c;
-    f->length[SEARCH_GENERATION] = g;
+    bool same = from->length[SEARCH_CANDIDATE] <= search->candidates &&
+                from->length[SEARCH_GENERATION] <= search->generations;
+    for (size_t i = 0; i < sizeof stays / sizeof *stays; i++)
+        same = same && from->length[stays[i]] == f->length[stays[i]];
+    for (size_t i = 0; same && i < sizeof grows / sizeof *grows; i++) {
+        search_file_copy(f, from, grows[i]);
+        f->length[grows[i]] = from->length[grows[i]];
+    }
     f->seconds = from->seconds;
-    return true;
+    return same;
 }
 
-/* Points come from libraries and may differ between machines: all ranks take those of rank 0. */
-static void share_points(struct search *search)
+/* What may differ between machines, and what only rank 0 has, all ranks take from it. */
+static void share(struct search *search)
 {
     const struct scenario *const s = search->scenario;
+    const struct parallel *const parallel = search->parallel;
+    struct search_file *const f = &search->record;
     const size_t paths = (size_t)s->axis[s->axes - 1].paths;
     for (int k = 0; k < TRIALS_STARTS; k++) {
         const uint64_t count = trials_count(s, (enum trials_starts)k);
-        parallel_broadcast(search->parallel, search->trials.start[k],
-                           count * paths * sizeof(double));
-        parallel_broadcast(search->parallel, search->trials.weight[k], count * sizeof(int64_t));
+        parallel_broadcast(parallel, search->trials.start[k], count * paths * sizeof(double));
+        parallel_broadcast(parallel, search->trials.weight[k], count * sizeof(int64_t));
     }
     for (int a = 0; a + 1 < s->axes; a++) {
         const struct scenario_axis *const axis = &s->axis[a];
         if (axis->value)
-            parallel_broadcast(search->parallel, axis->value,
+            parallel_broadcast(parallel, axis->value,
                                axis->count * (size_t)axis->paths * sizeof *axis->value);
     }
+    parallel_broadcast(parallel, f->length, sizeof f->length);
+    const size_t known = f->length[SEARCH_CANDIDATE];
+    parallel_broadcast(parallel, f->score, known * sizeof *f->score);
+    parallel_broadcast(parallel, f->coordinate,
+                       known * f->length[SEARCH_PARAMETER] * sizeof *f->coordinate);
 }
 
 bool search_make(struct search *search, const struct scenario *scenario, const char *text,
-                 const struct parallel *parallel, struct search_file *origin,
+                 const struct parallel *parallel, const struct search_file *origin,
                  stance_message *message)
 {
     *search = (struct search){.scenario = scenario, .parallel = parallel};
     bool good = trials_make(&search->trials, scenario, parallel);
-    if (parallel_agree(parallel, good, message->text, sizeof message->text))
-        share_points(search);
-    else
-        good = false;
     space_make(&search->space, scenario);
     plan_stages(search);
-    if (good && parallel->rank == 0)
-        good = make_record(search, text);
-    if (!good)
-        return no_memory(message);
-    if (origin && parallel->rank == 0 && !take_over(search, origin))
-        return complain(message, "the file is of a search with other numbers");
-    return true;
+    good = (good && make_record(search, text)) || no_memory(message);
+    if (good && origin && !take_over(search, origin))
+        good = complain(message, "the file is of a search with other numbers");
+    good = parallel_agree(parallel, good, message->text, sizeof message->text);
+    if (good)
+        share(search);
+    return good;
 }
 
 void search_free(struct search *search)
 {
     trials_free(&search->trials);
     search_file_free(&search->record);
+    free(search->compare);
 }
 
 /* ---- trying --------------------------------------------------------------------------------- */
 
-/* What the other ranks are told: so many candidates, -1: it is over; which starts, or behind these
- * (TRIALS_STARTS + enum elsewhere) where else. */
-struct order {
-    int64_t candidates;
-    uint64_t starts;
-    int which;
-};
-
-static enum trials_end carry_out(struct search *search, const struct order *order, double *value,
-                                 double *share, stance_message *message)
-{
-    const size_t candidates = (size_t)order->candidates;
-    return order->which < TRIALS_STARTS
-               ? trials_run(&search->trials, candidates, value, (enum trials_starts)order->which,
-                            order->starts, message)
-               : elsewhere_run(search->scenario, &search->trials,
-                               (enum elsewhere)(order->which - TRIALS_STARTS), candidates, value,
-                               share, message);
-}
-
-/* Rank 0: value[candidates][paths] are tried. */
-static enum trials_end try(struct search *search, struct order order, double *value, double *share,
+/* Coordinates, which rank 0's become, and their values. */
+static enum trials_end try(struct search *search, size_t candidates, double *coordinate,
+                           double *value, enum trials_starts which, uint64_t starts,
                            stance_message *message)
 {
-    const size_t size = (size_t)order.candidates * (size_t)search->space.n * sizeof *value;
-    parallel_broadcast(search->parallel, &order, sizeof order);
-    parallel_broadcast(search->parallel, value, size);
-    return carry_out(search, &order, value, share, message);
-}
-
-/* The same of coordinates (NULL: values are known), from starts that are the scenario's. */
-static enum trials_end try_all(struct search *search, size_t candidates, const double *coordinate,
-                               double *value, enum trials_starts which, uint64_t starts,
-                               stance_message *message)
-{
-    const size_t n = (size_t)search->space.n;
+    const size_t n = (size_t)search->space.n, size = candidates * n * sizeof *value;
+    struct outlook *const outlook = &search->outlook;
     const struct trials *const t = &search->trials;
     const double before = (double)t->cases, compiling = t->compiling;
-    for (size_t i = 0; coordinate && i < candidates * n; i++)
+    parallel_broadcast(search->parallel, coordinate, size);
+    for (size_t i = 0; i < candidates * n; i++)
         value[i] = space_value(&search->space, (int)(i % n), coordinate[i]);
-    outlook_begin(&search->outlook, (double)candidates * (double)t->circumstances * (double)starts);
+    parallel_broadcast(search->parallel, value, size);
+    outlook_begin(outlook, (double)candidates * (double)t->circumstances * (double)starts);
     const enum trials_end end =
-        try(search, (struct order){(int64_t)candidates, starts, which}, value, NULL, message);
-    outlook_end(&search->outlook, (double)t->cases - before, t->compiling - compiling);
+        trials_run(&search->trials, candidates, value, which, starts, message);
+    const double taken = clock_seconds() - outlook->begun - (t->compiling - compiling);
+    outlook->seconds = remembered * outlook->seconds + taken;
+    outlook->cases = remembered * outlook->cases + (double)t->cases - before;
+    outlook->now = 0;
     return end;
-}
-
-/* Other ranks: do as they are told until it is over. */
-static enum trials_end follow(struct search *search, stance_message *message)
-{
-    enum trials_end end = TRIALS_DONE;
-    double ignored[COMPARED];
-    struct order order;
-    for (;;) {
-        parallel_broadcast(search->parallel, &order, sizeof order);
-        if (order.candidates < 0)
-            return end;
-        const size_t size = (size_t)order.candidates * (size_t)search->space.n * sizeof(double);
-        double *const value = malloc(size);
-        if (!value)
-            abort(); /* the others wait in the broadcast: MPI ends the job */
-        parallel_broadcast(search->parallel, value, size);
-        end = carry_out(search, &order, value, ignored, message);
-        free(value);
-    }
 }
 
 /* ---- scores --------------------------------------------------------------------------------- */
@@ -398,9 +360,10 @@ struct course {
     size_t first;      /* candidate of this generation */
     int64_t best;      /* candidate of this stage; -1: none */
     size_t stale;      /* generations without a better one */
+    const char *why;   /* the last stage is over */
 };
 
-static enum trials_end try_generation(struct search *search, struct course *at,
+static enum trials_end try_generation(struct search *search, const struct course *at,
                                       stance_message *message)
 {
     struct search_file *const f = &search->record;
@@ -409,10 +372,10 @@ static enum trials_end try_generation(struct search *search, struct course *at,
     const size_t kinds = search->trials.circumstances * TRIAL_LABELS;
     double *const x = &f->coordinate[at->first * n];
     cma_ask(at->cma, x);
-    if (cma_generation(at->cma) == 0) /* what it begins with is a candidate, too */
-        memcpy(x, cma_mean(at->cma), n * sizeof *x);
+    if (at->cma->generation == 0) /* what it begins with is a candidate, too */
+        memcpy(x, at->cma->mean, n * sizeof *x);
     const enum trials_end end =
-        try_all(search, lambda, x, &f->value[at->first * n], TRIALS_SEARCH, starts, message);
+        try(search, lambda, x, &f->value[at->first * n], TRIALS_SEARCH, starts, message);
     if (end != TRIALS_DONE)
         return end;
     for (size_t i = 0; i < lambda; i++) {
@@ -427,261 +390,232 @@ static enum trials_end try_generation(struct search *search, struct course *at,
     return end;
 }
 
-/* Notes what the generation led to. */
+/* Notes what the generation led to, and goes on to the next. */
 static void note_generation(struct search *search, struct course *at)
 {
     struct search_file *const f = &search->record;
     const size_t n = (size_t)search->space.n, g = at->generation;
-    const int64_t end = (int64_t)at->first + at->stage->lambda;
-    bool better = false;
-    for (int64_t c = (int64_t)at->first; c < end; c++) {
-        if (at->best >= 0 && f->score[c] <= f->score[at->best])
-            continue;
-        at->best = c;
-        better = true;
-    }
-    at->stale = better ? 0 : at->stale + 1;
+    const int64_t before = at->best, end = (int64_t)at->first + at->stage->lambda;
+    for (int64_t c = (int64_t)at->first; c < end; c++)
+        if (at->best < 0 || f->score[c] > f->score[at->best])
+            at->best = c;
+    at->stale = at->best != before ? 0 : at->stale + 1;
+    at->first = (size_t)end;
+    at->generation++;
+    if (search->parallel->rank != 0)
+        return; /* the record is rank 0's: others need no memory for it */
     f->stage[g] = at->stage->stage;
     f->restart[g] = at->stage->restart;
     f->starts[g] = (int64_t)search->scenario->search.grow[at->stage->stage];
     f->candidates[g] = end;
     f->best[g] = at->best;
-    f->step[g] = cma_step(at->cma);
-    memcpy(&f->mean[g * n], cma_mean(at->cma), n * sizeof *f->mean);
-    memcpy(&f->covariance[g * n * n], cma_covariance(at->cma), n * n * sizeof *f->covariance);
+    f->step[g] = at->cma->step;
+    memcpy(&f->mean[g * n], at->cma->mean, n * sizeof *f->mean);
+    memcpy(&f->covariance[g * n * n], at->cma->covariance, n * n * sizeof *f->covariance);
 }
 
-static bool is_over(const struct search *search, const struct course *at, const char **why)
+static bool is_over(const struct search *search, struct course *at)
 {
     const bool last = at->stage->stage + 1 == search->scenario->search.stages;
+    const enum cma_stop stop = cma_stop(at->cma);
     /* Without a better candidate for so long there is no use in more. */
     const bool stale = last && at->stale >= 10 + (size_t)(30 * search->space.n / at->stage->lambda);
-    if (cma_stop(at->cma) != CMA_GOES_ON)
-        *why = cma_stop_words[cma_stop(at->cma)];
+    if (stop != CMA_GOES_ON)
+        at->why = cma_stop_words[stop];
     else if (stale)
-        *why = "the best candidate stayed the same";
-    return stale || cma_stop(at->cma) != CMA_GOES_ON;
+        at->why = "the best candidate stayed the same";
+    bool over = stale || stop != CMA_GOES_ON;
+    parallel_broadcast(search->parallel, &over, sizeof over);
+    return over;
 }
 
 /* Adds to what is compared at the end: a candidate, or (-1) a mean. */
-static void confirm_later(struct search *search, int64_t candidate, int64_t generation,
+static void compare_later(struct search *search, int64_t candidate, int64_t generation,
                           const double *coordinate)
 {
     struct search_file *const f = &search->record;
-    const size_t n = (size_t)search->space.n, k = f->length[SEARCH_CONFIRMED];
+    const size_t n = (size_t)search->space.n, k = search->compared;
     for (size_t i = 0; i < k; i++)
         if (candidate >= 0 && f->confirmed_candidate[i] == candidate)
             return;
     f->confirmed_candidate[k] = candidate;
     f->confirmed_generation[k] = generation;
-    f->confirmed_training[k] = candidate >= 0 ? f->objective[candidate] : NAN;
-    /* Coordinates for now; values once it is tried. */
-    memcpy(&f->confirmed_value[k * n], coordinate, n * sizeof *coordinate);
-    f->length[SEARCH_CONFIRMED]++;
+    memcpy(&search->compare[k * n], coordinate, n * sizeof *coordinate);
+    search->compared++;
 }
 
-/* A record of what is known so far; what is to be compared is not, before it has been. */
-static bool keep(struct search *search, bool last, stance_message *message)
+static enum trials_end run_stage(struct search *search, struct course *at, stance_message *message)
 {
     struct search_file *const f = &search->record;
-    const size_t confirmed = f->length[SEARCH_CONFIRMED];
-    if (!f->finished)
-        f->length[SEARCH_CONFIRMED] = 0;
-    const bool good = !search->save || search->save(search->context, last, message);
-    f->length[SEARCH_CONFIRMED] = confirmed;
-    return good;
-}
-
-static enum trials_end run_stage(struct search *search, struct course *at, const char **why,
-                                 stance_message *message)
-{
-    struct search_file *const f = &search->record;
-    const size_t n = (size_t)search->space.n;
-    const size_t most = at->stage->generations;
+    const struct parallel *const parallel = search->parallel;
+    const size_t n = (size_t)search->space.n, most = at->stage->generations;
     bool over = false;
     at->best = -1;
     at->stale = 0;
-    *why = "as many candidates as were asked for";
+    at->why = "as many candidates as were asked for";
     for (size_t i = 0; i < most && !over; i++) {
+        const bool new = at->generation >= at->known;
         search->outlook.ahead =
             at->stage->behind + at->stage->cases * (double)(most - i) / (double)most;
-        if (at->generation >= at->known) {
-            const enum trials_end end = try_generation(search, at, message);
-            if (end != TRIALS_DONE)
-                return end;
-        }
-        if (!cma_tell(at->cma, &f->coordinate[at->first * n], &f->score[at->first])) {
-            complain(message, "a generation is out of the numbers that can be");
-            return TRIALS_BROKEN;
-        }
+        const enum trials_end end = new ? try_generation(search, at, message) : TRIALS_DONE;
+        if (end != TRIALS_DONE)
+            return end;
+        bool good = cma_tell(at->cma, &f->coordinate[at->first * n], &f->score[at->first]) ||
+                    complain(message, "a generation is out of the numbers that can be");
         note_generation(search, at);
-        at->first += (size_t)at->stage->lambda;
-        at->generation++;
-        if (at->generation > at->known && !keep(search, false, message))
+        if (good && new && parallel->rank == 0 && search->save)
+            good = search->save(search->context, false, message);
+        if (!parallel_agree(parallel, good, message->text, sizeof message->text))
             return TRIALS_BROKEN;
-        over = is_over(search, at, why);
+        over = is_over(search, at);
     }
     const int64_t last = (int64_t)at->generation - 1;
-    confirm_later(search, at->best, last, &f->coordinate[(size_t)at->best * n]);
-    confirm_later(search, -1, last, cma_mean(at->cma));
+    compare_later(search, at->best, last, &f->coordinate[(size_t)at->best * n]);
+    compare_later(search, -1, last, at->cma->mean);
     return TRIALS_DONE;
 }
 
-/* From the best so far, of which there is none at first. */
-static bool begin(const struct search *search, struct course *at, stance_message *message)
+/* Each beginning but the first begins with the best of the one before. */
+static enum trials_end run_stages(struct search *search, struct course *at, stance_message *message)
 {
     const struct space *const space = &search->space;
-    const double *const begin =
-        at->best < 0 ? space->first
-                     : &search->record.coordinate[(size_t)at->best * (size_t)space->n];
-    cma_free(at->cma);
-    at->cma =
-        cma_make(space->n, at->stage->lambda, begin, search->scenario->search.step, space->low,
-                 space->high, search->scenario->seed, (uint64_t)at->stage->restart);
-    return at->cma || no_memory(message);
+    struct cma_start start = {space->n,
+                              0,
+                              space->first,
+                              space->low,
+                              space->high,
+                              search->scenario->search.step,
+                              .seed = search->scenario->seed};
+    enum trials_end end = TRIALS_DONE;
+    for (int k = 0; k < search->stages && end == TRIALS_DONE; k++) {
+        at->stage = &search->stage[k];
+        if (at->stage->stage == 0) {
+            if (k > 0)
+                start.mean = &search->record.coordinate[(size_t)at->best * (size_t)space->n];
+            start.lambda = at->stage->lambda;
+            start.restart = (uint64_t)at->stage->restart;
+            cma_free(at->cma);
+            at->cma = cma_make(&start);
+            const bool good = at->cma || no_memory(message);
+            if (!parallel_agree(search->parallel, good, message->text, sizeof message->text))
+                return TRIALS_BROKEN;
+        }
+        end = run_stage(search, at, message);
+    }
+    return end;
 }
 
 /* ---- the choice, and fresh starts ------------------------------------------------------------ */
 
 /* The largest of several shares is too large as the share of what has it: one is chosen by starts
  * of its own, and what all of them recover is told of others. */
-static enum trials_end try_confirmed(struct search *search, const double *coordinate,
-                                     enum trials_starts which, stance_message *message)
-{
-    struct search_file *const f = &search->record;
-    const bool fresh = which == TRIALS_FRESH;
-    int64_t *const score = fresh ? f->confirmed_score : f->choice_score;
-    double *const objective = fresh ? f->confirmed_objective : f->choice_objective;
-    const uint64_t starts = trials_count(search->scenario, which);
-    const size_t k = f->length[SEARCH_CONFIRMED], n = (size_t)search->space.n;
-    const enum trials_end end =
-        try_all(search, k, coordinate, f->confirmed_value, which, starts, message);
-    for (size_t i = 0; end == TRIALS_DONE && i < k; i++)
-        score[i] = score_of(search, i, &coordinate[i * n], which, starts, &objective[i]);
-    return end;
-}
-
-static void note_fresh(struct search *search)
-{
-    struct search_file *const f = &search->record;
-    const uint64_t starts = trials_count(search->scenario, TRIALS_FRESH);
-    const size_t k = f->length[SEARCH_CONFIRMED], circumstances = search->trials.circumstances;
-    for (size_t i = 0; i < k; i++) {
-        count_labels(search, i, starts, &f->confirmed_count[i * circumstances * TRIAL_LABELS],
-                     &f->confirmed_critical[i * circumstances]);
-    }
-    for (size_t i = 0; i < k * circumstances; i++)
-        f->confirmed_allowed[i] = NAN;
-    f->length[SEARCH_START] = starts;
-    memcpy(f->confirmed_outcome, search->trials.label, k * circumstances * starts);
-    memcpy(f->start_value, search->trials.start[TRIALS_FRESH],
-           starts * f->length[SEARCH_VARIED] * sizeof *f->start_value);
-}
-
 static enum trials_end confirm(struct search *search, stance_message *message)
 {
     struct search_file *const f = &search->record;
-    const size_t size = f->length[SEARCH_CONFIRMED] * (size_t)search->space.n * sizeof(double);
-    double *const coordinate = malloc(size);
+    const struct {
+        enum trials_starts which;
+        int64_t *score;
+        double *objective;
+    } by[] = {{TRIALS_CHOICE, f->choice_score, f->choice_objective},
+              {TRIALS_FRESH, f->confirmed_score, f->confirmed_objective}};
+    const size_t n = (size_t)search->space.n, circumstances = search->trials.circumstances;
+    uint64_t starts = 0;
     search->confirming = true;
     search->outlook.ahead = cases_at_end(search);
-    if (!coordinate) {
-        no_memory(message);
-        return TRIALS_BROKEN;
+    for (int b = 0; b < 2; b++) {
+        starts = trials_count(search->scenario, by[b].which);
+        const enum trials_end end = try(search, search->compared, search->compare,
+                                        f->confirmed_value, by[b].which, starts, message);
+        if (end != TRIALS_DONE)
+            return end;
+        for (size_t i = 0; i < search->compared; i++)
+            by[b].score[i] = score_of(search, i, &search->compare[i * n], by[b].which, starts,
+                                      &by[b].objective[i]);
     }
-    memcpy(coordinate, f->confirmed_value, size);
-    enum trials_end end = try_confirmed(search, coordinate, TRIALS_CHOICE, message);
-    if (end == TRIALS_DONE) {
-        f->chosen = 0;
-        for (size_t i = 1; i < f->length[SEARCH_CONFIRMED]; i++)
-            if (f->choice_score[i] > f->choice_score[f->chosen])
-                f->chosen = (int64_t)i;
-        end = try_confirmed(search, coordinate, TRIALS_FRESH, message);
+    f->chosen = 0;
+    for (size_t i = 0; i < search->compared; i++) {
+        const int64_t candidate = f->confirmed_candidate[i];
+        if (f->choice_score[i] > f->choice_score[f->chosen])
+            f->chosen = (int64_t)i;
+        f->confirmed_training[i] = candidate >= 0 ? f->objective[candidate] : NAN;
+        count_labels(search, i, starts, &f->confirmed_count[i * circumstances * TRIAL_LABELS],
+                     &f->confirmed_critical[i * circumstances]);
     }
-    if (end == TRIALS_DONE)
-        note_fresh(search);
-    free(coordinate);
+    for (size_t i = 0; i < search->compared * circumstances; i++)
+        f->confirmed_allowed[i] = NAN;
+    memcpy(f->confirmed_outcome, search->trials.label, search->compared * circumstances * starts);
+    memcpy(f->start_value, search->trials.start[TRIALS_FRESH],
+           starts * f->length[SEARCH_VARIED] * sizeof *f->start_value);
+    return TRIALS_DONE;
+}
+
+/* The first and the chosen one. */
+static enum trials_end try_elsewhere(struct search *search, size_t *places, stance_message *message)
+{
+    struct search_file *const f = &search->record;
+    const size_t n = (size_t)search->space.n;
+    enum trials_end end = TRIALS_DONE;
+    double value[COMPARED * SCENARIO_MAX_PATHS], share[COMPARED] = {0};
+    memcpy(value, f->confirmed_value, n * sizeof *value);
+    memcpy(value + n, &f->confirmed_value[(size_t)f->chosen * n], n * sizeof *value);
+    for (int e = 0; e < ELSEWHERE_MOST && end == TRIALS_DONE; e++) {
+        const char *const name = elsewhere_name(search->scenario, e);
+        if (!name)
+            continue;
+        outlook_begin(&search->outlook, (double)(COMPARED * elsewhere_starts(search->scenario)));
+        end = elsewhere_run(&search->trials, e, COMPARED, value, share, message);
+        f->elsewhere[*places] = end == TRIALS_DONE ? strdup(name) : NULL;
+        if (f->elsewhere[*places]) {
+            f->elsewhere_first[*places] = share[0];
+            f->elsewhere_chosen[(*places)++] = share[1];
+        }
+    }
     return end;
 }
 
-/* Of the first and of the chosen one. */
-static void find_allowed(struct search *search)
+/* Rank 0: what linear theory allows the first and the chosen one, and that all is done. */
+static void finish(struct search *search, size_t places, const char *why)
 {
     struct search_file *const f = &search->record;
     const uint64_t confirm = search->scenario->search.confirm;
     const uint64_t starts = confirm < MOST_ALLOWED ? confirm : MOST_ALLOWED;
     const size_t n = (size_t)search->space.n, circumstances = search->trials.circumstances;
     const size_t which[COMPARED] = {0, (size_t)f->chosen};
+    size_t least;
     for (int i = 0; i < COMPARED; i++)
         linear_limit_shares(&search->trials, &f->confirmed_value[which[i] * n], starts,
                             &f->confirmed_allowed[which[i] * circumstances]);
-    size_t least;
     f->linear_limit = linear_limit_overall(search->scenario->search.worst, circumstances,
                                            &f->confirmed_allowed[which[1] * circumstances], &least);
-}
-
-static enum trials_end try_elsewhere(struct search *search, stance_message *message)
-{
-    struct search_file *const f = &search->record;
-    const size_t n = (size_t)search->space.n;
-    const double cases = (double)(COMPARED * elsewhere_starts(search->scenario));
-    enum trials_end end = TRIALS_DONE;
-    double value[COMPARED * SCENARIO_MAX_PATHS], share[COMPARED] = {0};
-    memcpy(value, f->confirmed_value, n * sizeof *value);
-    memcpy(value + n, &f->confirmed_value[(size_t)f->chosen * n], n * sizeof *value);
-    for (int e = 0; e < ELSEWHERE_MOST && end == TRIALS_DONE; e++) {
-        if (!elsewhere_exists(search->scenario, (enum elsewhere)e))
-            continue;
-        outlook_begin(&search->outlook, cases);
-        end = try(search, (struct order){COMPARED, 0, TRIALS_STARTS + e}, value, share, message);
-        const size_t k = f->length[SEARCH_ELSEWHERE];
-        f->elsewhere[k] = end == TRIALS_DONE ? strdup(elsewhere_name((enum elsewhere)e)) : NULL;
-        if (f->elsewhere[k]) {
-            f->elsewhere_first[k] = share[0];
-            f->elsewhere_chosen[k] = share[1];
-            f->length[SEARCH_ELSEWHERE]++;
-        }
-    }
-    return end;
+    f->length[SEARCH_CONFIRMED] = search->compared;
+    f->length[SEARCH_START] = confirm;
+    f->length[SEARCH_ELSEWHERE] = places;
+    f->finished = 1;
+    f->note = strdup(why);
 }
 
 /* ---- the whole ------------------------------------------------------------------------------ */
 
-static enum trials_end lead(struct search *search, stance_message *message)
+enum trials_end search_run(struct search *search, stance_message *message)
 {
     struct search_file *const f = &search->record;
-    struct course at = {.known = f->length[SEARCH_GENERATION], .best = -1};
-    const char *why = "";
-    enum trials_end end = TRIALS_DONE;
-    confirm_later(search, 0, -1, search->space.first);
-    for (int k = 0; k < search->stages && end == TRIALS_DONE; k++) {
-        at.stage = &search->stage[k];
-        if (at.stage->stage > 0 || begin(search, &at, message))
-            end = run_stage(search, &at, &why, message);
-        else
-            end = TRIALS_BROKEN;
-    }
+    struct course at = {.known = f->length[SEARCH_GENERATION], .best = -1, .why = ""};
+    size_t places = 0;
+    compare_later(search, 0, -1, search->space.first);
+    enum trials_end end = run_stages(search, &at, message);
     cma_free(at.cma);
-    f->confirmed_training[0] = f->length[SEARCH_CANDIDATE] > 0 ? f->objective[0] : NAN;
     if (end == TRIALS_DONE)
         end = confirm(search, message);
     if (end == TRIALS_DONE)
-        end = try_elsewhere(search, message);
-    if (end == TRIALS_DONE) {
-        f->finished = 1;
-        f->note = strdup(why);
-        find_allowed(search);
-    } else {
-        f->length[SEARCH_CONFIRMED] = f->length[SEARCH_ELSEWHERE] = 0;
+        end = try_elsewhere(search, &places, message);
+    if (search->parallel->rank != 0)
+        return end;
+    if (end == TRIALS_DONE)
+        finish(search, places, at.why);
+    else
         f->chosen = -1;
-    }
-    if (end != TRIALS_BROKEN && f->length[SEARCH_GENERATION] > 0 && !keep(search, true, message))
+    if (end != TRIALS_BROKEN && f->length[SEARCH_GENERATION] > 0 && search->save &&
+        !search->save(search->context, true, message))
         end = TRIALS_BROKEN;
-    parallel_broadcast(search->parallel, &(struct order){-1, 0, 0}, sizeof(struct order));
     return end;
-}
-
-enum trials_end search_run(struct search *search, stance_message *message)
-{
-    return search->parallel->rank == 0 ? lead(search, message) : follow(search, message);
 }

@@ -36,6 +36,7 @@ struct search_stage {
     double cases, behind; /* that it takes; that are planned behind it, the end included */
 };
 
+/* The same on every rank, but for what the record has beside scores and coordinates. */
 struct search {
     const struct scenario *scenario; /* the first candidate, gains written out */
     const struct parallel *parallel;
@@ -43,20 +44,23 @@ struct search {
     struct space space;
     int stages; /* of all beginnings */
     struct search_stage stage[(SCENARIO_MAX_RESTARTS + 1) * SCENARIO_MAX_STAGES];
-    /* On rank 0: */
-    struct search_file record;
     size_t generations, candidates; /* most that there can be */
-    bool confirming;                /* fresh starts are being tried */
+    struct search_file record;
+    size_t compared; /* at the end, so far; known to the record once they have been */
+    double *compare; /* [compared][paths], their coordinates */
+    bool confirming; /* these are being tried */
     struct outlook outlook;
-    /* After each generation and (`last`) at the end, may be NULL: false, and *message says why. */
+    /* On rank 0, after each generation and (`last`) at the end, may be NULL: false, and *message
+     * says why. */
     bool (*save)(void *context, bool last, stance_message *message);
     void *context;
 };
 
-/* Collective. `origin`: what an earlier part of the search left, which is taken over; NULL: none.
- * text: the scenario as it was read. false: *message says why. */
+/* Collective. `origin`: what an earlier part of the search left, on rank 0, which is taken over;
+ * NULL: none. text: the scenario as it was read. false: *message says why. search_free is for it
+ * either way. */
 bool search_make(struct search *search, const struct scenario *scenario, const char *text,
-                 const struct parallel *parallel, struct search_file *origin,
+                 const struct parallel *parallel, const struct search_file *origin,
                  stance_message *message);
 void search_free(struct search *search);
 

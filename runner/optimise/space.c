@@ -24,25 +24,25 @@ static double half_width(const struct scenario *s, int i)
     for (size_t j = 0; s->sample.given && j < s->sample.design.factors; j++) {
         const struct scenario_factor *const f = &s->sample.factor[j];
         for (int k = 0; k < f->paths; k++) {
-            if (axis->offset[f->first + k] != place)
-                continue;
             double least = INFINITY, most = -INFINITY;
             for (size_t p = 0; p < f->points; p++) {
                 least = fmin(least, f->value[p * (size_t)f->paths + (size_t)k]);
                 most = fmax(most, f->value[p * (size_t)f->paths + (size_t)k]);
             }
-            width = fmax(width, (most - least) / 2);
+            if (axis->offset[f->first + k] == place)
+                width = fmax(width, (most - least) / 2);
         }
     }
     return width;
 }
 
-static double widest(const struct scenario *s, bool rate)
+/* The same of an angle or a rate that need not be sampled: the widest of its kind stands in. */
+static double width_of(const struct scenario *s, int coordinate, bool rate)
 {
-    const int n = s->scene->coordinates;
-    double width = 0;
-    for (int i = 0; i < n; i++)
-        width = fmax(width, half_width(s, rate ? n + i : i));
+    const int n = s->scene->coordinates, first = rate ? n : 0;
+    double width = half_width(s, first + coordinate);
+    for (int i = 0, own = width > 0; !own && i < n; i++)
+        width = fmax(width, half_width(s, first + i));
     return width > 0 ? width : usual[rate];
 }
 
@@ -54,8 +54,7 @@ static double gain_unit(const struct scenario *s, size_t actuator, size_t column
     double limit[STANCE_MAX_ACTUATORS];
     stance_torque_limits(s->scene, s->base.robot, s->base.torque_limit, s->base.torque_limits,
                          limit);
-    const double width = half_width(s, rate ? s->scene->coordinates + coordinate : coordinate);
-    return limit[actuator] / (width > 0 ? width : widest(s, rate));
+    return limit[actuator] / width_of(s, coordinate, rate);
 }
 
 /* Of a law's parameter: for each coordinate of the posture that of a gain, of its angle or, in
@@ -82,38 +81,28 @@ static double coordinate_of(enum scenario_scale scale, double unit, double value
     return (scale == SCALE_EVEN ? value : log(fabs(value))) / unit;
 }
 
-/* Whether a number is a gain, and then its place in the matrix of them. */
-static bool is_gain(const struct scenario *s, int k, size_t *place)
-{
-    const size_t gains = offsetof(struct scenario_values, gains);
-    const size_t offset = s->search.axis.offset[k];
-    *place = (offset - gains) / sizeof(double);
-    return offset >= gains && offset < gains + sizeof s->base.gains;
-}
-
 void space_make(struct space *space, const struct scenario *s)
 {
     const struct scenario_search *const search = &s->search;
     const size_t columns = 2 * (size_t)s->scene->postures;
+    const size_t gains = offsetof(struct scenario_values, gains);
     *space = (struct space){.search = search, .n = search->axis.paths};
     for (int i = 0; i < space->n; i++) {
         const struct scenario_varied *const v = &search->varied[i];
-        size_t place;
+        const size_t offset = search->axis.offset[i], place = (offset - gains) / sizeof(double);
         double value;
-        memcpy(&value, (const char *)&s->base + search->axis.offset[i], sizeof value);
-        space->gain[i] = is_gain(s, i, &place);
-        space->unit[i] = !isnan(v->unit)  ? v->unit
-                         : space->gain[i] ? gain_unit(s, place / columns, place % columns)
-                                          : law_unit(s, i);
-        space->first[i] = coordinate_of(v->scale, space->unit[i], value);
-        const double a = v->low == 0 && v->scale != SCALE_EVEN
-                             ? -INFINITY
-                             : coordinate_of(v->scale, space->unit[i], v->low);
-        const double b = v->high == 0 && v->scale != SCALE_EVEN
-                             ? -INFINITY
-                             : coordinate_of(v->scale, space->unit[i], v->high);
-        space->low[i] = fmin(fmin(a, b), space->first[i]);
-        space->high[i] = fmax(fmax(a, b), space->first[i]);
+        memcpy(&value, (const char *)&s->base + offset, sizeof value);
+        space->gain[i] = offset >= gains && offset < gains + sizeof s->base.gains;
+        const double unit = !isnan(v->unit)  ? v->unit
+                            : space->gain[i] ? gain_unit(s, place / columns, place % columns)
+                                             : law_unit(s, i);
+        const double first = coordinate_of(v->scale, unit, value);
+        const double a = coordinate_of(v->scale, unit, v->low),
+                     b = coordinate_of(v->scale, unit, v->high); /* of 0 -INFINITY by ratios */
+        space->unit[i] = unit;
+        space->first[i] = first;
+        space->low[i] = fmin(fmin(a, b), first);
+        space->high[i] = fmax(fmax(a, b), first);
     }
 }
 

@@ -95,10 +95,9 @@ void trials_free(struct trials *t)
 /* How fast a loop that is not stable departs: above 0, below MOST_SHORT. */
 static double instability(const struct design_report *r)
 {
-    double largest = 0;
-    for (int i = 0; i < r->states; i++)
-        largest = fmax(largest, r->closed_re[i]);
-    const double excess = r->sampled ? r->radius - 1 : largest;
+    double excess = r->sampled ? r->radius - 1 : 0;
+    for (int i = 0; !r->sampled && i < r->states; i++)
+        excess = fmax(excess, r->closed_re[i]);
     return fmin(fmax(excess, 0), MOST_SHORT - 1);
 }
 
@@ -128,7 +127,7 @@ static void look_at_loop(const struct trials *t, uint64_t index, struct scenario
 }
 
 /* Each rank a block of them. */
-static bool look_at_loops(struct trials *t, size_t candidates, uint64_t starts)
+static bool look_at_loops(struct trials *t, size_t candidates)
 {
     const size_t pairs = candidates * t->circumstances;
     const size_t ranks = (size_t)t->parallel->size, rank = (size_t)t->parallel->rank;
@@ -138,7 +137,7 @@ static bool look_at_loops(struct trials *t, size_t candidates, uint64_t starts)
     if (one)
         *one = *t->scenario;
     for (size_t p = first; one && report && p < end; p++)
-        look_at_loop(t, p * starts, one, report, &t->loop[p]);
+        look_at_loop(t, p * t->starts, one, report, &t->loop[p]);
     const bool good = one && report;
     free(one);
     free(report);
@@ -149,23 +148,16 @@ static bool look_at_loops(struct trials *t, size_t candidates, uint64_t starts)
 
 /* ---- cases ---------------------------------------------------------------------------------- */
 
-/* What is computed together. */
-struct batch {
-    struct trials *t;
-    uint64_t starts, cases;
-    const int64_t *weight;
-};
-
 static bool is_tried(void *context, uint64_t row)
 {
-    const struct batch *const batch = context;
-    return batch->t->loop[row / batch->starts].tried;
+    const struct trials *const t = context;
+    return t->loop[row / t->starts].tried;
 }
 
 static bool attend(void *context, double now)
 {
-    const struct batch *const batch = context;
-    return batch->t->attend && batch->t->attend(batch->t->context, now);
+    const struct trials *const t = context;
+    return t->attend && t->attend(t->context, now);
 }
 
 /* What a recovered start is worth: 1 or an answer, less prices. */
@@ -186,18 +178,15 @@ static int64_t worth_of(const struct scenario_search *search, const stance_resul
 
 static void end_case(void *context, uint64_t row, const stance_result *result)
 {
-    struct batch *const batch = context;
-    struct trials *const t = batch->t;
+    struct trials *const t = context;
     if (result->status == STANCE_DONE && trials_recovered(result->outcome + 1))
-        t->worth[row / batch->starts] +=
-            batch->weight[row % batch->starts] * worth_of(&t->scenario->search, result);
-    batch->cases += result->failure != STANCE_FAILURE_INITIAL;
+        t->worth[row / t->starts] +=
+            t->counts[row % t->starts] * worth_of(&t->scenario->search, result);
+    t->own_cases += result->failure != STANCE_FAILURE_INITIAL;
 }
 
-static enum trials_end simulate(struct trials *t, const struct plan *plan, uint64_t starts,
-                                const int64_t *weight, stance_message *message)
+static enum trials_end simulate(struct trials *t, const struct plan *plan, stance_message *message)
 {
-    struct batch batch = {.t = t, .starts = starts, .weight = weight};
     struct work work = {.plan = plan,
                         .parallel = t->parallel,
                         .quiet = true,
@@ -206,8 +195,9 @@ static enum trials_end simulate(struct trials *t, const struct plan *plan, uint6
                         .ends = end_case,
                         .takes = is_tried,
                         .attend = t->parallel->rank == 0 ? attend : NULL,
-                        .context = &batch,
+                        .context = t,
                         .cycle = t->circumstances};
+    t->own_cases = 0;
     parallel_restart(t->parallel);
     const bool good = work_run(&work, NULL, t->label, message);
     t->beats = work.beats;
@@ -217,11 +207,10 @@ static enum trials_end simulate(struct trials *t, const struct plan *plan, uint6
     parallel_sum(t->parallel, &stopped, 1);
     if (stopped)
         return TRIALS_STOPPED;
-    const size_t pairs = plan->rows / starts;
     parallel_largest(t->parallel, t->label, plan->rows);
-    parallel_sum(t->parallel, (uint64_t *)t->worth, (int)pairs);
-    parallel_sum(t->parallel, &batch.cases, 1);
-    t->cases += batch.cases;
+    parallel_sum(t->parallel, (uint64_t *)t->worth, (int)(plan->rows / t->starts));
+    parallel_sum(t->parallel, &t->own_cases, 1);
+    t->cases += t->own_cases;
     return TRIALS_DONE;
 }
 
@@ -249,71 +238,101 @@ static enum trials_end take_kernels(struct trials *t, const struct plan *plan,
                                       : TRIALS_BROKEN;
 }
 
-enum trials_end trials_run(struct trials *t, size_t candidates, double *value,
-                           enum trials_starts which, uint64_t starts, stance_message *message)
+/* What is tried, from which starts. */
+static void take_points(struct trials *t, size_t candidates, double *value,
+                        enum trials_starts which, uint64_t starts)
 {
     struct scenario *const at = t->at;
     struct scenario_axis *const sample = &at->axis[at->axes - 1];
-    struct plan plan;
-    struct plan_error error = {0};
-    const size_t pairs = candidates * t->circumstances;
     at->axis[0].value = value;
     at->axis[0].count = candidates;
     sample->value = t->start[which];
     sample->count = starts;
-    at->cases = pairs * starts;
+    at->cases = candidates * t->circumstances * starts;
     at->seed = trials_seed(t->scenario, which);
-    bool good = plan_make(&plan, at, false, 0, false, &error);
-    if (!good)
-        *message = error.message;
+    t->starts = starts;
+    t->counts = t->weight[which];
+}
+
+/* Room for what comes out of so many pairs of a candidate and a circumstance. */
+static bool make_room(struct trials *t, size_t pairs)
+{
     free(t->label);
     free(t->worth);
     free(t->loop);
-    t->label = calloc(pairs * starts, 1);
+    t->label = calloc(pairs * t->starts, 1);
     t->worth = calloc(pairs, sizeof *t->worth);
     t->loop = calloc(pairs, sizeof *t->loop);
-    if (good && !(t->label && t->worth && t->loop))
-        good = complain(message, "not enough memory for %zu candidates", candidates);
-    if (!parallel_agree(t->parallel, good, message->text, sizeof message->text)) {
-        plan_free(&plan);
+    return t->label && t->worth && t->loop;
+}
+
+static enum trials_end run_plan(struct trials *t, struct plan *plan, size_t candidates,
+                                stance_message *message)
+{
+    struct plan_error error = {0};
+    plan->stop = stop_designs;
+    plan->stop_context = t;
+    /* Where no design exists all candidates are refused. */
+    if (!plan_compute_designs(plan, t->parallel, &error) && !error.message.text[0])
+        return TRIALS_STOPPED;
+    parallel_broadcast(t->parallel, plan->design,
+                       plan->designs * plan->design_size * sizeof *plan->design);
+    parallel_broadcast(t->parallel, plan->design_status, plan->designs);
+    const bool good = look_at_loops(t, candidates) || no_memory(message);
+    if (!parallel_agree(t->parallel, good, message->text, sizeof message->text))
         return TRIALS_BROKEN;
-    }
-    plan.stop = stop_designs;
-    plan.stop_context = t;
-    enum trials_end end = TRIALS_DONE;
-    if (!plan_compute_designs(&plan, t->parallel, &error) && !error.message.text[0])
-        end = TRIALS_STOPPED; /* where none exists all candidates are refused */
-    parallel_broadcast(t->parallel, plan.design,
-                       plan.designs * plan.design_size * sizeof *plan.design);
-    parallel_broadcast(t->parallel, plan.design_status, plan.designs);
-    if (end == TRIALS_DONE) {
-        good = look_at_loops(t, candidates, starts) ||
-               complain(message, "not enough memory for the loops");
-        good = parallel_agree(t->parallel, good, message->text, sizeof message->text);
-        end = good ? take_kernels(t, &plan, message) : TRIALS_BROKEN;
-        if (end == TRIALS_DONE)
-            end = simulate(t, &plan, starts, t->weight[which], message);
-    }
+    const enum trials_end end = take_kernels(t, plan, message);
+    return end == TRIALS_DONE ? simulate(t, plan, message) : end;
+}
+
+enum trials_end trials_run(struct trials *t, size_t candidates, double *value,
+                           enum trials_starts which, uint64_t starts, stance_message *message)
+{
+    struct plan plan;
+    struct plan_error error = {0};
+    take_points(t, candidates, value, which, starts);
+    bool good = plan_make(&plan, t->at, false, 0, false, &error);
+    if (!good)
+        *message = error.message;
+    else if (!make_room(t, candidates * t->circumstances))
+        good = complain(message, "not enough memory for %zu candidates", candidates);
+    good = parallel_agree(t->parallel, good, message->text, sizeof message->text);
+    const enum trials_end end = good ? run_plan(t, &plan, candidates, message) : TRIALS_BROKEN;
     plan_free(&plan);
-    at->axis[0].value = NULL;
-    sample->value = NULL;
     return end;
 }
 
 /* ---- the denominator ------------------------------------------------------------------------ */
 
-static double share_in(const struct trials *t, size_t circumstance, uint64_t starts)
+bool linear_limit_add(const struct scenario *s, size_t circumstance, double *inside)
 {
+    const size_t starts = s->axis[s->axes - 1].count;
     struct allowed allowed;
     stance_message ignored;
-    uint64_t inside = 0;
-    if (!allowed_make(&allowed, t->at, circumstance * starts, &ignored))
-        return NAN;
-    for (uint64_t i = 0; allowed.set && i < starts; i++)
-        inside += allowed_case(&allowed, t->at, circumstance * starts + i);
-    const double share = allowed.set ? (double)inside / (double)starts : NAN;
+    if (!scenario_law(&s->base)->designed ||
+        !allowed_make(&allowed, s, circumstance * starts, &ignored))
+        return false;
+    const bool exists = allowed.set != NULL;
+    for (size_t i = 0; exists && i < starts; i++)
+        inside[i] += allowed_case(&allowed, s, circumstance * starts + i);
     allowed_free(&allowed);
-    return share;
+    return exists;
+}
+
+void linear_limit_shares(struct trials *t, double *value, uint64_t starts, double *share)
+{
+    double *const inside = malloc(starts * sizeof *inside);
+    take_points(t, 1, value, TRIALS_FRESH, starts);
+    for (size_t c = 0; c < t->circumstances; c++) {
+        double sum = 0;
+        if (inside)
+            memset(inside, 0, starts * sizeof *inside);
+        const bool known = inside && linear_limit_add(t->at, c, inside);
+        for (uint64_t i = 0; known && i < starts; i++)
+            sum += inside[i];
+        share[c] = known ? sum / (double)starts : NAN;
+    }
+    free(inside);
 }
 
 double linear_limit_overall(bool worst, size_t circumstances, const double *share, size_t *least)
@@ -329,18 +348,4 @@ double linear_limit_overall(bool worst, size_t circumstances, const double *shar
         return *least < circumstances ? share[*least] : NAN;
     *least = circumstances;
     return sum / (double)circumstances;
-}
-
-void linear_limit_shares(struct trials *t, double *value, uint64_t starts, double *share)
-{
-    struct scenario_axis *const candidate = &t->at->axis[0];
-    struct scenario_axis *const sample = &t->at->axis[t->at->axes - 1];
-    candidate->value = value;
-    candidate->count = 1;
-    sample->value = t->start[TRIALS_FRESH];
-    sample->count = starts;
-    for (size_t c = 0; c < t->circumstances; c++)
-        share[c] = scenario_law(&t->scenario->base)->designed ? share_in(t, c, starts) : NAN;
-    candidate->value = NULL;
-    sample->value = NULL;
 }

@@ -40,7 +40,11 @@ struct trials {
     uint8_t *label;
     int64_t *worth; /* sum over recovered starts of weight times value, in TRIALS_WORTH */
     struct trials_loop *loop;
-    uint64_t cases;   /* simulated so far, by all ranks */
+    uint64_t cases; /* simulated so far, by all ranks */
+    /* Of the run at hand: starts, what each counts, cases of this rank. */
+    size_t starts;
+    const int64_t *counts;
+    uint64_t own_cases;
     double compiling; /* s, that the kernels took */
     /* Told about every millisecond, on rank 0: true, to stop. */
     bool (*attend)(void *context, double now);
@@ -85,10 +89,13 @@ static inline uint64_t trials_seed(const struct scenario *s, enum trials_starts 
                                     : s->seed + 1;
 }
 
-/* The denominator of a search, from which fresh starts linear theory allows any controller to
- * recover (engine/control/null_controllable.c): share of the first `starts` fresh starts of the
- * candidate value[paths] in each circumstance, share[circumstances]; NAN: linear theory sets no
- * bound there. */
+/* The denominator of a search, from which starts linear theory allows any controller to recover
+ * (engine/control/null_controllable.c). Adds 1 to inside[starts] of each of these, the points of
+ * the scenario's last axis, in a circumstance, a point of the axes before it; false: linear theory
+ * sets no bound there. */
+bool linear_limit_add(const struct scenario *s, size_t circumstance, double *inside);
+/* Share of the first `starts` fresh starts of the candidate value[paths] in each circumstance,
+ * share[circumstances]; NAN: linear theory sets no bound there. */
 void linear_limit_shares(struct trials *trials, double *value, uint64_t starts, double *share);
 
 /* What these allow a search as it counts: no more than in the circumstance *least, that with the

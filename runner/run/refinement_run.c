@@ -68,18 +68,17 @@ static bool run_round(struct refinement *refinement, bool *complete, bool *stopp
 static bool are_stored(struct refinement *refinement, const struct rows *list, bool *stored,
                        stance_message *message)
 {
-    stance_result results[STORE_ROWS];
-    bool whole[STORE_ROWS];
+    struct store_found found[STORE_ROWS];
 
     *stored = refinement->work->resume;
     for (uint64_t at = 0, n; refinement->work->resume && at < list->count; at += n) {
         n = list->count - at < STORE_ROWS ? list->count - at : STORE_ROWS;
         const struct rows rows = rows_part(list, at, n);
-        if (!work_verify(refinement->work, &rows, results, whole, message))
+        if (!work_verify(refinement->work, &rows, found, message))
             return false;
         for (uint64_t i = 0; i < n; i++) {
             const int label = refine_label(refinement->refine, rows_at(&rows, i));
-            *stored = *stored && whole[i] && (int)results[i].outcome == label - 1;
+            *stored = *stored && found[i].whole && found[i].outcome == label - 1;
         }
     }
     return true;

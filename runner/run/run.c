@@ -10,7 +10,6 @@
 #include "runner/base/message.h"
 #include "runner/base/units.h"
 #include "runner/plan/warnings.h"
-#include "runner/store/changed_scenario.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -82,76 +81,6 @@ static void name_file(struct run *run)
     }
 }
 
-/* Shows where they differ. */
-bool run_same_scenario(struct run *run, const char *file, const char *old)
-{
-    const char *new = run->scenario->text;
-    char *text = NULL; /* in one piece */
-    size_t size = 0;
-
-    if (strcmp(old, new) == 0 || (file == run->file && run->options.force_scenario)) {
-        run->succeed = strcmp(old, new) != 0;
-        return true;
-    }
-    const size_t lines = changed_scenario_differences(NULL, old, new);
-    FILE *to = open_memstream(&text, &size);
-    if (to) {
-        fprintf(to,
-                "stance run: %.200s was made from another scenario%s; %zu line%s of the resolved "
-                "text differ%s:\n",
-                file, file == run->file ? " (--force-scenario goes on with this one)" : "", lines,
-                lines == 1 ? "" : "s", lines == 1 ? "s" : "");
-        changed_scenario_differences(to, old, new);
-        if (fclose(to) == 0)
-            fputs(text, stderr);
-        free(text);
-    }
-    run->failure.code = EXIT_USAGE;
-    return false;
-}
-
-/* A file keeps to the shard that it was made for, or to all cases. */
-static bool same_shard(struct run *run)
-{
-    const struct shard *own = &run->old.origin.shard, *asked = &run->options.shard;
-    char text[SHARD_TEXT];
-    if (own->number == asked->number && own->count == asked->count)
-        return true;
-    shard_text(own, text);
-    if (own->count == 0)
-        return run_fail(run, EXIT_USAGE,
-                        "stance run: %.200s is not of a shard: go on with it without --shard",
-                        run->file);
-    return run_fail(run, EXIT_USAGE,
-                    "stance run: %.200s is of shard %s: go on with it by --shard %s, or merge it "
-                    "with the others",
-                    run->file, text, text);
-}
-
-/* An existing file that is to be gone on with. */
-static bool look_into_file(struct run *run)
-{
-    struct scenario *const s = run->scenario;
-    const struct store_origin *const origin = &run->old.origin;
-    run->failure.code = run_check_file(run, run_check_results, run->file);
-    if (run->failure.code != EXIT_DONE)
-        return false; /* it has been said why */
-    if (euidaccess(run->file, W_OK) != 0)
-        return run_fail(run, EXIT_IO, "stance run: %.150s: cannot write there: %s", run->file,
-                        strerror(errno));
-    run->old.file = run->file;
-    if (!store_read_origin(run->file, &run->old.origin, &run->message))
-        return run_fail_io(run);
-    if (!same_shard(run) || !run_same_scenario(run, run->file, origin->scenario))
-        return false;
-    if ((run->succeed && !changed_scenario_check_sweep(&run->old, s, &run->message)) ||
-        !store_same_points(run->file, origin, s, &run->message))
-        return run_fail(run, EXIT_USAGE, "stance run: %s", run->message.text);
-    if (!run->succeed)
-        run_warn_of_revision(run, run->file, origin->revision);
-    return store_read_axes(run->file, s->axis, s->axes, &run->message) || run_fail_io(run);
-}
-
 /* Rank 0: where the results go, whether they may, and nobody else writes there. */
 static void take_file(struct run *run)
 {
@@ -163,10 +92,7 @@ static void take_file(struct run *run)
     changed_scenario_clear(run->file);
     run->resume = exists && o->resume;
     run->replace = exists && o->force;
-    if (run->resume)
-        look_into_file(run);
-    else if (o->extend_count > 0)
-        run_extend_open(run);
+    run_old_open(run);
 }
 
 static void stage_claim(struct run *run)
@@ -227,8 +153,7 @@ static void stage_plan(struct run *run)
     run->plan.stop_context = run;
 }
 
-/* A stop before there is a file. */
-static void stop_early(struct run *run, const char *what)
+void run_stop_early(struct run *run, const char *what)
 {
     if (run->failure.code == EXIT_DONE) {
         run->failure.code = EXIT_INTERRUPTED;
@@ -265,7 +190,7 @@ static void stage_designs(struct run *run)
     run->plan.patience = run->options.dry_run ? PLAN_PATIENCE_DESIGNS : 0;
     good = plan_compute_designs(&run->plan, &run->parallel, &error);
     if (!good && !error.message.text[0]) {
-        stop_early(run, "stopped while designs were computed: nothing is stored");
+        run_stop_early(run, "stopped while designs were computed: nothing is stored");
         return;
     }
     if (good && run->parallel.rank == 0)
@@ -292,8 +217,8 @@ static void stage_kernels(struct run *run)
     const enum exit_code code =
         kernels_take(&run->kernels, &run->plan, &choice, &run->parallel, &message);
     if (code == EXIT_INTERRUPTED)
-        stop_early(run, run->resume ? "stopped while kernels were compiled"
-                                    : "stopped while kernels were compiled: nothing is stored");
+        run_stop_early(run, run->resume ? "stopped while kernels were compiled"
+                                        : "stopped while kernels were compiled: nothing is stored");
     else if (code != EXIT_DONE)
         run_fail(run, code, "stance run: %s", message.text);
 }
@@ -323,34 +248,13 @@ static char *collect_hosts(const struct parallel *parallel)
     return list;
 }
 
-/* The file goes on with a scenario that is not its own. */
-static void succeed(struct run *run, const char *hosts)
-{
-    struct store_copied copied;
-    bool refused;
-    if (changed_scenario_make(&run->old, &run->plan, run->parallel.size, hosts, &copied, &refused,
-                              &run->message)) {
-        fprintf(stderr,
-                "stance run: %.200s goes on with another scenario; %" PRIu64 " of its %" PRIu64
-                " cases are done and stay as they are",
-                run->file, copied.copied, run->plan.rows);
-        if (copied.damaged > 0)
-            fprintf(stderr, ", %" PRIu64 " did not verify", copied.damaged);
-        fputc('\n', stderr);
-    } else if (run->message.text[0]) {
-        run_fail(run, refused ? EXIT_USAGE : EXIT_IO, "stance run: %s", run->message.text);
-    } else {
-        stop_early(run, "stopped before the file could go on with another scenario");
-    }
-}
-
 static void stage_create(struct run *run)
 {
     if (run->resume && !run->succeed)
         return;
     char *hosts = collect_hosts(&run->parallel);
     if (run->parallel.rank == 0 && run->succeed) {
-        succeed(run, hosts);
+        run_succeed(run, hosts);
     } else if (run->parallel.rank == 0) {
         if (run->replace && unlink(run->file) != 0) {
             run_fail(run, EXIT_IO, "stance run: cannot replace %.150s: %s", run->file,

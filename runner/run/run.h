@@ -1,6 +1,6 @@
-/* run.h - what the parts of `stance run` share: run.c (the stages), run_options.c, run_extend.c
- * (rows of a smaller design), run_end.c (what is said at the end), and claim.c, whose functions
- * `stance optimise` shares, too. */
+/* run.h - what the parts of `stance run` share: run.c (the stages), run_options.c, old.c (the file
+ * there was), run_end.c (what is said at the end), and claim.c, whose functions `stance optimise`
+ * shares, too. */
 #ifndef STANCE_RUN_RUN_H
 #define STANCE_RUN_RUN_H
 
@@ -69,8 +69,6 @@ void run_stage_options(struct run *run);
      (run)->failure.code = (exit_code), as_false())
 /* With run->message. */
 bool run_fail_io(struct run *run);
-/* Whether a file, whose scenario's text is given, is of this scenario; fails where not. */
-bool run_same_scenario(struct run *run, const char *file, const char *text);
 /* Exit code of a look into a file, in a process of its own; says what is wrong. */
 int run_check_file(const struct run *run, bool (*check)(const char *, stance_message *),
                    const char *file);
@@ -101,13 +99,18 @@ bool run_share_scenario(struct run *run);
  * `results`, which is made. */
 bool run_claim_file(struct run *run, bool *exists);
 
-/* run_extend.c. Whether a scenario can be extended; fails where not. */
+/* old.c, on rank 0, each fails where that cannot be. What --resume goes on with, or --extend from
+ * (which is locked): whether it is of the scenario, which takes over its axes. */
+bool run_old_open(struct run *run);
+/* Whether a scenario can be extended; the old file's designs into the plan; its rows into the open
+ * file. */
 bool run_extend_check(struct run *run, const struct scenario *s);
-/* On rank 0: locks the old file and takes over its axes; then its designs into those of the plan;
- * its rows into the open file. These fail where that cannot be. */
-bool run_extend_open(struct run *run);
 bool run_extend_designs(struct run *run);
 bool run_extend_copy(struct run *run);
+/* The file goes on with a scenario that is not its own. */
+void run_succeed(struct run *run, const char *hosts);
+/* A stop before there is a file. */
+void run_stop_early(struct run *run, const char *what);
 
 /* On rank 0: that the run stopped, and the command that goes on with it. */
 void run_say_stopped(const struct run *run, const char *what);

@@ -286,13 +286,13 @@ static void note_damage(struct work *work, uint64_t row)
     }
 }
 
-bool work_verify(struct work *work, const struct rows *rows, stance_result *results, bool *whole,
+bool work_verify(struct work *work, const struct rows *rows, struct store_found *found,
                  stance_message *message)
 {
-    if (!store_verify(work->store, rows, results, whole, message))
+    if (!store_verify(work->store, rows, found, message))
         return false;
     for (size_t i = 0; i < rows->count; i++)
-        if (!whole[i] && results[i].status != STANCE_PENDING)
+        if (!found[i].whole && found[i].status != STANCE_PENDING)
             note_damage(work, rows_at(rows, i));
     return true;
 }
@@ -301,19 +301,18 @@ bool work_verify(struct work *work, const struct rows *rows, stance_result *resu
 static void keep_rows(struct job *job, struct block *block)
 {
     const double start = clock_seconds();
-    stance_result results[STORE_ROWS];
-    bool whole[STORE_ROWS];
+    struct store_found found[STORE_ROWS];
 
     for (size_t slot = 0, n; slot < block->count && !job->broken; slot += n) {
         n = block->count - slot < STORE_ROWS ? block->count - slot : STORE_ROWS;
         const struct rows rows = rows_part(&job->schedule.rows, block->first + slot, n);
-        if (!work_verify(job->work, &rows, results, whole, job->message)) {
+        if (!work_verify(job->work, &rows, found, job->message)) {
             break_off(job);
             return;
         }
         for (size_t i = 0; i < n; i++) {
-            if (whole[i]) {
-                tally(job, block->first + slot + i, results[i].status, results[i].outcome);
+            if (found[i].whole) {
+                tally(job, block->first + slot + i, found[i].status, found[i].outcome);
                 block->state[slot + i] = STORED;
                 block->open--;
                 job->kept++;

@@ -68,7 +68,7 @@ bool work_told_to_stop(const struct work *work);
 void work_tally(struct work *work, stance_status status, stance_outcome outcome);
 
 /* store_verify for a resumed run: counts what is damaged. */
-bool work_verify(struct work *work, const struct rows *rows, stance_result *results, bool *whole,
+bool work_verify(struct work *work, const struct rows *rows, struct store_found *found,
                  stance_message *message);
 
 /* Collective: computes all rows of the plan, or `only` some, the same on every rank, with counters

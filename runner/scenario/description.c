@@ -6,14 +6,28 @@
 #include "description.h"
 
 #include <math.h>
+#include <stdarg.h>
 #include <string.h>
 
-const char *description_path(char path[DESCRIPTION_PATH], enum part part, const char *name,
+const char *description_path(char path[DESCRIPTION_PATH], enum part part, const struct entry *entry,
                              const char *key)
 {
-    snprintf(path, DESCRIPTION_PATH, "%s.%s.%.40s%s%.95s", part_kinds[part].in,
-             part_kinds[part].key, name, key[0] ? "." : "", key);
+    snprintf(path, DESCRIPTION_PATH, "%s.%s.%.64s%s%.64s", part_kinds[part].in,
+             part_kinds[part].key, entry->key->name, key[0] ? "." : "", key);
     return path;
+}
+
+void description_report(struct description *d, enum part part, const struct entry *entry,
+                        const char *key, const char *format, ...)
+{
+    const struct tree_node *const node = tree_find(entry->map, key);
+    char path[DESCRIPTION_PATH], text[PROBLEM_TEXT];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    problem_record(&d->r->problems, node ? node->mark : entry->key->mark, "%s%s",
+                   description_path(path, part, entry, key), text);
 }
 
 /* ---- numbers --------------------------------------------------------------------------------- */
@@ -24,8 +38,7 @@ static double *places(stance_mechanism *m)
 }
 
 /* Why a key that there is may not stand in part i. */
-static bool misplaced(struct description *d, const struct part_key *key, int i, const char *path,
-                      struct mark mark)
+static const char *misplaced(const struct description *d, const struct part_key *key, int i)
 {
     static const char *const joint[] = {
         [STANCE_FREE] = "a free root has no joint",
@@ -33,17 +46,19 @@ static bool misplaced(struct description *d, const struct part_key *key, int i, 
         [STANCE_SLIDE] = "what slides has no such number",
         [STANCE_FIXED] = "what is fixed has no joint",
     };
-    return problem_add(description_problems(d), mark, "%s: %s", path,
-                       key->part == PART_BODY ? joint[d->m->body[i].joint]
-                       : key->part == PART_POINT
-                           ? "a push has force, from and to, a stroke impulse and "
-                             "from"
-                       : key->part == PART_PLATE
-                           ? key->grounds == 1 << STANCE_ROUGH
-                                 ? "only rough ground has one: see kind"
-                                 : "one plate has none, stairs and rough ground have: see kind"
-                       : key->of_point ? "a sole, or a capsule, has from and to"
-                                       : "a contact has at, or from and to: not both");
+    switch (key->part) {
+    case PART_BODY:
+        return joint[d->m->body[i].joint];
+    case PART_POINT:
+        return "a push has force, from and to, a stroke impulse and from";
+    case PART_PLATE:
+        return key->grounds == 1 << STANCE_ROUGH
+                   ? "only rough ground has one: see kind"
+                   : "one plate has none, stairs and rough ground have: see kind";
+    default:
+        return key->of_point ? "a sole, or a capsule, has from and to"
+                             : "a contact has at, or from and to: not both";
+    }
 }
 
 static bool read_key(struct description *d, const struct part_key *key, int i,
@@ -51,25 +66,24 @@ static bool read_key(struct description *d, const struct part_key *key, int i,
 {
     const struct tree_node *const node = tree_find(entry->map, key->field.path);
     const int count = part_numbers(key), place = part_place(d->m, key, i);
+    struct problems *const problems = &d->r->problems;
     struct scenario_field row = key->field;
     char path[DESCRIPTION_PATH], name[DESCRIPTION_PATH + 8];
-    description_path(path, key->part, entry->key->name, row.path);
+    description_path(path, key->part, entry, row.path);
     snprintf(row.unit, sizeof row.unit, "%s", part_unit(d->m, key, i));
     if (place < 0)
-        return misplaced(d, key, i, path, node->mark);
+        return problem_add(problems, node->mark, "%s: %s", path, misplaced(d, key, i));
     double *const value = &places(d->m)[place];
     d->given[place] = true;
     if (key->part == PART_POINT && d->m->point[i].swings && !tree_find(entry->map, "to"))
         d->m->value.point[i].to = INFINITY;
     if (count == 1)
-        return field_number(description_problems(d), &row, path, node, value);
-    if (!field_items(description_problems(d), path, node, 2, "numbers"))
-        return false;
-    bool good = true;
-    for (int k = 0; k < 2; k++) {
+        return field_number(problems, &row, path, node, value);
+    bool good = field_items(problems, path, node, 2, "numbers");
+    for (int k = 0; k < 2 && node->kind == TREE_LIST && node->count == 2; k++) {
         snprintf(name, sizeof name, "%s[%d]", path, k);
         d->given[place + k] = true;
-        good = field_number(description_problems(d), &row, name, node->item[k], &value[k]) && good;
+        good = field_number(problems, &row, name, node->item[k], &value[k]) && good;
     }
     if (isinf(value[0])) /* no lower stop */
         value[0] = -INFINITY;
@@ -113,23 +127,15 @@ static bool read_numbers(struct description *d, enum part part, int i)
 
 /* ---- which of them are robot[] --------------------------------------------------------------- */
 
-/* Whether an axis of a list of them names a path. */
-static bool names_path(const struct tree_node *list, const char *path)
+/* Whether a node is a path, or a list in which it stands. */
+static bool names_path(const struct tree_node *node, const char *path)
 {
-    for (size_t i = 0; list && list->kind == TREE_LIST && i < list->count && i < SCENARIO_MAX_AXES;
-         i++) {
-        const struct tree_node *const one = tree_find(list->item[i], "path"), *const some =
-                                                                                  tree_find(
-                                                                                      list->item[i],
-                                                                                      "paths");
-        if (one && one->kind == TREE_SCALAR && strcmp(one->text, path) == 0)
-            return true;
-        for (size_t k = 0;
-             some && some->kind == TREE_LIST && k < some->count && k < SCENARIO_MAX_PATHS; k++)
-            if (some->item[k]->kind == TREE_SCALAR && strcmp(some->item[k]->text, path) == 0)
-                return true;
-    }
-    return false;
+    if (!node || node->kind == TREE_SCALAR)
+        return node && strcmp(node->text, path) == 0;
+    bool found = false;
+    for (size_t i = 0; node->kind == TREE_LIST && i < node->count && i < SCENARIO_MAX_PATHS; i++)
+        found = found || (node->item[i]->kind == TREE_SCALAR && names_path(node->item[i], path));
+    return found;
 }
 
 /* The value below keys, or NULL. */
@@ -143,12 +149,18 @@ static const struct tree_node *find_below(const struct tree_node *node, const ch
 /* Whether the sweep varies the number at a path below robot, ground or the model. */
 static bool is_varied(const struct description *d, const char *of, const char *path)
 {
-    const struct tree_node *const root = d->r->tree.root;
+    static const char *const lists[][4] = {{"sweep", "grid"}, {"sweep", "sample", "vary"}};
     char whole[DESCRIPTION_PATH + 24];
+    bool found = false;
     snprintf(whole, sizeof whole, "%s.%s", of, path);
-    return names_path(find_below(root, (const char *const[]){"sweep", "grid", NULL}), whole) ||
-           names_path(find_below(root, (const char *const[]){"sweep", "sample", "vary", NULL}),
-                      whole);
+    for (size_t k = 0; k < sizeof lists / sizeof lists[0]; k++) {
+        const struct tree_node *const list = find_below(d->r->tree.root, lists[k]);
+        for (size_t i = 0;
+             list && list->kind == TREE_LIST && i < list->count && i < SCENARIO_MAX_AXES; i++)
+            found = found || names_path(tree_find(list->item[i], "path"), whole) ||
+                    names_path(tree_find(list->item[i], "paths"), whole);
+    }
+    return found;
 }
 
 static void choose_key(struct description *d, const struct part_key *key, int i)
@@ -215,7 +227,7 @@ bool description_numbers(struct description *d)
                     choose_key(d, &part_keys[k], i);
     note_given(d->m);
     return (d->m->numbers <= STANCE_ROBOT_FALL_HEIGHT ||
-            problem_add(description_problems(d), description_mark(d),
+            problem_add(&d->r->problems, description_mark(d),
                         "robot: %d numbers are given; at most %d", d->m->numbers,
                         STANCE_ROBOT_FALL_HEIGHT)) &&
            good;

@@ -29,11 +29,6 @@ struct description {
     bool given[sizeof(stance_mechanism_numbers) / sizeof(double)]; /* of m->value, as numbers */
 };
 
-static inline struct problems *description_problems(struct description *d)
-{
-    return &d->r->problems;
-}
-
 /* Where the robot stands in the file; of one that it only has ground for, the file. */
 static inline struct mark description_mark(struct description *d)
 {
@@ -42,8 +37,14 @@ static inline struct mark description_mark(struct description *d)
 }
 
 /* "robot.bodies.trunk.mass". Returns path. */
-const char *description_path(char path[DESCRIPTION_PATH], enum part part, const char *name,
+const char *description_path(char path[DESCRIPTION_PATH], enum part part, const struct entry *entry,
                              const char *key);
+/* Reports a problem of a key ("": of all) of a part, where that key stands, or else the part: its
+ * path and what is wrong. Returns false. */
+#define description_refuse(...) (description_report(__VA_ARGS__), as_false())
+void description_report(struct description *d, enum part part, const struct entry *entry,
+                        const char *key, const char *format, ...)
+    __attribute__((format(printf, 5, 6)));
 
 /* Reads the numbers of all parts, whose names and links are in m, and chooses those of robot[].
  * False: a problem. */

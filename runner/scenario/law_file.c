@@ -416,17 +416,10 @@ bool law_file_rows(struct schema *schema, const struct law_file *law)
         };
         snprintf(row.unit, sizeof row.unit, "%s", p->unit[0] ? p->unit : "1");
         snprintf(row.text, sizeof row.text, "%s", p->text);
-        struct scenario_field *const field = schema_add(schema, &row, "", p->name);
-        if (!field)
+        struct scenario_field *const field = schema_add(schema, &row, "%s", p->name);
+        if (!field || (p->count > 0 && (!schema_group(field, FIELD_NUMBERS, "%s", row.text) ||
+                                        !schema_add(schema, &row, "%s[]", p->name))))
             return false;
-        if (p->count == 0)
-            continue;
-        struct scenario_field *const item = schema_add(schema, &row, p->name, "[]");
-        if (!item)
-            return false;
-        field->type = FIELD_NUMBERS;
-        field->sweep = false;
-        field->offset = NO_OFFSET;
     }
     return true;
 }

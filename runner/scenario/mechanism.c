@@ -62,25 +62,23 @@ static const struct entry *namesake(const struct description *d, enum part part,
 
 static bool check_name(struct description *d, enum part part, int i)
 {
-    const struct tree_key *const key = d->entry[part][i].key;
+    const struct entry *const entry = &d->entry[part][i];
+    const struct tree_key *const key = entry->key;
     const char *const fault = name_fault(part, key->name);
     const struct entry *const other = fault ? NULL : namesake(d, part, i);
     char word[SHOWN_SIZE];
     if (fault)
-        return problem_add(description_problems(d), key->mark, "%s.%s: '%s' is no name: %s",
+        return problem_add(&d->r->problems, key->mark, "%s.%s: '%s' is no name: %s",
                            part_kinds[part].in, part_kinds[part].key, shown(word, key->name),
                            fault);
-    if (!other)
-        return true;
-    const bool rate = strcmp(other->key->name, key->name) != 0;
-    if (other->key->mark.line == 0)
-        return problem_add(description_problems(d), key->mark,
-                           "robot.%s.%s: a part of the scene is called so: choose another name",
-                           part_kinds[part].key, key->name);
-    return problem_add(description_problems(d), key->mark,
-                       "robot.%s.%s: %s in line %d is called so, too: choose another name",
-                       part_kinds[part].key, key->name, rate ? "the rate of the body" : "the part",
-                       other->key->mark.line);
+    if (other && other->key->mark.line == 0)
+        return description_refuse(d, part, entry, "",
+                                  ": a part of the scene is called so: choose another name");
+    return !other ||
+           description_refuse(
+               d, part, entry, "", ": %s in line %d is called so, too: choose another name",
+               strcmp(other->key->name, key->name) != 0 ? "the rate of the body" : "the part",
+               other->key->mark.line);
 }
 
 /* The keys of a mapping, which are those of the table. */
@@ -93,8 +91,8 @@ static bool check_keys(struct description *d, const struct tree_node *map, const
         while (k < count && strcmp(map->key[i].name, known[k]) != 0)
             k++;
         if (k == count)
-            good = field_unknown(description_problems(d), name, "key", map->key[i].name,
-                                 map->key[i].mark, known, count);
+            good = field_unknown(&d->r->problems, name, "key", map->key[i].name, map->key[i].mark,
+                                 known, count);
     }
     return good;
 }
@@ -104,9 +102,9 @@ static bool check_part(struct description *d, enum part part, const struct entry
     char path[DESCRIPTION_PATH];
     const char *known[24];
     size_t count = 0;
-    description_path(path, part, entry->key->name, "");
+    description_path(path, part, entry, "");
     if (entry->map->kind != TREE_MAP)
-        return field_mismatch(description_problems(d), path, "a mapping", entry->map);
+        return field_mismatch(&d->r->problems, path, "a mapping", entry->map);
     for (size_t k = 0; k < part_key_count; k++)
         if (part_keys[k].part == part)
             known[count++] = part_keys[k].field.path;
@@ -116,22 +114,23 @@ static bool check_part(struct description *d, enum part part, const struct entry
 static bool read_names(struct description *d, enum part part)
 {
     const struct part_kind *const kind = &part_kinds[part];
-    const struct tree_node *const in = tree_find(d->r->tree.root, kind->in),
-                                  *const map =
-                                      in && in->kind == TREE_MAP ? tree_find(in, kind->key) : NULL;
+    const struct tree_node *const in = tree_find(d->r->tree.root, kind->in), *const map =
+                                                                                 in ? tree_find(
+                                                                                          in,
+                                                                                          kind->key)
+                                                                                    : NULL;
     char path[DESCRIPTION_PATH];
     snprintf(path, sizeof path, "%s.%s", kind->in, kind->key);
     if (!map)
         return part != PART_BODY ||
-               problem_add(description_problems(d), in->mark,
+               problem_add(&d->r->problems, in->mark,
                            "robot.bodies is missing: a mechanism is made of them");
     if (map->kind != TREE_MAP)
-        return field_mismatch(description_problems(d), path, "a mapping of names, without dashes",
-                              map);
+        return field_mismatch(&d->r->problems, path, "a mapping of names, without dashes", map);
     if (map->count == 0 && part == PART_BODY)
-        return problem_add(description_problems(d), map->mark, "%s: there is no body", path);
+        return problem_add(&d->r->problems, map->mark, "%s: there is no body", path);
     if (map->count > (size_t)kind->most)
-        return problem_add(description_problems(d), map->mark, "%s: %zu of them; at most %d", path,
+        return problem_add(&d->r->problems, map->mark, "%s: %zu of them; at most %d", path,
                            map->count, kind->most);
     bool good = true;
     d->count[part] = (int)map->count;
@@ -149,48 +148,56 @@ static bool read_names(struct description *d, enum part part)
 
 /* ---- how they hang together ------------------------------------------------------------------ */
 
-/* The place in the file of the body that a key names. False: a problem, or (`required`) none. */
+/* The place in the file of the body that a key names: `body` must name one. False: a problem. */
 static bool read_body(struct description *d, enum part part, const struct entry *entry,
-                      const char *key, bool required, int *body)
+                      const char *key, int *body)
 {
     const struct tree_node *const node = tree_find(entry->map, key);
     char path[DESCRIPTION_PATH];
-    description_path(path, part, entry->key->name, key);
+    description_path(path, part, entry, key);
     *body = -1;
     if (!node)
-        return !required || problem_add(description_problems(d), entry->key->mark,
-                                        "%s is missing: the body that it %s", path,
-                                        part == PART_ACTUATOR ? "drives" : "belongs to");
+        return strcmp(key, "body") != 0 ||
+               description_refuse(d, part, entry, key, " is missing: the body that it %s",
+                                  part == PART_ACTUATOR ? "drives" : "belongs to");
     if (node->kind != TREE_SCALAR)
-        return field_mismatch(description_problems(d), path, "the name of a body", node);
+        return field_mismatch(&d->r->problems, path, "the name of a body", node);
     for (int b = 0; b < d->count[PART_BODY]; b++)
         if (strcmp(d->body_name[b], node->text) == 0)
             *body = b;
-    return *body >= 0 || field_unknown(description_problems(d), path, "body", node->text,
-                                       node->mark, d->body_name, (size_t)d->count[PART_BODY]);
+    return *body >= 0 || field_unknown(&d->r->problems, path, "body", node->text, node->mark,
+                                       d->body_name, (size_t)d->count[PART_BODY]);
+}
+
+/* The word of a key of a part, if it is given, by its place. False: a problem. */
+static bool read_word(struct description *d, enum part part, const struct entry *entry,
+                      const char *key, int *word)
+{
+    const struct tree_node *const node = tree_find(entry->map, key);
+    char path[DESCRIPTION_PATH];
+    return !node || field_word(&d->r->problems, &part_key(part, key)->field,
+                               description_path(path, part, entry, key), node, word);
 }
 
 static bool read_joint(struct description *d, struct entry *entry)
 {
     const struct scenario_field *const row = &part_keys[0].field;
-    const struct tree_node *const node = tree_find(entry->map, row->path);
-    char path[DESCRIPTION_PATH], list[80];
+    const bool root = !tree_find(entry->map, "parent");
+    char list[80];
     int word = 0;
-    description_path(path, PART_BODY, entry->key->name, row->path);
-    if (!node)
-        return problem_add(description_problems(d), entry->key->mark, "%s is missing (%s)", path,
-                           word_list(list, sizeof list, row->words, row->word_count));
-    if (!field_word(description_problems(d), row, path, node, &word))
+    if (!tree_find(entry->map, "joint"))
+        return description_refuse(d, PART_BODY, entry, "joint", " is missing (%s)",
+                                  word_list(list, sizeof list, row->words, row->word_count));
+    if (!read_word(d, PART_BODY, entry, "joint", &word))
         return false;
     entry->joint = (stance_joint)word;
-    const bool root = !tree_find(entry->map, "parent");
-    const char *const wrong =
-        entry->joint == STANCE_FIXED && root ? "a root is free, or a hinge, or slides"
-        : entry->joint == STANCE_FREE && !root
-            ? "only the root is free; what has a parent is a hinge, slides, or "
-              "is fixed"
-            : NULL;
-    return !wrong || problem_add(description_problems(d), node->mark, "%s: %s", path, wrong);
+    if (entry->joint == STANCE_FIXED && root)
+        return description_refuse(d, PART_BODY, entry, "joint",
+                                  ": a root is free, or a hinge, or slides");
+    return entry->joint != STANCE_FREE || root ||
+           description_refuse(d, PART_BODY, entry, "joint",
+                              ": only the root is free; what has a parent is a hinge, slides, or "
+                              "is fixed");
 }
 
 /* What a body is like must not be like it in turn. */
@@ -201,8 +208,7 @@ static bool check_like(struct description *d, int b)
     for (int steps = 0; other >= 0 && other != b && steps < d->count[PART_BODY]; steps++)
         other = entries[other].like;
     return other != b ||
-           problem_add(description_problems(d), tree_find(entries[b].map, "like")->mark,
-                       "robot.bodies.%s.like: it would be like itself", d->body_name[b]);
+           description_refuse(d, PART_BODY, &entries[b], "like", ": it would be like itself");
 }
 
 static bool read_links(struct description *d)
@@ -211,16 +217,16 @@ static bool read_links(struct description *d)
     for (int b = 0; b < d->count[PART_BODY]; b++) {
         struct entry *const entry = &d->entry[PART_BODY][b];
         good = read_joint(d, entry) && good;
-        good = read_body(d, PART_BODY, entry, "parent", false, &entry->parent) && good;
-        good = read_body(d, PART_BODY, entry, "like", false, &entry->like) && good;
+        good = read_body(d, PART_BODY, entry, "parent", &entry->parent) && good;
+        good = read_body(d, PART_BODY, entry, "like", &entry->like) && good;
     }
     for (int b = 0; good && b < d->count[PART_BODY]; b++)
         good = check_like(d, b);
-    for (int part = PART_CONTACT; part < ROBOT_PARTS; part++)
-        for (int i = 0; i < d->count[part]; i++)
-            good = read_body(d, (enum part)part, &d->entry[part][i], "body", true,
-                             &d->entry[part][i].body) &&
-                   good;
+    for (enum part part = PART_CONTACT; part < ROBOT_PARTS; part++)
+        for (int i = 0; i < d->count[part]; i++) {
+            struct entry *const entry = &d->entry[part][i];
+            good = read_body(d, part, entry, "body", &entry->body) && good;
+        }
     return good;
 }
 
@@ -249,7 +255,7 @@ static bool sort_bodies(struct description *d)
         }
     }
     if (roots > 1)
-        return problem_add(description_problems(d), d->entry[PART_BODY][last].key->mark,
+        return problem_add(&d->r->problems, d->entry[PART_BODY][last].key->mark,
                            "robot.bodies: %d bodies hang from nothing (%s): give all but one a "
                            "parent",
                            roots, name_some(d, false, text, sizeof text));
@@ -263,7 +269,7 @@ static bool sort_bodies(struct description *d)
     }
     for (int b = 0; b < n; b++)
         if (d->place[b] < 0)
-            return problem_add(description_problems(d), d->entry[PART_BODY][b].key->mark,
+            return problem_add(&d->r->problems, d->entry[PART_BODY][b].key->mark,
                                "robot.bodies: %s hang%s and not from a root: a tree has no loops",
                                name_some(d, true, text, sizeof text),
                                n - placed == 1 ? "s from itself" : " from each other");
@@ -336,7 +342,7 @@ static bool check_joints(struct description *d)
     for (int b = 0; b < d->m->bodies; b++)
         moving += d->m->body[b].joint != STANCE_FIXED && !(b == 0 && on_rail(d->m, b));
     return moving <= STANCE_MAX_ANGLES ||
-           problem_add(description_problems(d),
+           problem_add(&d->r->problems,
                        tree_find(tree_find(d->r->tree.root, "robot"), "bodies")->mark,
                        "robot.bodies: %d of them turn or slide against their parents; at most %d",
                        moving, STANCE_MAX_ANGLES);
@@ -346,39 +352,34 @@ static bool check_joints(struct description *d)
 static bool check_contact(struct description *d, int i)
 {
     const struct entry *const entry = &d->entry[PART_CONTACT][i];
-    const char *const name = entry->key->name;
-    bool good = !on_rail(d->m, d->m->element[i].body) ||
-                problem_add(description_problems(d), tree_find(entry->map, "body")->mark,
-                            "robot.contacts.%s.body: %s cannot move off its rail", name,
-                            d->m->body[d->m->element[i].body].name);
+    const int b = d->m->element[i].body;
     const bool at = tree_find(entry->map, "at"), from = tree_find(entry->map, "from"),
                to = tree_find(entry->map, "to");
+    bool good = !on_rail(d->m, b) ||
+                description_refuse(d, PART_CONTACT, entry, "body", ": %s cannot move off its rail",
+                                   d->m->body[b].name);
     if (!at && from != to)
-        good = problem_add(description_problems(d), entry->key->mark,
-                           "robot.contacts.%s.%s is missing: a sole has two ends", name,
-                           from ? "to" : "from");
+        good = description_refuse(d, PART_CONTACT, entry, from ? "to" : "from",
+                                  " is missing: a sole has two ends");
     else if (!at && !from)
-        good = problem_add(description_problems(d), entry->key->mark,
-                           "robot.contacts.%s.at is missing (from and to make it a sole)", name);
+        good = description_refuse(d, PART_CONTACT, entry, "at",
+                                  " is missing (from and to make it a sole)");
     return good;
 }
 
 static bool check_actuator(struct description *d, int i)
 {
     const struct entry *const entry = &d->entry[PART_ACTUATOR][i];
-    const struct tree_node *const node = tree_find(entry->map, "body");
     const int b = d->m->actuator[i].body;
     const stance_joint joint = d->m->body[b].joint;
     if (joint == STANCE_FREE || joint == STANCE_FIXED)
-        return problem_add(description_problems(d), node->mark,
-                           "robot.actuators.%s.body: %s has no joint to "
-                           "drive: it is %s",
-                           entry->key->name, node->text, joint == STANCE_FREE ? "free" : "fixed");
+        return description_refuse(d, PART_ACTUATOR, entry, "body",
+                                  ": %s has no joint to drive: it is %s", d->m->body[b].name,
+                                  joint == STANCE_FREE ? "free" : "fixed");
     for (int k = 0; k < i; k++)
         if (d->m->actuator[k].body == b)
-            return problem_add(description_problems(d), node->mark,
-                               "robot.actuators.%s.body: %s drives this joint already",
-                               entry->key->name, d->m->actuator[k].name);
+            return description_refuse(d, PART_ACTUATOR, entry, "body",
+                                      ": %s drives this joint already", d->m->actuator[k].name);
     return true;
 }
 
@@ -388,8 +389,7 @@ static bool check_push(struct description *d, int i)
     const struct entry *const entry = &d->entry[PART_POINT][i];
     return d->m->point[i].pushed != STANCE_FORCE || d->m->point[i].swings ||
            tree_find(entry->map, "to") ||
-           problem_add(description_problems(d), entry->key->mark,
-                       "robot.points.%s.to is missing: when the push ends", entry->key->name);
+           description_refuse(d, PART_POINT, entry, "to", " is missing: when the push ends");
 }
 
 /* A coordinate's own name is a name, and no other's, nor that of another's rate. */
@@ -398,15 +398,15 @@ static bool check_coordinate(struct description *d, int b)
     const struct entry *const entry = &d->entry[PART_BODY][d->back[b]];
     const struct tree_node *const node = tree_find(entry->map, "coordinate");
     char path[DESCRIPTION_PATH], text[STANCE_NAME + 8], word[SHOWN_SIZE];
-    description_path(path, PART_BODY, entry->key->name, "coordinate");
+    description_path(path, PART_BODY, entry, "coordinate");
     if (!node)
         return true;
-    if (!field_text(description_problems(d), path, node, text, sizeof text))
+    if (!field_text(&d->r->problems, path, node, text, sizeof text))
         return false;
     const char *const fault = d->m->body[b].joint == STANCE_FIXED ? "what is fixed has none"
                                                                   : name_fault(PART_BODY, text);
     if (fault)
-        return problem_add(description_problems(d), node->mark, "%s: '%s' is no name: %s", path,
+        return problem_add(&d->r->problems, node->mark, "%s: '%s' is no name: %s", path,
                            shown(word, text), fault);
     for (int other = 0; other < d->m->bodies; other++) {
         const char *const own = d->m->body[other].coordinate, *const its =
@@ -416,7 +416,7 @@ static bool check_coordinate(struct description *d, int b)
             continue;
         if (strcmp(its, text) == 0 || (text[0] == 'v' && strcmp(its, text + 1) == 0) ||
             (its[0] == 'v' && strcmp(its + 1, text) == 0))
-            return problem_add(description_problems(d), node->mark,
+            return problem_add(&d->r->problems, node->mark,
                                "%s: the coordinate of %s, or its rate, is called so, too: choose "
                                "another name",
                                path, d->m->body[other].name);
@@ -444,12 +444,8 @@ static bool read_plates(struct description *d)
     bool good = read_names(d, PART_PLATE);
     for (int i = 0; good && i < d->count[PART_PLATE]; i++) {
         struct entry *const entry = &d->entry[PART_PLATE][i];
-        const struct scenario_field *const row = &part_key(PART_PLATE, "kind")->field;
-        const struct tree_node *const node = tree_find(entry->map, row->path);
-        char path[DESCRIPTION_PATH];
         int word = STANCE_PLATE;
-        description_path(path, PART_PLATE, entry->key->name, row->path);
-        good = !node || field_word(description_problems(d), row, path, node, &word);
+        good = read_word(d, PART_PLATE, entry, "kind", &word);
         entry->ground = (stance_ground_kind)word;
     }
     return good;
@@ -461,10 +457,10 @@ static bool describe(struct description *d)
     const char *known[ROBOT_PARTS];
     bool good;
     if (!robot)
-        return problem_add(description_problems(d), d->r->tree.root->mark,
+        return problem_add(&d->r->problems, d->r->tree.root->mark,
                            "robot is missing: it describes the mechanism");
     if (robot->kind != TREE_MAP)
-        return field_mismatch(description_problems(d), "robot", "a mapping", robot);
+        return field_mismatch(&d->r->problems, "robot", "a mapping", robot);
     for (int part = 0; part < ROBOT_PARTS; part++)
         known[part] = part_kinds[part].key;
     good = check_keys(d, robot, "robot", known, ROBOT_PARTS);
@@ -512,7 +508,7 @@ static bool read_point(struct description *d, const struct tree_key *key,
     while (i < d->m->points && strcmp(d->m->point[i].name, key->name) != 0)
         i++;
     if (i == STANCE_MAX_NAMED)
-        return problem_add(description_problems(d), key->mark, "robot.points: at most %d fit",
+        return problem_add(&d->r->problems, key->mark, "robot.points: at most %d fit",
                            STANCE_MAX_NAMED);
     struct entry *const entry = &d->entry[PART_POINT][i];
     const bool more = i == d->m->points;
@@ -523,34 +519,29 @@ static bool read_point(struct description *d, const struct tree_key *key,
     d->count[PART_POINT] = d->m->points + more;
     if ((more && !check_name(d, PART_POINT, i)) || !check_part(d, PART_POINT, entry) ||
         ((more || tree_find(map, "body")) &&
-         !read_body(d, PART_POINT, entry, "body", true, &entry->body)))
+         !read_body(d, PART_POINT, entry, "body", &entry->body)))
         return false;
     d->m->points += more;
     fill_point(d, i);
     return check_push(d, i);
 }
 
-static bool read_points(struct description *d)
+/* What a file adds to a scene that is carried. */
+static bool read_carried(struct description *d, const stance_mechanism *carried)
 {
     const struct tree_node *const robot = tree_find(d->r->tree.root, "robot"),
-                                  *const map = robot && robot->kind == TREE_MAP
-                                                   ? tree_find(robot, part_kinds[PART_POINT].key)
-                                                   : NULL;
+                                  *const map =
+                                      robot ? tree_find(robot, part_kinds[PART_POINT].key) : NULL;
     bool good = true;
-    if (map && map->kind != TREE_MAP)
-        return field_mismatch(description_problems(d), "robot.points",
-                              "a mapping of names, without dashes", map);
-    for (size_t k = 0; map && k < map->count; k++)
-        good = read_point(d, &map->key[k], map->item[k]) && good;
-    return good;
-}
-
-static bool describe_carried(struct description *d, const stance_mechanism *carried)
-{
     enter_carried(d, carried);
-    const bool points = read_points(d), plates = read_plates(d);
+    if (map && map->kind != TREE_MAP)
+        good = field_mismatch(&d->r->problems, "robot.points", "a mapping of names, without dashes",
+                              map);
+    for (size_t k = 0; map && map->kind == TREE_MAP && k < map->count; k++)
+        good = read_point(d, &map->key[k], map->item[k]) && good;
+    good = read_plates(d) && good;
     fill_plates(d);
-    return points && plates && description_numbers(d);
+    return good && description_numbers(d);
 }
 
 /* ---- the scene ------------------------------------------------------------------------------- */
@@ -561,7 +552,7 @@ static bool check_contact_names(struct description *d, const stance_scene *scene
     for (int c = 0; c < scene->contacts; c++)
         for (int k = 0; k < c; k++)
             if (strcmp(scene->contact_name[c], scene->contact_name[k]) == 0)
-                return problem_add(description_problems(d), description_mark(d),
+                return problem_add(&d->r->problems, description_mark(d),
                                    "robot: %s would stand for two contacts (an end of a sole, or "
                                    "the stop of a joint, is called so): choose other names",
                                    scene->contact_name[c]);
@@ -574,9 +565,9 @@ static stance_scene *make_scene(struct description *d)
     stance_message message;
     const stance_error error = stance_mechanism_scene(d->m, &scene, &message);
     if (error == STANCE_NO_MEMORY) {
-        problem_no_memory(description_problems(d));
+        problem_no_memory(&d->r->problems);
     } else if (error != STANCE_OK) {
-        problem_add(description_problems(d), description_mark(d), "robot: %s", message.text);
+        problem_add(&d->r->problems, description_mark(d), "robot: %s", message.text);
     } else if (!check_contact_names(d, scene)) {
         stance_scene_free(scene);
         scene = NULL;
@@ -592,7 +583,7 @@ stance_scene *mechanism_read(struct reader *r, const stance_scene *carried)
     if (d && m) {
         d->r = r;
         d->m = m;
-        if (carried ? describe_carried(d, carried->mechanism) : describe(d))
+        if (carried ? read_carried(d, carried->mechanism) : describe(d))
             scene = make_scene(d);
     } else {
         problem_no_memory(&r->problems);
@@ -602,36 +593,13 @@ stance_scene *mechanism_read(struct reader *r, const stance_scene *carried)
     return scene;
 }
 
-static bool same_parts(const stance_mechanism *a, const stance_mechanism *b, enum part part)
-{
-    bool same = part_count(a, part) == part_count(b, part);
-    for (int i = 0; same && i < part_count(a, part); i++)
-        same = strcmp(part_name(a, part, i), part_name(b, part, i)) == 0 &&
-               part_body(a, part, i) == part_body(b, part, i);
-    return same;
-}
-
 bool mechanism_same(const stance_mechanism *a, const stance_mechanism *b)
 {
-    bool same = a->numbers == b->numbers && a->carried == b->carried;
-    for (int part = 0; part < PARTS; part++)
-        same = same && same_parts(a, b, (enum part)part);
-    for (int i = 0; same && i < a->bodies; i++)
-        same = a->body[i].joint == b->body[i].joint && a->body[i].bounded == b->body[i].bounded &&
-               strcmp(a->body[i].coordinate, b->body[i].coordinate) == 0;
-    for (int i = 0; same && i < a->elements; i++)
-        same =
-            a->element[i].sole == b->element[i].sole && a->element[i].rough == b->element[i].rough;
-    for (int i = 0; same && i < a->points; i++)
-        same = a->point[i].falls == b->point[i].falls && a->point[i].pushed == b->point[i].pushed &&
-               a->point[i].swings == b->point[i].swings;
-    for (int i = 0; same && i < a->plates; i++)
-        same = a->plate[i].kind == b->plate[i].kind &&
-               a->plate[i].by_footfall == b->plate[i].by_footfall &&
-               a->plate[i].rough == b->plate[i].rough;
-    for (int i = 0; same && i < a->numbers; i++)
-        same = a->number[i] == b->number[i] && a->varies[i] == b->varies[i];
-    return same;
+    const size_t before = offsetof(stance_mechanism, value),
+                 behind = offsetof(stance_mechanism, numbers);
+    /* What stands between the members is 0 in both: mechanism_read's memory. */
+    return memcmp(a, b, before) == 0 &&
+           memcmp((const char *)a + behind, (const char *)b + behind, sizeof *a - behind) == 0;
 }
 
 uint32_t mechanism_contacts(const stance_scene *scene, uint32_t elements)

@@ -233,7 +233,8 @@ static bool find_fault(const struct reader *r, const double *robot, struct fault
 
 static bool is_robot(size_t offset)
 {
-    return offset < sizeof(double[STANCE_ROBOT_FALL_HEIGHT]);
+    return offset - offsetof(struct scenario_values, robot) <
+           sizeof(double[STANCE_ROBOT_FALL_HEIGHT]);
 }
 
 /* The points of an axis where a path has its least and its largest value. */
@@ -253,7 +254,8 @@ static void put_point(const struct scenario_axis *axis, size_t point, double *ro
 {
     for (int i = 0; i < axis->paths; i++)
         if (is_robot(axis->offset[i]))
-            robot[axis->offset[i] / sizeof *robot] = scenario_axis_value(axis, point, i);
+            robot[(axis->offset[i] - offsetof(struct scenario_values, robot)) / sizeof *robot] =
+                scenario_axis_value(axis, point, i);
 }
 
 /* The robot with what an axis makes of it at a point. False: a problem, reported of path k. */

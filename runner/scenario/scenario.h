@@ -58,6 +58,8 @@ struct scenario_equilibrium {
 /* Everything that one case needs, as numbers: a sweep changes fields of this struct only, found
  * by their offset. Enumerations and indices are ints, all else double. */
 struct scenario_values {
+    const stance_program *program; /* of a law of the user's own; NULL: not compiled yet, it then
+                                    * commands nothing. First: no field has the offset 0 */
     double robot[STANCE_MAX_ROBOT];
 #define SCENARIO_WHOLE(name) int name;
     SCENARIO_WHOLES(SCENARIO_WHOLE)
@@ -85,10 +87,9 @@ struct scenario_values {
      * the beginning. What is a selection is an int in the first bytes of its place. */
     double law_value[STANCE_LAW_PARAMETERS * STANCE_LAW_ROOM];
     double parameter[STANCE_PROGRAM_NUMBERS]; /* of a law of the user's own, see law_file.h */
-    const stance_program *program; /* it, compiled; NULL: not yet, it then commands nothing */
-    int far;                       /* what acts far from the target, see scenario_far; 0: none */
-    double near_angle, near_rate;  /* semi-axes of the ellipsoid that is near */
-    double sample_time;            /* 0: continuous */
+    int far;                      /* what acts far from the target, see scenario_far; 0: none */
+    double near_angle, near_rate; /* semi-axes of the ellipsoid that is near */
+    double sample_time;           /* 0: continuous */
     double torque_limits[STANCE_MAX_ACTUATORS], torque_rate; /* INFINITY: none */
 
     int method;             /* index into stance_methods() */

@@ -135,21 +135,12 @@ static bool is_misused(struct reader *r, const struct situation *is, enum field_
     return true;
 }
 
-/* The row of the mapping that a field stands in; NULL: of the whole file. */
-static const struct scenario_field *parent_of(const struct reader *r,
-                                              const struct scenario_field *field)
-{
-    char path[sizeof field->path];
-    const char *const dot = strrchr(field->path, '.');
-    snprintf(path, sizeof path, "%.*s", dot ? (int)(dot - field->path) : 0, field->path);
-    return schema_find(r->schema, path);
-}
-
 static void check_uses(struct reader *r, const struct situation *is)
 {
     char text[USE_TEXT], name[AXIS_NAME];
     for (size_t i = 0; i < r->schema->count; i++) {
-        const struct scenario_field *field = &r->schema->field[i], *in = parent_of(r, field);
+        const struct scenario_field *field = &r->schema->field[i],
+                                    *in = schema_parent(r->schema, field);
         if (r->seen[i].node && !(in && in->use == field->use && in->law == field->law) &&
             is_misused(r, is, field->use, field->law, text))
             problem_add(&r->problems, r->seen[i].key, "%s %s", field->path, text);
@@ -172,7 +163,8 @@ static void check_uses(struct reader *r, const struct situation *is)
 static void check_required(struct reader *r, const struct situation *is)
 {
     for (size_t i = 0; i < r->schema->count; i++) {
-        const struct scenario_field *field = &r->schema->field[i], *in = parent_of(r, field);
+        const struct scenario_field *field = &r->schema->field[i],
+                                    *in = schema_parent(r->schema, field);
         char text[USE_TEXT];
         if (!field->required || field->type == FIELD_MAP || !is_known(r, is, field->use) ||
             reader_given(&r->seen[i]) ||

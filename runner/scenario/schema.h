@@ -92,7 +92,7 @@ struct scenario_field {
     const char *more; /* what else there is to know; may be NULL */
 };
 
-#define NO_OFFSET ((size_t)-1)
+#define NO_OFFSET 0 /* where struct scenario_values has no field */
 
 enum { SCHEMA_MAX_FIELDS = 2048, SCHEMA_MAX_WORDS = 40 };
 
@@ -134,6 +134,10 @@ const struct scenario_field *schema_find(const struct schema *schema, const char
  * there is none). NULL: no such row, or malformed. */
 const struct scenario_field *schema_find_concrete(const struct schema *schema, const char *path,
                                                   size_t index[2]);
+
+/* The row of the mapping or list that a field stands in; NULL: of the whole file. */
+const struct scenario_field *schema_parent(const struct schema *schema,
+                                           const struct scenario_field *field);
 
 /* A scene whose format has a path (general, or with indices); NULL: none has. */
 const stance_scene *schema_scene_with(const char *path);

@@ -100,6 +100,17 @@ const struct scenario_field *schema_find(const struct schema *schema, const char
     return NULL;
 }
 
+const struct scenario_field *schema_parent(const struct schema *schema,
+                                           const struct scenario_field *field)
+{
+    char path[sizeof field->path];
+    snprintf(path, sizeof path, "%s", field->path);
+    char *const end = strchr(path, '[') ? strchr(path, '[') : strrchr(path, '.');
+    if (end)
+        *end = '\0';
+    return end ? schema_find(schema, path) : NULL;
+}
+
 const struct scenario_field *schema_find_concrete(const struct schema *schema, const char *path,
                                                   size_t index[2])
 {

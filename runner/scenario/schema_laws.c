@@ -1,9 +1,7 @@
 /* schema_laws.c - the rows of the scenario format that the laws bring. */
 #include "schema_laws.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
+#include "runner/base/message.h"
 
 /* Names of the selections of coordinates, in stance_selection's order. */
 static size_t name_selections(struct schema *schema)
@@ -17,85 +15,55 @@ static size_t name_selections(struct schema *schema)
     return count;
 }
 
-/* Writes a text in which %s may stand for another. */
-static void fill_in(char *text, size_t size, const char *format, const char *other)
-{
-    const char *place = strstr(format, "%s");
-    if (place)
-        snprintf(text, size, "%.*s%.120s%s", (int)(place - format), format, other, place + 2);
-    else
-        snprintf(text, size, "%s", format);
-}
-
 /* The row of a law's parameter: of all of it, or (coordinate not NULL) of its number `place`. */
 static bool add_number(struct schema *schema, const struct scenario_field *row, int law,
                        int parameter, const stance_quantity *coordinate, int place)
 {
     const stance_parameter *const p = &stance_laws()[law]->parameter[parameter];
-    const bool list = p->per == STANCE_PER_TERM;
-    const bool one = p->per == STANCE_PER_LAW || p->per == STANCE_PER_SELECTION || list;
-    char name[64];
-    snprintf(name, sizeof name, "%s%s%s", p->of.name, coordinate ? "." : "",
-             coordinate ? coordinate->name : "");
-    struct scenario_field *const field = schema_add(schema, row, "", name);
-    if (!field)
-        return false;
-    field->law = law;
-    field->by_scene = p->per != STANCE_PER_LAW || p->output > 0;
-    if (!one && !coordinate) { /* the mapping of all its numbers */
-        field->type = FIELD_MAP;
-        field->sweep = false;
-        field->offset = NO_OFFSET;
-        snprintf(field->text, sizeof field->text, "%s", p->all);
-        return true;
-    }
+    const bool list = p->per == STANCE_PER_TERM, chosen = p->per == STANCE_PER_SELECTION;
+    struct scenario_field own = *row;
+    own.law = law;
+    own.by_scene = p->per != STANCE_PER_LAW || p->output > 0;
+    if (p->per != STANCE_PER_LAW && !chosen && !list && !coordinate)
+        return schema_group(schema_add(schema, &own, "%s", p->of.name), FIELD_MAP, "%s", p->all);
     const bool its = p->of.unit[0] == '\0' && coordinate; /* unit and range are the coordinate's */
-    field->required = p->required;
-    field->offset =
+    own.required = p->required;
+    own.offset =
         offsetof(struct scenario_values, law_value) +
         (size_t)((stance_law_first(stance_laws()[law]) + parameter) * STANCE_LAW_ROOM + place) *
             sizeof(double);
-    fill_in(field->unit, sizeof field->unit, its ? "%s" : p->of.unit,
-            coordinate ? coordinate->unit : "");
-    fill_in(field->text, sizeof field->text, p->of.text, coordinate ? coordinate->text : "");
-    field->low = its ? coordinate->low : p->of.low;
-    field->high = its ? coordinate->high : p->of.high;
-    field->low_open = p->positive;
-    field->fallback = p->of.fallback;
-    field->fallback_text = p->unlimited ? "none" : p->fallback_text;
-    field->more = p->more;
-    field->quiet = !p->told;
-    if (p->unlimited) {
-        field->words = schema_none;
-        field->word_count = 1;
-    }
+    schema_fill(own.unit, sizeof own.unit, its ? "%s" : p->of.unit,
+                coordinate ? coordinate->unit : "");
+    schema_fill(own.text, sizeof own.text, p->of.text, coordinate ? coordinate->text : "");
+    own.low = its ? coordinate->low : p->of.low;
+    own.high = its ? coordinate->high : p->of.high;
+    own.low_open = p->positive;
+    own.fallback = p->of.fallback;
+    own.fallback_text = p->unlimited ? "none" : p->fallback_text;
+    own.more = p->more;
+    own.quiet = !p->told;
+    own.words = p->unlimited ? schema_none : NULL;
+    own.word_count = p->unlimited;
     if (list) {
-        field->items = STANCE_MAX_COEFFICIENTS;
-        field->fewer = true;
-        struct scenario_field *const item = schema_add(schema, row, name, "[]");
-        if (!item)
-            return false;
-        struct scenario_field whole = *field;
-        snprintf(whole.path, sizeof whole.path, "%s", item->path);
-        *item = whole; /* its numbers; the list: */
-        field->type = FIELD_NUMBERS;
-        field->sweep = false;
-        field->offset = NO_OFFSET;
-        snprintf(field->text, sizeof field->text, "%s", p->all);
+        own.items = STANCE_MAX_COEFFICIENTS;
+        own.fewer = true;
+        return schema_group(schema_add(schema, &own, "%s", p->of.name), FIELD_NUMBERS, "%s",
+                            p->all) &&
+               schema_add(schema, &own, "%s[]", p->of.name);
     }
-    if (p->per == STANCE_PER_SELECTION) {
-        field->type = FIELD_WORD;
-        field->words = schema->selections;
-        field->word_count = name_selections(schema);
+    if (chosen) {
+        own.type = FIELD_WORD;
+        own.words = schema->selections;
+        own.word_count = name_selections(schema);
     }
-    if (p->per == STANCE_PER_SELECTION &&
-        field->word_count == 0) { /* the law is refused, or of any */
-        field->type = FIELD_TEXT;
-        field->words = NULL;
-        field->sweep = false;
-        field->offset = NO_OFFSET;
+    if (chosen && own.word_count == 0) { /* the law is refused, or of any */
+        own.type = FIELD_TEXT;
+        own.words = NULL;
+        own.sweep = false;
+        own.offset = NO_OFFSET;
     }
-    return true;
+    return schema_add(schema, &own, "%s%s%s", p->of.name, coordinate ? "." : "",
+                      coordinate ? coordinate->name : "");
 }
 
 /* As many outputs as actuators; of any mechanism as many as may be. */
@@ -108,22 +76,19 @@ static int outputs_of(const struct schema *schema)
 static bool add_groups(struct schema *schema, const struct scenario_field *row, int law)
 {
     const stance_law *const of = stance_laws()[law];
-    const int outputs = outputs_of(schema);
+    struct scenario_field own = *row;
+    own.law = law;
+    own.by_scene = true;
     for (int g = 0; of->group && of->group[g][0]; g++) {
-        const char *const name = of->group[g][0], *const star = strchr(name, '*');
-        for (int i = 1; i <= (star ? outputs : 1); i++) {
-            char path[64];
-            snprintf(path, sizeof path, star ? "%.*sy%d" : "%.*s",
-                     star ? (int)(star - name) : (int)strlen(name), name, i);
-            struct scenario_field *const field = schema_add(schema, row, "", path);
-            if (!field)
+        const char *const name = of->group[g][0];
+        const int stem = (int)strcspn(name, "*"), count = name[stem] ? outputs_of(schema) : 1;
+        char number[16] = "";
+        for (int i = 1; i <= count; i++) {
+            if (name[stem])
+                snprintf(number, sizeof number, "y%d", i);
+            if (!schema_group(schema_add(schema, &own, "%.*s%s", stem, name, number), FIELD_MAP,
+                              "%s", of->group[g][1]))
                 return false;
-            field->law = law;
-            field->by_scene = true;
-            field->type = FIELD_MAP;
-            field->sweep = false;
-            field->offset = NO_OFFSET;
-            snprintf(field->text, sizeof field->text, "%s", of->group[g][1]);
         }
     }
     return true;
@@ -145,7 +110,7 @@ static bool add_parameter(struct schema *schema, const struct scenario_field *ro
     if (per == STANCE_PER_SELECTION && !scene) {
         struct scenario_field known = *row; /* the key is known all the same */
         known.by_scene = true;
-        return schema_add(schema, &known, "", stance_laws()[law]->parameter[parameter].of.name);
+        return schema_add(schema, &known, "%s", stance_laws()[law]->parameter[parameter].of.name);
     }
     bool good = add_number(schema, row, law, parameter, NULL, 0);
     for (int i = 0; good && i < count; i++) {
@@ -171,11 +136,10 @@ bool schema_add_laws(struct schema *schema, const struct scenario_field *row)
 
 const char *schema_describe_laws(struct schema *schema)
 {
-    size_t used = 0;
     schema->kinds[0] = '\0';
-    for (const stance_law *const *law = stance_laws(); *law && used < sizeof schema->kinds; law++)
+    for (const stance_law *const *law = stance_laws(); *law; law++)
         if ((*law)->text)
-            used += (size_t)snprintf(schema->kinds + used, sizeof schema->kinds - used, "%s%s: %s.",
-                                     used ? " " : "", (*law)->name, (*law)->text);
+            add_text(schema->kinds, sizeof schema->kinds, "%s%s: %s.", schema->kinds[0] ? " " : "",
+                     (*law)->name, (*law)->text);
     return schema->kinds;
 }

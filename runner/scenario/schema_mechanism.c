@@ -47,7 +47,7 @@ enum {
 #define POINT(member) IN(stance_point_numbers, member)
 #define PLATE(member) .type = FIELD_NUMBER, IN(stance_plate_numbers, member)
 #define TWO .type = FIELD_NUMBERS, .items = 2
-#define WORD_ROW .offset = NO_OFFSET, .fallback = NAN
+#define WORD_ROW .fallback = NAN
 
 /* One member a line would make the table hard to read. */
 /* clang-format off */
@@ -165,12 +165,12 @@ const struct part_key part_keys[] = {
         .text = "the body whose joint it drives",
         .more = "A torque on the body and its opposite on the parent; on one that slides a force."},
         .names_body = true},
-    {PART_ACTUATOR, {.path = "limit", .type = FIELD_NUMBER, .offset = 0, .unit = "N m",
+    {PART_ACTUATOR, {.path = "limit", .type = FIELD_NUMBER, .unit = "N m",
         RANGE(0, LARGE), .low_open = true, .fallback = INFINITY, .fallback_text = "none",
         .words = schema_none, .word_count = 1, .text = "largest torque",
         .more = "Where controller.torque_limit is smaller, that one holds."}, .slide_unit = "N"},
 
-    {PART_PLATE, {.path = "kind", .type = FIELD_WORD, .offset = NO_OFFSET, .fallback = STANCE_PLATE,
+    {PART_PLATE, {.path = "kind", .type = FIELD_WORD, .fallback = STANCE_PLATE,
         .words = ground_words, .word_count = 3, .text = "what begins there",
         .more = "plate: one plate. stairs: plates of `width`, each `height` above the one before, "
                 "the first above what is before the piece. rough: plates of `width`, each at random "
@@ -245,7 +245,7 @@ int part_body(const stance_mechanism *m, enum part part, int i)
 
 int part_numbers(const struct part_key *key)
 {
-    return key->field.offset == NO_OFFSET ? 0 : key->field.type == FIELD_NUMBERS ? 2 : 1;
+    return key->field.type == FIELD_NUMBERS ? 2 : key->field.type == FIELD_NUMBER ? 1 : 0;
 }
 
 int part_place(const stance_mechanism *m, const struct part_key *key, int i)
@@ -299,15 +299,9 @@ bool schema_any_plate(const struct schema *schema)
 static bool add_map(struct schema *schema, const struct scenario_field *row, const char *name,
                     const char *text)
 {
-    struct scenario_field *const field = schema_add(schema, row, "", name);
-    if (!field)
-        return false;
-    field->type = FIELD_MAP;
-    field->sweep = field->design = false;
-    field->offset = NO_OFFSET;
-    field->fallback_text = NULL;
-    snprintf(field->text, sizeof field->text, "%s", text);
-    return true;
+    struct scenario_field own = *row;
+    own.fallback_text = NULL;
+    return schema_group(schema_add(schema, &own, "%s", name), FIELD_MAP, "%s", text);
 }
 
 /* The row of a key of part i, and where it is a list that of its items. */
@@ -321,10 +315,9 @@ static bool add_key(struct schema *schema, const struct scenario_field *row, boo
     const char *const name = part_name(m, key->part, i);
     const struct scenario_field *const own = &key->field;
     for (int item = 0; item < (count == 2 ? 2 : 1); item++) {
-        char path[96];
-        snprintf(path, sizeof path, "%s.%.31s.%.24s%s", part_kinds[key->part].key, name, own->path,
-                 item ? "[]" : "");
-        struct scenario_field *const field = schema_add(schema, row, "", path);
+        struct scenario_field *const field =
+            schema_add(schema, row, "%s.%.31s.%.24s%s", part_kinds[key->part].key, name, own->path,
+                       item ? "[]" : "");
         if (!field)
             return false;
         const bool varied = (number >= 0 || (any && count > 0)) && (count == 1 || item);
@@ -399,7 +392,7 @@ bool schema_add_mechanism(struct schema *schema, const struct scenario_field *ro
 bool schema_add_plates(struct schema *schema, const struct scenario_field *row)
 {
     struct scenario_field below = *row;
-    struct scenario_field *const map = schema_add(schema, row, "", "");
+    struct scenario_field *const map = schema_add(schema, row, NULL);
     if (!map)
         return false;
     map->offset = NO_OFFSET;

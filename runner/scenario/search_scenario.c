@@ -3,6 +3,8 @@
  */
 #include "reader.h"
 
+#include "runner/base/message.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -19,33 +21,29 @@ static struct scenario_varied *last_varied(struct axis_reader *a)
     return &a->r->s->search.varied[a->axis->paths - 1];
 }
 
-/* One path, which is to be a number. */
-static bool add_path(struct axis_reader *a, const struct tree_node *node)
+/* One more number: a path that the node stands for, or (NULL) the node itself. */
+static bool add(struct axis_reader *a, const struct tree_node *at, const char *path,
+                enum scenario_scale scale, double unit)
 {
     struct scenario_axis *const axis = a->axis;
+    struct tree_node node = *at;
+    if (path) {
+        node.kind = TREE_SCALAR;
+        node.text = path;
+    }
     if (axis->paths == SCENARIO_MAX_PATHS)
-        return problem_add(&a->r->problems, node->mark, "%s: more than %d numbers", a->name,
+        return problem_add(&a->r->problems, at->mark, "%s: more than %d numbers", a->name,
                            SCENARIO_MAX_PATHS);
-    if (!axis_read_path(a, node))
+    if (!axis_read_path(a, &node))
         return false;
     const struct scenario_field *const field = a->swept[axis->paths - 1].field;
     if (axis->whole[axis->paths - 1])
-        return problem_add(&a->r->problems, node->mark,
+        return problem_add(&a->r->problems, at->mark,
                            "%s: %s takes %s, which are not varied: search for each of them with "
                            "--set, or list them in sweep.grid",
-                           a->name, node->text,
+                           a->name, node.text,
                            field->type == FIELD_WORD ? "words" : "whole numbers");
-    *last_varied(a) = (struct scenario_varied){SCALE_EVEN, field->low, field->high, NAN, false};
-    return true;
-}
-
-static bool add_varied(struct axis_reader *a, const struct tree_node *node,
-                       enum scenario_scale scale, double unit)
-{
-    if (!add_path(a, node))
-        return false;
-    last_varied(a)->scale = scale;
-    last_varied(a)->unit = unit;
+    *last_varied(a) = (struct scenario_varied){scale, field->low, field->high, unit, false};
     return true;
 }
 
@@ -53,18 +51,14 @@ static bool add_varied(struct axis_reader *a, const struct tree_node *node,
 static bool add_paths(struct axis_reader *a, const char *list, size_t rows, size_t columns,
                       enum scenario_scale scale, double unit)
 {
+    const size_t each = columns > 0 ? columns : 1;
     bool good = true;
-    for (size_t i = 0; good && i < rows; i++) {
-        for (size_t j = 0; good && (j < columns || j == 0); j++) {
-            char path[96];
-            struct tree_node node = *a->node;
-            const int used = snprintf(path, sizeof path, "%s[%zu]", list, i);
-            if (columns > 0)
-                snprintf(path + used, sizeof path - (size_t)used, "[%zu]", j);
-            node.text = path;
-            node.kind = TREE_SCALAR;
-            good = add_varied(a, &node, scale, unit);
-        }
+    for (size_t i = 0; good && i < rows * each; i++) {
+        char path[96];
+        snprintf(path, sizeof path, "%s[%zu]", list, i / each);
+        if (columns > 0)
+            add_text(path, sizeof path, "[%zu]", i % each);
+        good = add(a, a->node, path, scale, unit);
     }
     return good;
 }
@@ -95,11 +89,8 @@ static bool add_poles(struct axis_reader *a)
         return add_paths(a, "controller.poles", (size_t)count, 0, SCALE_NEGATIVE_RATIO, pole_unit);
     for (size_t i = 0; good && i < poles->count; i++) {
         char path[96];
-        struct tree_node node = *a->node;
         reader_pole(a->r, poles, i, path);
-        node.text = path;
-        node.kind = TREE_SCALAR;
-        good = add_varied(a, &node, SCALE_NEGATIVE_RATIO, pole_unit);
+        good = add(a, a->node, path, SCALE_NEGATIVE_RATIO, pole_unit);
     }
     return good;
 }
@@ -119,27 +110,22 @@ static bool add_weights(struct axis_reader *a)
 static bool add_law(struct axis_reader *a)
 {
     const struct schema *const schema = a->r->schema;
-    const int before = a->axis->paths, law = a->r->s->base.law;
-    const bool own = scenario_law(&a->r->s->base)->program;
+    const struct scenario_values *const base = &a->r->s->base;
+    const int before = a->axis->paths;
+    const bool own = scenario_law(base)->program;
     bool good = true;
     for (size_t i = 0; good && i < schema->count; i++) {
         const struct scenario_field *const field = &schema->field[i];
-        if (!(own ? field->use == USE_PROGRAM : field->use == USE_LAW && field->law == law) ||
+        if (!(own ? field->use == USE_PROGRAM : field->use == USE_LAW && field->law == base->law) ||
             !field->sweep || field->type != FIELD_NUMBER || field->low == field->high)
             continue;
         for (size_t k = 0; good && k < schema_items(field); k++) {
             char path[128];
-            const double value = schema_number(field, &a->r->s->base, k);
-            if (!isfinite(value))
-                continue; /* as it is by default, which is no number */
-            struct tree_node node = *a->node;
-            node.text = schema_item_path(field, k, path);
-            node.kind = TREE_SCALAR;
-            good = add_path(a, &node);
-            if (good && field->low >= 0 && value > 0) {
-                last_varied(a)->scale = SCALE_RATIO;
-                last_varied(a)->unit = weight_unit;
-            }
+            const double value = schema_number(field, base, k);
+            const bool ratio = field->low >= 0 && value > 0;
+            if (isfinite(value)) /* not as it is by default, which is no number */
+                good = add(a, a->node, schema_item_path(field, k, path),
+                           ratio ? SCALE_RATIO : SCALE_EVEN, ratio ? weight_unit : NAN);
         }
     }
     return good && (a->axis->paths > before ||
@@ -179,10 +165,11 @@ static bool read_entry(struct axis_reader *a)
         return false;
     if (!path)
         return axis_complain(a, "path is missing");
-    if (!add_path(a, path))
+    if (!add(a, path, NULL, SCALE_EVEN, NAN))
         return false;
     struct scenario_varied *const varied = last_varied(a);
     const struct scenario_field *const field = a->swept[a->axis->paths - 1].field;
+    const char *const name = a->axis->path[a->axis->paths - 1];
     bool good = read_number(a, "from", &from);
     good = read_number(a, "to", &to) && good;
     good = read_number(a, "unit", &unit) && good;
@@ -199,9 +186,8 @@ static bool read_entry(struct axis_reader *a)
             return axis_complain(a, "from must be less than to");
         if (ratios && from <= 0)
             return axis_complain(a, "spacing log needs from above 0");
-        if (!field_admits(problems, field, a->axis->path[a->axis->paths - 1], "from", path->mark,
-                          from) ||
-            !field_admits(problems, field, a->axis->path[a->axis->paths - 1], "to", path->mark, to))
+        if (!field_admits(problems, field, name, "from", path->mark, from) ||
+            !field_admits(problems, field, name, "to", path->mark, to))
             return false;
         varied->low = from;
         varied->high = to;
@@ -408,21 +394,16 @@ static void check_first(struct reader *r)
     }
 }
 
-/* The word among those that are varied, or the gains one by one. */
-static bool varies_gains(const struct scenario *s)
-{
-    bool any = s->search.designed_gains;
-    for (int k = 0; k < s->search.axis.paths; k++)
-        any = any || (strncmp(s->search.axis.path[k], "controller.gains[", 17) == 0 &&
-                      isnan(s->search.varied[k].unit));
-    return any;
-}
-
 static void check_gains(struct reader *r)
 {
     const struct scenario *const s = r->s;
     double limit[STANCE_MAX_ACTUATORS];
-    if (!varies_gains(s))
+    /* The word among those that are varied, or the gains one by one. */
+    bool any = s->search.designed_gains;
+    for (int k = 0; k < s->search.axis.paths; k++)
+        any = any || (strncmp(s->search.axis.path[k], "controller.gains[", 17) == 0 &&
+                      isnan(s->search.varied[k].unit));
+    if (!any)
         return;
     if (!scenario_law(&s->base)->designed) {
         reader_refuse(r, "optimise.vary", ": gains are those of a law that is designed (here: %s)",
@@ -467,9 +448,7 @@ void search_check(struct reader *r)
     check_gains(r);
 }
 
-/* ---- what it is, and takes
- * ----------------------------------------------------------------------------
- */
+/* ---- what it is, and takes ------------------------------------------------------------------ */
 
 bool scenario_search_plain(const struct scenario *s)
 {

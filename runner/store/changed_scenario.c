@@ -1,88 +1,14 @@
-/* changed_scenario.c - see changed_scenario.h. */
-#include "changed_scenario.h"
+/* changed_scenario.c - see adopt.h. */
+#include "adopt.h"
 
 #include "runner/base/message.h"
 
 #include <errno.h>
 #include <fcntl.h>
-#include <libgen.h>
 #include <limits.h>
 #include <stdlib.h>
-#include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
-
-/* ---- the difference between two texts ------------------------------------------------------- */
-
-enum { MOST_LINES = 2000, MOST_SHOWN = 12, SHOWN_COLUMNS = 120 };
-
-struct lines {
-    char *text, **line; /* in it, each with its end */
-    size_t count;
-};
-
-static struct lines split(const char *text)
-{
-    struct lines lines = {strdup(text), malloc((strlen(text) + 1) * sizeof *lines.line), 0};
-    for (char *rest = lines.line ? lines.text : NULL; rest && *rest;)
-        lines.line[lines.count++] = strsep(&rest, "\n");
-    return lines;
-}
-
-static void show(FILE *to, size_t number, char sign, const char *line)
-{
-    const bool cut = strlen(line) > SHOWN_COLUMNS;
-    if (to && number < MOST_SHOWN)
-        fprintf(to, "  %c %.*s%s\n", sign, SHOWN_COLUMNS, line, cut ? "..." : "");
-}
-
-/* As few lines as can be, unless there are so many that between the first and the last difference
- * all count as different. */
-size_t changed_scenario_differences(FILE *to, const char *before, const char *after)
-{
-    struct lines old = split(before), new = split(after);
-    size_t begin = 0, n = old.count, m = new.count, differing = 0;
-    while (begin < n && begin < m && strcmp(old.line[begin], new.line[begin]) == 0)
-        begin++;
-    while (n > begin && m > begin && strcmp(old.line[n - 1], new.line[m - 1]) == 0) {
-        n--;
-        m--;
-    }
-    const size_t a = n - begin, b = m - begin;
-    char *const *const x = old.line + begin, *const *const y = new.line + begin;
-    /* common[i][j]: most lines that x[i ...] and y[j ...] have in common, in order. */
-    uint16_t *common =
-        a <= MOST_LINES && b <= MOST_LINES ? calloc((a + 1) * (b + 1), sizeof *common) : NULL;
-    for (size_t i = a; common && i-- > 0;) {
-        for (size_t j = b; j-- > 0;) {
-            const uint16_t down = common[(i + 1) * (b + 1) + j],
-                           right = common[i * (b + 1) + j + 1];
-            common[i * (b + 1) + j] = strcmp(x[i], y[j]) == 0
-                                          ? (uint16_t)(common[(i + 1) * (b + 1) + j + 1] + 1)
-                                      : down > right ? down
-                                                     : right;
-        }
-    }
-    for (size_t i = 0, j = 0; i < a || j < b;) {
-        if (common && i < a && j < b && strcmp(x[i], y[j]) == 0) {
-            i++;
-            j++;
-        } else if (i < a && (j == b || !common ||
-                             common[(i + 1) * (b + 1) + j] >= common[i * (b + 1) + j + 1])) {
-            show(to, differing++, '-', x[i++]);
-        } else {
-            show(to, differing++, '+', y[j++]);
-        }
-    }
-    free(common);
-    free(old.text);
-    free(old.line);
-    free(new.text);
-    free(new.line);
-    if (to && differing > MOST_SHOWN)
-        fprintf(to, "  ... and %zu more\n", differing - MOST_SHOWN);
-    return differing;
-}
 
 /* ---- what may change ------------------------------------------------------------------------ */
 
@@ -183,60 +109,6 @@ static bool find_names(struct names *names, const char *file)
     return true;
 }
 
-static bool system_failed(stance_message *message, const char *file, const char *what)
-{
-    return complain(message, "%.150s: cannot %s: %s", file, what, strerror(errno));
-}
-
-struct copying {
-    const struct plan *plan;
-    bool stopped;
-};
-
-/* A row keeps its place; once told to stop none is copied. */
-static uint64_t same_row(void *context, uint64_t row)
-{
-    struct copying *copying = context;
-    const struct plan *plan = copying->plan;
-    if (row % STORE_ROWS == 0 && plan->stop && plan->stop(plan->stop_context))
-        copying->stopped = true;
-    return copying->stopped ? STORE_NOWHERE : row;
-}
-
-/* Copies the rows that verify. */
-static bool copy_rows(struct store *from, struct store *to, const struct plan *plan,
-                      struct store_copied *copied, stance_message *message)
-{
-    struct copying copying = {plan, false};
-    const bool good = store_copy(from, to, same_row, &copying, copied, message);
-    if (copying.stopped)
-        message->text[0] = '\0';
-    return good && !copying.stopped;
-}
-
-/* To the disk, then under the old one's name. */
-static bool take_place(const struct names *names, const char *file, stance_message *message)
-{
-    char directory[PATH_MAX];
-    struct stat before;
-    int descriptor = open(names->made, O_RDWR | O_CLOEXEC);
-    /* Whoever may write the old file may write this one, as far as the system lets us see to it. */
-    if (descriptor >= 0 && stat(names->real, &before) == 0 &&
-        fchown(descriptor, before.st_uid, before.st_gid) == 0)
-        (void)fchmod(descriptor, before.st_mode & 0777);
-    if (descriptor < 0 || fsync(descriptor) != 0 || close(descriptor) != 0)
-        return system_failed(message, file, "bring its successor to the disk");
-    if (rename(names->made, names->real) != 0)
-        return system_failed(message, file, "replace it by its successor");
-    snprintf(directory, sizeof directory, "%s", names->real);
-    descriptor = open(dirname(directory), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    if (descriptor >= 0) {
-        (void)fsync(descriptor); /* some file systems cannot; then the rename takes its time */
-        close(descriptor);
-    }
-    return true;
-}
-
 /* What a successor begins with, or nothing yet: whatever else has its name is somebody's own. */
 static bool is_ours(const char *file)
 {
@@ -262,16 +134,16 @@ void changed_scenario_clear(const char *file)
 }
 
 bool changed_scenario_make(struct adopted *old, struct plan *plan, int ranks, const char *hosts,
-                           struct store_copied *copied, bool *refused, stance_message *message)
+                           struct adopted_rows *rows, bool *refused, stance_message *message)
 {
     struct names names;
     struct store *to = NULL;
     struct plan_error error = {0};
 
-    *copied = (struct store_copied){0};
+    *rows = (struct adopted_rows){.may_stop = true};
     *refused = false;
     if (!find_names(&names, old->file))
-        return system_failed(message, old->file, "prepare its successor");
+        return complain(message, "%.150s: %s", old->file, strerror(errno));
     if (old->origin.ancestors >= STORE_MOST_ANCESTORS)
         return refuse(message, old->file, "a file of so many scenarios");
     if (!adopt_open(old, message))
@@ -280,21 +152,24 @@ bool changed_scenario_make(struct adopted *old, struct plan *plan, int ranks, co
         *refused = true;
         return false;
     }
-    for (size_t d = 0; d < plan->designs; d++)
-        plan_take_design(plan, d, &old->plan, d);
+    adopt_designs(old, plan, NULL);
     bool good = plan_check_cases(plan, &error);
     if (!good)
         *message = error.message;
     unlink(names.made); /* of an attempt that was killed */
     good = good && store_create(names.made, plan, &old->origin, ranks, hosts, message);
     plan->ancestors = old->origin.ancestors + 1;
-    good = good && store_open(&to, names.made, plan, 1, message) &&
-           copy_rows(old->store, to, plan, copied, message);
+    good =
+        good && store_open(&to, names.made, plan, 1, message) && adopt_rows(old, to, rows, message);
+    if (good && rows->stopped) {
+        message->text[0] = '\0';
+        good = false;
+    }
     if (good)
         good = store_close(to, message);
     else
         store_abandon(to);
-    good = good && take_place(&names, old->file, message);
+    good = good && store_take_place(names.made, names.real, message);
     if (!good)
         unlink(names.made);
     return good;

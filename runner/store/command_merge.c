@@ -54,48 +54,37 @@ static void name_missing_shards(const struct merge *m)
 
 static void print_result(const struct request *request, const struct merge *m)
 {
-    const struct store_copied *copied = &m->copied;
-    const uint64_t done = copied->copied;
+    const struct adopted_rows *rows = &m->rows;
+    const struct adopted *const first = &m->part[0].of;
+    const bool one = rows->damaged == 1;
     printf("%s: %llu cases from %zu files", request->output, (unsigned long long)m->scenario->cases,
            m->parts);
     if (m->kind != MERGE_EQUAL)
         printf(" along %s, %zu values", m->path, m->points);
-    if (copied->same > 0)
-        printf("; %llu were in several files, and equal", (unsigned long long)copied->same);
-    if (done < m->scenario->cases)
-        printf("; %llu are not computed yet", (unsigned long long)(m->scenario->cases - done));
+    if (rows->same > 0)
+        printf("; %llu were in several files, and equal", (unsigned long long)rows->same);
+    if (rows->copied < m->scenario->cases)
+        printf("; %llu are not computed yet",
+               (unsigned long long)(m->scenario->cases - rows->copied));
     putchar('\n');
     name_missing_shards(m);
-    if (copied->damaged > 0) {
-        fprintf(stderr, "stance merge: %llu case%s not as %s checksum%s left out\n",
-                (unsigned long long)copied->damaged, copied->damaged == 1 ? " is" : "s are",
-                copied->damaged == 1 ? "its" : "their",
-                copied->damaged == 1 ? " says and was" : "s say and were");
-    }
-    if (m->keyed) {
-        fprintf(stderr,
-                "stance merge: random numbers are keyed by the cases' indices in the parts: one "
-                "run of the whole has other ones (attribute merge_note)\n");
-    }
+    if (rows->damaged > 0)
+        fprintf(stderr, "stance merge: %llu case%s left out: not as %s say%s\n",
+                (unsigned long long)rows->damaged, one ? "" : "s",
+                one ? "its checksum" : "their checksums", one ? "s" : "");
     for (size_t p = 1; p < m->parts; p++) {
-        if (strcmp(m->part[p].of.origin.revision, m->part[0].of.origin.revision) != 0) {
+        const struct adopted *const part = &m->part[p].of;
+        if (strcmp(part->origin.revision, first->origin.revision) != 0) {
             fprintf(stderr,
                     "stance merge: warning: %s was begun by revision %s, %s by %s: results "
                     "may differ\n",
-                    m->part[p].of.file, m->part[p].of.origin.revision, m->part[0].of.file,
-                    m->part[0].of.origin.revision);
+                    part->file, part->origin.revision, first->file, first->origin.revision);
             break;
         }
     }
-    if (m->refined) {
-        fprintf(stderr,
-                "stance merge: the parts were refined each for itself: one run of the whole "
-                "simulates other cases (attribute merge_note)\n");
-    }
-    if (m->designs_differ) {
-        fprintf(stderr, "stance merge: the parts' designs differ in last bits; those of the first "
-                        "part that has them are in the file (attribute merge_note)\n");
-    }
+    for (int k = 0; k < MERGE_NOTES; k++)
+        if (m->noted[k])
+            fprintf(stderr, "stance merge: %s (attribute merge_note)\n", merge_notes[k]);
 }
 
 /* Whether all parts can be read now: nobody writes them. */
@@ -122,12 +111,11 @@ static bool write_file(const struct request *request, struct merge *m)
         return false;
     unlink(made);
     bool good = merge_write(m, made);
-    if (good && m->copied.copied == 0) {
+    if (good && m->rows.copied == 0) {
         m->usage = true;
         good = complain(&m->message, "none of the %zu files has a case that is computed", m->parts);
     }
-    if (good && rename(made, request->output) != 0)
-        good = complain(&m->message, "%.150s: %s", request->output, strerror(errno));
+    good = good && store_take_place(made, request->output, &m->message);
     if (!good)
         unlink(made);
     lock_release(&lock);

@@ -5,27 +5,11 @@
 #include "runner/base/numbers.h"
 #include "runner/base/words.h"
 #include "runner/scenario/field.h"
-#include "runner/scenario/tree.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
-/* ---- scenarios as trees ------------------------------------------------------------------- */
-
-static bool read_tree(struct merge *m, struct tree *tree, const struct merge_part *part)
-{
-    struct problems *problems = calloc(1, sizeof *problems);
-    *tree = (struct tree){0};
-    const bool good =
-        problems && part->of.origin.scenario &&
-        tree_parse(tree, part->of.origin.scenario, strlen(part->of.origin.scenario), problems);
-    free(problems);
-    if (!good)
-        complain(&m->message, "%.100s: its scenario cannot be read", part->of.file);
-    return good;
-}
+/* ---- how the parts fit -------------------------------------------------------------------- */
 
 enum { MOST_DIFFERENCES = 64, PATH = 128 };
 
@@ -34,40 +18,19 @@ struct differences {
     size_t count;
 };
 
-static void note(struct differences *found, const char *path)
+/* Names do not matter, and lists of recorded cases are united. */
+static void note(void *context, const char *path, const struct tree_node *before,
+                 const struct tree_node *after)
 {
+    struct differences *const found = context;
+    (void)before, (void)after;
+    if (strcmp(path, "title") == 0 || strncmp(path, "record.cases", strlen("record.cases")) == 0)
+        return;
     for (size_t i = 0; i < found->count; i++)
         if (strcmp(found->path[i], path) == 0)
             return;
     if (found->count < MOST_DIFFERENCES)
         snprintf(found->path[found->count++], PATH, "%s", path);
-}
-
-static void find_differences(const struct tree_node *a, const struct tree_node *b, const char *path,
-                             struct differences *found)
-{
-    char below[PATH];
-    if (!a || !b || a->kind != b->kind || (a->kind == TREE_LIST && a->count != b->count) ||
-        (a->kind == TREE_SCALAR && strcmp(a->text, b->text) != 0)) {
-        note(found, path);
-        return;
-    }
-    for (size_t i = 0; i < a->count; i++) {
-        if (a->kind == TREE_LIST) {
-            snprintf(below, sizeof below, "%.100s[%zu]", path, i);
-            find_differences(a->item[i], b->item[i], below, found);
-        } else {
-            const char *key = a->key[i].name;
-            snprintf(below, sizeof below, "%.60s%s%.64s", path, path[0] ? "." : "", key);
-            find_differences(a->item[i], tree_find(b, key), below, found);
-        }
-    }
-    for (size_t i = 0; b->kind == TREE_MAP && i < b->count; i++) {
-        if (!tree_find(a, b->key[i].name)) {
-            snprintf(below, sizeof below, "%.60s%s%.64s", path, path[0] ? "." : "", b->key[i].name);
-            note(found, below);
-        }
-    }
 }
 
 /* The text of the scalar at a path; NULL: there is none. */
@@ -84,8 +47,6 @@ static const char *text_at(const struct tree_node *node, const char *path)
     }
     return node && node->kind == TREE_SCALAR ? node->text : NULL;
 }
-
-/* ---- how the parts fit -------------------------------------------------------------------- */
 
 /* "sweep.grid[2].from" is of axis 2; -1: of none. */
 static int axis_of(const char *path)
@@ -135,137 +96,157 @@ static bool classify(struct merge *m, const struct tree *trees)
     size_t last = 0;
     for (size_t p = 1; p < m->parts; p++) {
         const size_t before = found.count;
-        find_differences(trees[0].root, trees[p].root, "", &found);
+        adopt_differ(trees[0].root, trees[p].root, "", &(struct adopted_differences){note, &found});
         last = found.count > before ? p : last;
     }
-    for (size_t i = found.count; i-- > 0;) { /* names do not matter; lists are united */
-        if (strcmp(found.path[i], "title") == 0 ||
-            strncmp(found.path[i], "record.cases", strlen("record.cases")) == 0) {
-            memmove(found.path[i], found.path[found.count - 1], PATH);
-            found.count--;
-        }
-    }
-    if (found.count == 0) {
-        m->kind = MERGE_EQUAL;
-        return true;
-    }
-    m->axis = axis_of(found.path[0]);
-    for (size_t i = 1; i < found.count; i++)
-        m->axis = axis_of(found.path[i]) == m->axis ? m->axis : -1;
-    if (m->axis >= 0) {
-        m->kind = MERGE_AXIS;
-        return true;
-    }
     m->axis = 0;
-    m->kind = MERGE_VALUE;
+    m->kind = MERGE_EQUAL;
+    if (found.count == 0)
+        return true;
+    int axis = axis_of(found.path[0]);
+    for (size_t i = 1; i < found.count; i++)
+        axis = axis_of(found.path[i]) == axis ? axis : -1;
+    m->kind = axis >= 0 ? MERGE_AXIS : MERGE_VALUE;
+    if (axis >= 0) {
+        m->axis = axis;
+        return true;
+    }
     snprintf(m->path, sizeof m->path, "%s", found.path[0]);
     return (found.count == 1 && is_value(m, trees, m->path)) || misfit(m, &found, last);
 }
 
-/* ---- points of the merged axis ------------------------------------------------------------ */
+/* ---- what each part has ------------------------------------------------------------------- */
 
-/* A point of some part: its text, as YAML, and its number, where it is one. */
+/* A point of some part along the merged axis: its text, as YAML, and its number, where it is one.
+ */
 struct point {
     char *text;
     double number; /* NAN: words, or several paths */
     size_t part, place;
-    size_t order; /* in which it appeared */
 };
 
-struct points {
-    struct point *point;
-    size_t count, room;
+/* A case that a part records, by its number there. */
+struct recorded {
+    size_t part;
+    uint64_t row;
+};
+
+struct look {
+    struct point *point; /* in the order of the parts */
+    size_t points;
     bool numbers, rising, falling; /* all of them; in every part */
+    struct recorded *recorded;
+    size_t records;
+    bool records_all; /* then all parts do, and there is no list */
+    char path[SCENARIO_MAX_PATHS][96];
 };
 
-static bool add_point(struct points *points, const char *text, double number, size_t part,
-                      size_t place)
+static bool add_point(struct look *look, const char *text, double number, size_t part, size_t place)
 {
-    if (points->count == points->room) {
-        const size_t room = points->room ? 2 * points->room : 64;
-        struct point *larger = realloc(points->point, room * sizeof *larger);
-        if (!larger)
-            return false;
-        points->point = larger;
-        points->room = room;
+    struct point *larger = realloc(look->point, (look->points + 1) * sizeof *larger);
+    char *const own = strdup(text);
+    look->point = larger ? larger : look->point;
+    if (!larger || !own) {
+        free(own);
+        return false;
     }
-    if (place > 0) {
-        const double before = points->point[points->count - 1].number;
-        points->rising = points->rising && number > before;
-        points->falling = points->falling && number < before;
-    }
-    points->numbers = points->numbers && !isnan(number);
-    struct point *point = &points->point[points->count];
-    *point = (struct point){strdup(text), number, part, place, points->count};
-    points->count += point->text != NULL;
-    return point->text != NULL;
+    const double before = place > 0 ? larger[look->points - 1].number : NAN;
+    look->rising = look->rising && !(place > 0 && !(number > before));
+    look->falling = look->falling && !(place > 0 && !(number < before));
+    look->numbers = look->numbers && !isnan(number);
+    larger[look->points++] = (struct point){own, number, part, place};
+    return true;
 }
 
 /* The points that a part has along the axis, as YAML: "0.1", or "0.1, 2" for several paths. */
-static bool add_points(const struct scenario_axis *axis, struct points *points, size_t part)
+static bool look_at_axis(struct merge *m, struct look *look, size_t p)
 {
-    char text[1024], value[128];
-    const bool number = !axis->words && axis->paths == 1;
-    bool good = true;
-    for (size_t i = 0; good && i < axis->count; i++) {
-        text[0] = '\0';
+    struct adopted *const part = &m->part[p].of;
+    const struct scenario_axis *const axis = &part->scenario->axis[m->axis];
+    bool same = true;
+    for (int k = 0; k < SCENARIO_MAX_PATHS; k++) {
+        const char *path = k < axis->paths ? axis->path[k] : "";
+        if (p == 0)
+            snprintf(look->path[k], sizeof look->path[k], "%s", path);
+        same = same && strcmp(path, look->path[k]) == 0;
+    }
+    if (!same)
+        return complain(&m->message, "%.80s: its axis %.40s is not that of %.80s", part->file,
+                        axis->name, m->part[0].of.file);
+    if (p == 0)
+        snprintf(m->path, sizeof m->path, "%s", axis->name);
+    part->points = axis->count;
+    for (size_t i = 0; i < axis->count; i++) {
+        char text[1024] = "", value[128];
+        const bool number = !axis->words && axis->paths == 1;
         for (int k = 0; k < axis->paths; k++) {
             scenario_axis_text(axis, i, k, value, sizeof value);
             words_add(text, sizeof text, "%s%s", k ? ", " : "", value);
         }
-        good = add_point(points, text, number ? scenario_axis_value(axis, i, 0) : NAN, part, i);
-    }
-    return good;
-}
-
-/* Of all parts, whose axes must have the same paths. */
-static bool collect_axis(struct merge *m, struct points *points)
-{
-    struct scenario_axis *first = calloc(1, sizeof *first);
-    bool good = first || no_memory(&m->message);
-    for (size_t p = 0; good && p < m->parts; p++) {
-        struct adopted *const part = &m->part[p].of;
-        good = adopt_scenario(part, &m->message);
-        if (!good)
-            break;
-        const struct scenario_axis *axis = &part->scenario->axis[m->axis];
-        if (p == 0)
-            *first = *axis; /* its paths, which are no pointers */
-        m->part[p].points = axis->count;
-        good = axis->paths == first->paths;
-        for (int k = 0; good && k < axis->paths; k++)
-            good = strcmp(axis->path[k], first->path[k]) == 0;
-        good = good ? add_points(axis, points, p) || no_memory(&m->message)
-                    : complain(&m->message, "%.80s: its axis %.40s is not that of %.80s",
-                               part->file, axis->name, m->part[0].of.file);
-        adopt_close(part);
-    }
-    snprintf(m->path, sizeof m->path, "%s", good ? first->name : "");
-    free(first);
-    return good;
-}
-
-/* The value that each part has instead of an axis. */
-static bool collect_values(struct merge *m, const struct tree *trees, struct points *points)
-{
-    for (size_t p = 0; p < m->parts; p++) {
-        const char *text = text_at(trees[p].root, m->path);
-        double number;
-        bool finite;
-        if (!number_parse(text, &number, &finite))
-            number = strcmp(text, "none") == 0 ? INFINITY : NAN;
-        m->part[p].points = 1;
-        if (!add_point(points, text, number, p, 0))
+        if (!add_point(look, text, number ? scenario_axis_value(axis, i, 0) : NAN, p, i))
             return no_memory(&m->message);
     }
     return true;
 }
 
+/* The value that a part has instead of an axis. */
+static bool look_at_value(struct merge *m, const struct tree *tree, struct look *look, size_t p)
+{
+    const char *const text = text_at(tree->root, m->path);
+    double number;
+    bool finite;
+    if (!number_parse(text, &number, &finite))
+        number = strcmp(text, "none") == 0 ? INFINITY : NAN;
+    m->part[p].of.points = 1;
+    return add_point(look, text, number, p, 0) || no_memory(&m->message);
+}
+
+/* Which cases a part records; one that records all needs no list, but then all have to. */
+static bool look_at_records(struct merge *m, struct look *look, size_t p)
+{
+    const struct scenario *const s = m->part[p].of.scenario;
+    const bool all = s->record_cases == RECORD_ALL;
+    if (p == 0)
+        look->records_all = all;
+    if (all != look->records_all)
+        return complain(&m->message, "%.60s: record.cases is `all` in some of the files only",
+                        m->part[p].of.file);
+    struct recorded *const larger =
+        realloc(look->recorded, (look->records + s->record_count + 1) * sizeof *larger);
+    if (!larger)
+        return no_memory(&m->message);
+    look->recorded = larger;
+    for (size_t i = 0; i < s->record_count; i++)
+        larger[look->records++] = (struct recorded){p, s->record_list[i]};
+    return true;
+}
+
+static bool look_at_parts(struct merge *m, const struct tree *trees, struct look *look)
+{
+    bool good = true;
+    for (size_t p = 0; good && p < m->parts; p++) {
+        struct adopted *const part = &m->part[p].of;
+        if (!adopt_scenario(part, &m->message))
+            return false;
+        part->inner = part->scenario->cases;
+        for (int a = 0; m->kind == MERGE_AXIS && a <= m->axis; a++)
+            part->inner /= part->scenario->axis[a].count;
+        good = look_at_records(m, look, p) &&
+               (m->kind == MERGE_EQUAL ||
+                (m->kind == MERGE_AXIS ? look_at_axis(m, look, p)
+                                       : look_at_value(m, &trees[p], look, p)));
+        adopt_close(part);
+    }
+    return good;
+}
+
+/* ---- points of the merged axis ------------------------------------------------------------ */
+
 static int by_number(const void *left, const void *right)
 {
     const struct point *a = left, *b = right;
-    return a->number != b->number ? (a->number > b->number) - (a->number < b->number)
-                                  : (a->order > b->order) - (a->order < b->order);
+    const int order = (a->number > b->number) - (a->number < b->number);
+    return order ? order : (a->part > b->part) - (a->part < b->part);
 }
 
 static int by_number_falling(const void *left, const void *right)
@@ -275,40 +256,41 @@ static int by_number_falling(const void *left, const void *right)
 
 /* Finds the place of every point in the merged axis; only the first of equal ones is kept in the
  * list, which is then the axis. */
-static bool place_points(struct merge *m, struct points *points)
+static bool place_points(struct merge *m, struct look *look)
 {
     for (size_t p = 0; p < m->parts; p++) {
-        m->part[p].position = calloc(m->part[p].points, sizeof *m->part[p].position);
-        if (!m->part[p].position)
+        struct adopted *const part = &m->part[p].of;
+        part->position = calloc(part->points + 1, sizeof *part->position);
+        if (!part->position)
             return no_memory(&m->message);
     }
-    const bool sort = points->numbers && (points->rising || points->falling);
-    if (sort && points->count > 1) {
-        qsort(points->point, points->count, sizeof *points->point,
-              points->rising ? by_number : by_number_falling);
-    }
+    const bool sort = look->numbers && (look->rising || look->falling);
+    if (sort && look->points > 1)
+        qsort(look->point, look->points, sizeof *look->point,
+              look->rising ? by_number : by_number_falling);
     size_t kept = 0;
-    for (size_t i = 0; i < points->count; i++) {
-        struct point *point = &points->point[i];
+    for (size_t i = 0; i < look->points; i++) {
+        struct point *const point = &look->point[i], moved = *point;
         size_t at = sort && kept > 0 ? kept - 1 : 0; /* equal ones are neighbours when sorted */
-        while (at < kept && (points->numbers ? points->point[at].number != point->number
-                                             : strcmp(points->point[at].text, point->text) != 0))
+        while (at < kept && (look->numbers ? look->point[at].number != point->number
+                                           : strcmp(look->point[at].text, point->text) != 0))
             at++;
-        m->part[point->part].position[point->place] = at;
+        m->part[point->part].of.position[point->place] = at;
         if (at == kept) {
-            struct point moved = *point;
-            *point = points->point[kept];
-            points->point[kept++] = moved;
+            *point = look->point[kept];
+            look->point[kept++] = moved;
         }
     }
     m->points = kept;
+    for (size_t p = 0; p < m->parts; p++)
+        m->part[p].of.all = kept;
     return true;
 }
 
 /* ---- the merged scenario ------------------------------------------------------------------ */
 
 /* Values `first`, `last` and their number give all of them, to the bit. */
-static bool is_range(const struct points *points, size_t count)
+static bool is_range(const struct look *points, size_t count)
 {
     if (!points->numbers || count < 3)
         return false;
@@ -320,7 +302,7 @@ static bool is_range(const struct points *points, size_t count)
 }
 
 /* "sweep.grid[AXIS]={path: ..., values: [...]}"; freed by the caller. */
-static char *axis_setting(struct merge *m, const struct points *points, int axis,
+static char *axis_setting(struct merge *m, const struct look *points, int axis,
                           const struct tree_node *paths)
 {
     char *text = NULL;
@@ -363,7 +345,7 @@ static struct tree_node *grid_of(const struct tree *tree)
 }
 
 /* Gives the tree of the first part the merged axis. */
-static bool set_axis(struct merge *m, const struct points *points, struct tree *tree,
+static bool set_axis(struct merge *m, const struct look *points, struct tree *tree,
                      struct problems *problems)
 {
     struct tree_node *grid = grid_of(tree);
@@ -382,66 +364,34 @@ static bool set_axis(struct merge *m, const struct points *points, struct tree *
     return good;
 }
 
-/* Cases that are recorded, by their numbers in the merged file. */
-struct recorded {
-    uint64_t *row;
-    size_t count;
-};
-
-/* The cases that any part lists; those of a part that records all of them need no list, but then
- * all parts have to. */
-static bool collect_recorded(struct merge *m, bool all, struct recorded *list)
-{
-    bool good = true;
-    for (size_t p = 0; good && p < m->parts; p++) {
-        struct merge_part *const part = &m->part[p];
-        good = adopt_scenario(&part->of, &m->message);
-        const struct scenario *const s = part->of.scenario;
-        if (good && (s->record_cases == RECORD_ALL) != all) {
-            good = complain(&m->message, "%.60s: record.cases is `all` in some of the files only",
-                            part->of.file);
-        } else if (good) {
-            uint64_t *larger =
-                realloc(list->row, (list->count + s->record_count + 1) * sizeof *larger);
-            list->row = larger ? larger : list->row;
-            for (size_t i = 0; larger && i < s->record_count; i++)
-                larger[list->count++] = merge_row(m, part, s->record_list[i]);
-            good = larger || no_memory(&m->message);
-        }
-        adopt_close(&part->of);
-    }
-    list->count = list->row ? numbers_unite(list->row, list->count) : 0;
-    return good;
-}
-
-/* record.cases lists cases by their number, which the merged axis changes. `first`: the first
- * part, whose text is left where it says the same. */
-static bool set_recorded(struct merge *m, const struct scenario *first, struct tree *tree,
+/* record.cases lists cases by their number, which the merged axis changes. The text of the first
+ * part is left where it says the same. */
+static bool set_recorded(struct merge *m, const struct look *look, struct tree *tree,
                          struct problems *problems)
 {
-    struct recorded list = {.count = 0};
+    uint64_t *row = calloc(look->records + 1, sizeof *row);
     char *text = NULL;
     size_t size = 0;
-    bool good = collect_recorded(m, first->record_cases == RECORD_ALL, &list);
-    const bool same = list.count == first->record_count &&
-                      (list.count == 0 ||
-                       memcmp(list.row, first->record_list, list.count * sizeof *list.row) == 0);
-    FILE *out = good && !same ? open_memstream(&text, &size) : NULL;
-    if (out) {
+    FILE *out = row ? open_memstream(&text, &size) : NULL;
+    bool same = true, good = out != NULL;
+    for (size_t i = 0; row && i < look->records; i++)
+        row[i] = adopt_row(&m->part[look->recorded[i].part].of, look->recorded[i].row);
+    const size_t count = row ? numbers_unite(row, look->records) : 0;
+    for (size_t i = 0; i < count; i++)
+        same = same && look->recorded[i].part == 0 && look->recorded[i].row == row[i];
+    if (good) {
         fputs("record.cases=", out);
-        for (size_t i = 0; list.row && i < list.count; i++)
-            fprintf(out, "%s%llu", i ? ", " : "[", (unsigned long long)list.row[i]);
+        for (size_t i = 0; i < count; i++)
+            fprintf(out, "%s%llu", i ? ", " : "[", (unsigned long long)row[i]);
         fputs("]", out);
-        fclose(out);
-        good = tree_set(tree, text, 1, problems) || no_memory(&m->message);
-    } else if (good && !same) {
-        good = no_memory(&m->message);
+        good = fclose(out) == 0 && (same || tree_set(tree, text, 1, problems));
     }
-    free(list.row);
+    free(row);
     free(text);
-    return good;
+    return good || no_memory(&m->message);
 }
 
+/* Of the tree of the first part. */
 static bool read_merged(struct merge *m, const struct tree *tree)
 {
     char *text = tree_write(tree->root);
@@ -464,96 +414,83 @@ static bool read_merged(struct merge *m, const struct tree *tree)
 
 static bool make_scenario(struct merge *m, struct tree *trees)
 {
-    struct points points = {.numbers = true, .rising = true, .falling = true};
+    struct look look = {.numbers = true, .rising = true, .falling = true};
     struct problems *problems = calloc(1, sizeof *problems);
-    struct scenario *first = NULL;
-    bool good = problems || no_memory(&m->message);
+    bool good = problems ? look_at_parts(m, trees, &look) : no_memory(&m->message);
 
     if (good && m->kind != MERGE_EQUAL) {
-        good = (m->kind == MERGE_AXIS ? collect_axis(m, &points)
-                                      : collect_values(m, trees, &points)) &&
-               place_points(m, &points);
-        if (good && !set_axis(m, &points, &trees[0], problems)) {
+        good = place_points(m, &look);
+        if (good && !set_axis(m, &look, &trees[0], problems)) {
             good = no_memory(&m->message);
             if (problems->count > 0)
                 complain(&m->message, "the merged axis: %.200s", problems->list[0].text);
         }
     }
-    if (good)
-        first = adopt_text(m->part[0].of.file, m->part[0].of.origin.scenario, &m->message);
-    good = first != NULL;
-    if (good) {
-        m->inner = first->cases;
-        for (int a = 0; m->kind == MERGE_AXIS && a <= m->axis; a++)
-            m->inner /= first->axis[a].count;
-        good = set_recorded(m, first, &trees[0], problems);
-    }
-    scenario_drop(first);
+    good = good && set_recorded(m, &look, &trees[0], problems) && read_merged(m, &trees[0]);
     free(problems);
-    for (size_t i = 0; i < points.count; i++)
-        free(points.point[i].text);
-    free(points.point);
-    return good && read_merged(m, &trees[0]);
+    for (size_t i = 0; i < look.points; i++)
+        free(look.point[i].text);
+    free(look.point);
+    free(look.recorded);
+    return good;
 }
 
 /* ---- parts -------------------------------------------------------------------------------- */
 
-static bool open_parts(struct merge *m, const char *const *files, size_t count)
+static bool open_part(struct merge *m, const char *file, struct tree *tree)
 {
-    m->part = calloc(count, sizeof *m->part);
-    if (!m->part)
-        return no_memory(&m->message);
-    for (; m->parts < count; m->parts++) {
-        struct merge_part *part = &m->part[m->parts];
-        part->of.file = files[m->parts];
-        part->points = 1;
-        if (!store_check(part->of.file, true, &m->message) ||
-            !store_read_origin(part->of.file, &part->of.origin, &m->message))
-            return false;
-    }
-    return true;
+    struct adopted *const part = &m->part[m->parts].of;
+    part->file = file;
+    if (!store_check(file, true, &m->message) ||
+        !store_read_origin(file, &part->origin, &m->message))
+        return false;
+    m->parts++;
+    return adopt_tree(tree, file, part->origin.scenario, &m->message);
 }
 
-/* Where random numbers come in, other than by an axis: half-width of the noise, probes. */
+/* Of the values of keys that cases of several scenarios have, a file tells those of the last one.
+ */
+static bool is_of_one(struct merge *m, const struct adopted *part)
+{
+    return part->origin.ancestors == 0 ||
+           complain(&m->message, "%.120s: was made from several scenarios: it cannot be merged",
+                    part->file);
+}
+
+/* Where random numbers come in: half-width of the noise, probes. */
 static bool has_random_numbers(const struct scenario *s)
 {
-    bool noise = s->base.noise > 0 || s->base.angle_noise > 0 || s->base.rate_noise > 0 ||
-                 (s->refine.given && s->refine.probes > 0);
-    for (int a = 0; a < s->axes; a++)
-        for (int k = 0; k < s->axis[a].paths; k++)
-            noise = noise || strcmp(s->axis[a].path[k], "controller.noise") == 0 ||
-                    strcmp(s->axis[a].path[k], "controller.angle_noise") == 0 ||
-                    strcmp(s->axis[a].path[k], "controller.rate_noise") == 0;
-    return noise;
+    static const size_t noise[] = {offsetof(struct scenario_values, noise),
+                                   offsetof(struct scenario_values, angle_noise),
+                                   offsetof(struct scenario_values, rate_noise)};
+    double least, largest = 0;
+    for (size_t k = 0; k < sizeof noise / sizeof noise[0] && !(largest > 0); k++)
+        scenario_extent(s, noise[k], &least, &largest);
+    return largest > 0 || (s->refine.given && s->refine.probes > 0);
 }
 
 bool merge_plan(struct merge *m, const char *const *files, size_t count)
 {
     *m = (struct merge){.points = 1};
-    m->usage = false;
     struct tree *trees = calloc(count, sizeof *trees);
-    bool good = (trees || no_memory(&m->message)) && open_parts(m, files, count);
+    m->part = calloc(count, sizeof *m->part);
+    bool good = (trees && m->part) || no_memory(&m->message);
     for (size_t p = 0; good && p < count; p++)
-        good = read_tree(m, &trees[p], &m->part[p]);
-    if (good) {
-        m->usage = true;
-        /* Of the values of keys that cases of several scenarios have, a file tells those of the
-         * last one. */
-        for (size_t p = 0; good && p < count; p++)
-            good = m->part[p].of.origin.ancestors == 0 ||
-                   complain(&m->message,
-                            "%.120s: was made from several scenarios: it cannot be merged",
-                            m->part[p].of.file);
-        good = good && classify(m, trees) && make_scenario(m, trees);
-    }
+        good = open_part(m, files[p], &trees[p]);
+    m->usage = good;
+    for (size_t p = 0; good && p < count; p++)
+        good = is_of_one(m, &m->part[p].of);
+    good = good && classify(m, trees) && make_scenario(m, trees);
     for (size_t p = 0; good && p < count; p++)
         good =
             store_same_points(m->part[p].of.file, &m->part[p].of.origin, m->scenario, &m->message);
     for (size_t p = 0; trees && p < count; p++)
         tree_free(&trees[p]);
     free(trees);
-    m->keyed = good && m->kind != MERGE_EQUAL && has_random_numbers(m->scenario);
-    m->refined = good && m->kind != MERGE_EQUAL && m->scenario->axis[m->axis].refined;
+    if (good && m->kind != MERGE_EQUAL) {
+        m->noted[MERGE_KEYED] = has_random_numbers(m->scenario);
+        m->noted[MERGE_REFINED] = m->scenario->axis[m->axis].refined;
+    }
     return good;
 }
 
@@ -561,7 +498,7 @@ void merge_free(struct merge *m)
 {
     for (size_t p = 0; p < m->parts; p++) {
         store_origin_free(&m->part[p].of.origin);
-        free(m->part[p].position);
+        free(m->part[p].of.position);
     }
     free(m->part);
     scenario_drop(m->scenario);

@@ -483,11 +483,17 @@ bool results_open(struct results *r, const char *file, stance_message *message)
     bool good = read_all(r, message);
     sandbox_limit(false);
     good = good && read_kinds(r, message);
-    if (good)
-        results_warn(r);
-    else
+    if (!good) {
         results_close(r);
-    return good;
+        return false;
+    }
+    results_warn(r);
+    r->read = calloc(1, sizeof *r->read);
+    if (r->read && !results_scenario(r, r->read)) {
+        free(r->read);
+        r->read = NULL;
+    }
+    return true;
 }
 
 void results_close(struct results *r)
@@ -497,6 +503,7 @@ void results_close(struct results *r)
         free(r->axis[a].value);
     }
     results_free_sample(r);
+    scenario_drop(r->read);
     free(r->scenario);
     free(r->kind);
     free(r->failure);

@@ -57,8 +57,9 @@ struct results {
     char name[256]; /* file name without directory and .h5 */
     char title[256], version[64], revision[96], date[40], hosts[256];
     int ranks;
-    char *scenario; /* text */
-    bool single;    /* one case, no axes; `index` is its flat index in the sweep, 0 without one */
+    char *scenario;        /* text */
+    struct scenario *read; /* what it says; NULL: this version cannot read it */
+    bool single; /* one case, no axes; `index` is its flat index in the sweep, 0 without one */
     uint64_t index;
     int axes;
     struct results_axis axis[SCENARIO_MAX_AXES];
@@ -139,10 +140,10 @@ void results_case_text(const struct results *r, uint64_t index, char *buffer, si
 int results_letter(const char *text);
 void results_clean(char *text);
 
-/* The scenario of the file, read by the scenario's own reader; false when this version cannot. */
+/* The scenario once more, to be changed and freed; false when this version cannot read it. */
 bool results_scenario(const struct results *r, struct scenario *s);
-/* The same, whose axes must be the file's: its cases are the file's. */
-bool results_swept(const struct results *r, struct scenario *s, stance_message *message);
+/* r->read, whose axes must be the file's: its cases are the file's. NULL: *message says why not. */
+const struct scenario *results_swept(const struct results *r, stance_message *message);
 
 /* ---- trajectories ------------------------------------------------------------------------- */
 

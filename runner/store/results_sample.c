@@ -141,17 +141,16 @@ bool results_scenario(const struct results *r, struct scenario *s)
     return good;
 }
 
-bool results_swept(const struct results *r, struct scenario *s, stance_message *message)
+const struct scenario *results_swept(const struct results *r, stance_message *message)
 {
-    if (!results_scenario(r, s))
-        return complain(message, "%.150s: the scenario in it cannot be read", r->file);
-    bool same = s->axes == r->axes;
+    const struct scenario *const s = r->read;
+    bool same = s && s->axes == r->axes;
     for (int a = 0; same && a < r->axes; a++)
         same = s->axis[a].count == r->axis[a].count;
-    if (same)
-        return true;
-    scenario_free(s);
-    return complain(message, "%.150s: the scenario in it has other axes than its cases", r->file);
+    if (!same)
+        complain(message, "%.150s: the scenario in it %s", r->file,
+                 s ? "has other axes than its cases" : "cannot be read");
+    return same ? s : NULL;
 }
 
 void results_free_sample(struct results *r)

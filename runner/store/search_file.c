@@ -2,6 +2,7 @@
 #include "search_file.h"
 #include "build_info.h"
 #include "file_checksums.h"
+#include "results.h"
 #include "store_private.h"
 
 #include "runner/base/message.h"
@@ -27,21 +28,19 @@ static const struct entry {
     {#name,       unit,                                                                            \
      text,        offsetof(struct search_file, name),                                              \
      KIND_##type, {SEARCH_##a, SEARCH_##b, SEARCH_##c}},
-    SEARCH_VARIABLES(ENTRY) SEARCH_ADDED(ENTRY)
+    SEARCH_VARIABLES(ENTRY)
 #undef ENTRY
 };
-#define ONE(...) +1
-enum { ENTRIES = sizeof table / sizeof *table, ENTRIES_AT_FIRST = 0 SEARCH_VARIABLES(ONE) };
-#undef ONE
+enum { ENTRIES = sizeof table / sizeof *table };
 
-/* Offset of a dimension's words; 0: its points are numbered. */
 static const struct {
     const char *name;
-    size_t words;
+    size_t words; /* offset of them; 0: points are numbered */
+    const char *text;
 } dimensions[SEARCH_DIMENSION_COUNT] = {
 #define NUMBERS 0
 #define WORDS(field) offsetof(struct search_file, field)
-#define DIMENSION(NAME, name, words) {name, words},
+#define DIMENSION(NAME, name, words, text) {name, words, text},
     SEARCH_DIMENSIONS(DIMENSION)
 #undef DIMENSION
 };
@@ -51,23 +50,22 @@ static const struct {
     const char *name;
     enum store_kind kind;
     size_t offset;
+    bool whole; /* a text of lines, taken as it is */
 } attributes[] = {
-#define ATTRIBUTE(name, kind, member)                                                              \
-    {                                                                                              \
-        name, kind, offsetof(struct search_file, member)                                           \
-    }
-    ATTRIBUTE("title", KIND_text, title),
-    ATTRIBUTE("git_revision", KIND_text, revision),
-    ATTRIBUTE("date", KIND_text, date),
-    ATTRIBUTE("scenario", KIND_text, scenario),
-    ATTRIBUTE("first_scenario", KIND_text, first_scenario),
-    ATTRIBUTE("note", KIND_text, note),
-    ATTRIBUTE("chosen", KIND_int64_t, chosen),
-    ATTRIBUTE("most_generations", KIND_int64_t, most_generations),
-    ATTRIBUTE("most_cases", KIND_double, most_cases),
-    ATTRIBUTE("finished", KIND_int32_t, finished),
-    ATTRIBUTE("linear_limit", KIND_double, linear_limit),
-    ATTRIBUTE("wall_time", KIND_double, seconds),
+#define MEMBER(member) offsetof(struct search_file, member)
+    {"title", KIND_text, MEMBER(title), false},
+    {"git_revision", KIND_text, MEMBER(revision), false},
+    {"date", KIND_text, MEMBER(date), false},
+    {"scenario", KIND_text, MEMBER(scenario), true},
+    {"first_scenario", KIND_text, MEMBER(first_scenario), true},
+    {"note", KIND_text, MEMBER(note), false},
+    {"chosen", KIND_int64_t, MEMBER(chosen), false},
+    {"most_generations", KIND_int64_t, MEMBER(most_generations), false},
+    {"most_cases", KIND_double, MEMBER(most_cases), false},
+    {"finished", KIND_int32_t, MEMBER(finished), false},
+    {"linear_limit", KIND_double, MEMBER(linear_limit), false},
+    {"wall_time", KIND_double, MEMBER(seconds), false},
+#undef MEMBER
 };
 enum { ATTRIBUTES = sizeof attributes / sizeof *attributes };
 
@@ -100,10 +98,8 @@ static size_t elements_of(const struct search_file *f, const struct entry *e)
 bool search_file_room(struct search_file *f)
 {
     bool good = true;
-    for (int i = 0; i < ENTRIES && good; i++) {
-        *place_of(f, &table[i]) = calloc(elements_of(f, &table[i]) + 1, hdf_size(table[i].kind));
-        good = *place_of(f, &table[i]) != NULL;
-    }
+    for (const struct entry *e = table; e < table + ENTRIES && good; e++)
+        good = (*place_of(f, e) = calloc(elements_of(f, e) + 1, hdf_size(e->kind))) != NULL;
     for (int d = 0; d < SEARCH_DIMENSION_COUNT && good; d++)
         if (dimensions[d].words && !*words_of(f, d))
             good = (*words_of(f, d) = calloc(f->length[d] + 1, sizeof(char *))) != NULL;
@@ -123,8 +119,8 @@ void search_file_free(struct search_file *f)
     for (int d = 0; d < SEARCH_DIMENSION_COUNT; d++)
         if (dimensions[d].words && d != SEARCH_OTHER)
             hdf_free_words(*words_of(f, d), f->length[d]);
-    for (int i = 0; i < ENTRIES; i++)
-        free(*place_of(f, &table[i]));
+    for (const struct entry *e = table; e < table + ENTRIES; e++)
+        free(*place_of(f, e));
     for (int i = 0; i < ATTRIBUTES; i++)
         if (attributes[i].kind == KIND_text)
             free(*(char **)member_of(f, attributes[i].offset));
@@ -135,11 +131,6 @@ void search_file_free(struct search_file *f)
 
 static void put_variables(struct maker *m, const struct search_file *f)
 {
-    static const char *const text[SEARCH_DIMENSION_COUNT] = {
-        [SEARCH_CANDIDATE] = "number of the candidate",
-        [SEARCH_GENERATION] = "number of the generation",
-        [SEARCH_CONFIRMED] = "number of the candidate that was tried from fresh starts",
-        [SEARCH_START] = "number of the fresh start"};
     struct dimension over[SEARCH_DIMENSION_COUNT];
     for (int d = 0; d < SEARCH_DIMENSION_COUNT; d++) {
         const bool words = dimensions[d].words > 0;
@@ -147,7 +138,7 @@ static void put_variables(struct maker *m, const struct search_file *f)
                                         words ? KIND_text : KIND_double,
                                         false,
                                         words ? NULL : "1",
-                                        text[d],
+                                        dimensions[d].text,
                                         .values = words ? *words_of(f, d) : NULL,
                                         .value = make_place,
                                         .length = f->length[d]};
@@ -229,30 +220,34 @@ static bool read_length(hid_t file, struct search_file *f, int d)
     if (!hdf_exists(file, dimensions[d].name))
         return true;
     const hid_t dataset = H5Dopen2(file, dimensions[d].name, H5P_DEFAULT);
-    const bool good =
+    bool good =
         dataset >= 0 && hdf_shape(dataset, length) == 1 && hdf_elements(dataset) == length[0];
     f->length[d] = good ? (size_t)length[0] : 0;
-    if (good && dimensions[d].words && d != SEARCH_OTHER)
-        *words_of(f, d) = hdf_words(dataset, 0, f->length[d]);
-    const bool has_words = !dimensions[d].words || *words_of(f, d);
+    if (good && dimensions[d].words && d != SEARCH_OTHER) {
+        char **const words = *words_of(f, d) = hdf_words(dataset, 0, f->length[d]);
+        for (size_t i = 0; words && i < f->length[d]; i++)
+            results_clean(words[i]);
+        good = words != NULL;
+    }
     hdf_close(dataset);
-    return good && has_words;
+    return good;
 }
 
 static bool read_variable(hid_t file, struct search_file *f, const struct entry *e)
 {
     hsize_t length[H5S_MAX_RANK];
-    if (elements_of(f, e) == 0)
+    const size_t elements = elements_of(f, e);
+    if (elements == 0)
         return true;
-    if (e >= table + ENTRIES_AT_FIRST && !hdf_exists(file, e->name)) { /* an older file lacks it */
+    if (e >= table + ENTRIES - SEARCH_ADDED && !hdf_exists(file, e->name)) {
         double *const number = *place_of(f, e);
-        for (size_t i = 0; e->kind == KIND_double && i < elements_of(f, e); i++)
+        for (size_t i = 0; e->kind == KIND_double && i < elements; i++)
             number[i] = NAN;
         return true;
     }
     const hid_t dataset = H5Dopen2(file, e->name, H5P_DEFAULT);
     const int rank = hdf_shape(dataset, length);
-    bool good = rank > 0 && rank <= MOST_OVER && hdf_elements(dataset) == elements_of(f, e);
+    bool good = rank > 0 && rank <= MOST_OVER && hdf_elements(dataset) == elements;
     for (int d = 0; d < MOST_OVER && good; d++)
         good = d < rank ? e->over[d] != SEARCH_NO && length[d] == f->length[e->over[d]]
                         : e->over[d] == SEARCH_NO;
@@ -261,16 +256,15 @@ static bool read_variable(hid_t file, struct search_file *f, const struct entry 
     return good;
 }
 
-static bool read_attributes(hid_t file, struct search_file *f)
+static bool read_attribute(hid_t file, struct search_file *f, int i)
 {
-    bool good = true;
-    for (int i = 0; good && i < ATTRIBUTES; i++) {
-        void *const value = member_of(f, attributes[i].offset);
-        good = attributes[i].kind == KIND_text
-                   ? (*(char **)value = hdf_text(file, attributes[i].name)) != NULL
-                   : hdf_number(file, attributes[i].name, hdf_type(attributes[i].kind), value);
-    }
-    return good;
+    void *const value = member_of(f, attributes[i].offset);
+    if (attributes[i].kind != KIND_text)
+        return hdf_number(file, attributes[i].name, hdf_type(attributes[i].kind), value);
+    char *const text = *(char **)value = hdf_text(file, attributes[i].name);
+    if (text && !attributes[i].whole)
+        results_clean(text);
+    return text != NULL;
 }
 
 /* Numbers that others use as places. */
@@ -292,6 +286,19 @@ static bool places_exist(const struct search_file *f)
     return good && f->candidates[generations - 1] == candidates;
 }
 
+static bool read_all(hid_t file, struct search_file *f)
+{
+    bool good = true;
+    for (int d = 0; d < SEARCH_DIMENSION_COUNT && good; d++)
+        good = read_length(file, f, d);
+    for (int i = 0; i < ATTRIBUTES && good; i++)
+        good = read_attribute(file, f, i);
+    good = good && search_file_room(f);
+    for (const struct entry *e = table; e < table + ENTRIES && good; e++)
+        good = read_variable(file, f, e);
+    return good && places_exist(f);
+}
+
 bool search_file_read(struct search_file *f, const char *file, stance_message *message)
 {
     *f = (struct search_file){.chosen = -1};
@@ -300,16 +307,8 @@ bool search_file_read(struct search_file *f, const char *file, stance_message *m
         return false;
     bool good = hdf_whole(id, "search_version", 0) == VERSION ||
                 complain(message, "%.150s: not the file of a search by stance optimise", file);
-    good = good && file_checksums_verify(id, file, NULL, NULL, true, message);
-    if (good) {
-        for (int d = 0; d < SEARCH_DIMENSION_COUNT && good; d++)
-            good = read_length(id, f, d);
-        good = good && read_attributes(id, f) && search_file_room(f);
-        for (int i = 0; i < ENTRIES && good; i++)
-            good = read_variable(id, f, &table[i]);
-        good = (good && places_exist(f)) ||
-               complain(message, "%.150s: damaged, or not all of it there", file);
-    }
+    good = good && file_checksums_verify(id, file, NULL, NULL, true, message) &&
+           (read_all(id, f) || complain(message, "%.150s: damaged, or not all of it there", file));
     H5Fclose(id);
     if (!good)
         search_file_free(f);

@@ -19,21 +19,21 @@
 #include <stdint.h>
 
 /* Dimensions: their name; their points are numbered, or have the words of a member of struct
- * search_file. */
+ * search_file; text. */
 #define SEARCH_DIMENSIONS(X)                                                                       \
-    X(CANDIDATE, "candidate", NUMBERS)                                                             \
-    X(PARAMETER, "parameter", WORDS(parameter))                                                    \
-    X(OTHER, "parameter_other", WORDS(parameter))                                                  \
-    X(CIRCUMSTANCE, "circumstance", WORDS(circumstance))                                           \
-    X(KIND, "kind", WORDS(kind))                                                                   \
-    X(GENERATION, "generation", NUMBERS)                                                           \
-    X(CONFIRMED, "confirmed", NUMBERS)                                                             \
-    X(START, "start", NUMBERS)                                                                     \
-    X(VARIED, "varied", WORDS(varied))                                                             \
-    X(ELSEWHERE, "elsewhere", WORDS(elsewhere))
+    X(CANDIDATE, "candidate", NUMBERS, "number of the candidate")                                  \
+    X(PARAMETER, "parameter", WORDS(parameter), NULL)                                              \
+    X(OTHER, "parameter_other", WORDS(parameter), NULL)                                            \
+    X(CIRCUMSTANCE, "circumstance", WORDS(circumstance), NULL)                                     \
+    X(KIND, "kind", WORDS(kind), NULL)                                                             \
+    X(GENERATION, "generation", NUMBERS, "number of the generation")                               \
+    X(CONFIRMED, "confirmed", NUMBERS, "number of the candidate that was tried from fresh starts") \
+    X(START, "start", NUMBERS, "number of the fresh start")                                        \
+    X(VARIED, "varied", WORDS(varied), NULL)                                                       \
+    X(ELSEWHERE, "elsewhere", WORDS(elsewhere), NULL)
 
 enum search_dimension {
-#define SEARCH_DIMENSION(NAME, name, words) SEARCH_##NAME,
+#define SEARCH_DIMENSION(NAME, ...) SEARCH_##NAME,
     SEARCH_DIMENSIONS(SEARCH_DIMENSION)
 #undef SEARCH_DIMENSION
         SEARCH_DIMENSION_COUNT,
@@ -80,21 +80,19 @@ enum search_dimension {
     X(elsewhere_first, double, ELSEWHERE, NO, NO, "1",                                             \
       "share of fresh starts that the first candidate recovers there")                             \
     X(elsewhere_chosen, double, ELSEWHERE, NO, NO, "1",                                            \
-      "share of fresh starts that the chosen one recovers there")
-
-/* The same, of files since one is chosen by starts of its own: read from older ones, where it is
- * chosen by the fresh starts, they are nothing (NAN, 0). */
-#define SEARCH_ADDED(X)                                                                            \
+      "share of fresh starts that the chosen one recovers there")                                  \
     X(choice_score, int64_t, CONFIRMED, NO, NO, "1",                                               \
       "by which one is chosen, a whole number, of starts of its own")                              \
     X(choice_objective, double, CONFIRMED, NO, NO, "1", "the same, of each such start")
+/* The last two are of files since one is chosen by starts of its own: read from older ones, where
+ * it is chosen by the fresh starts, they are nothing (0, NAN). */
+enum { SEARCH_ADDED = 2 };
 
 struct search_file {
     size_t length[SEARCH_DIMENSION_COUNT]; /* 0: variables over it are left out */
     char **parameter, **circumstance, **kind, **varied, **elsewhere; /* words of dimensions */
 #define SEARCH_FIELD(name, type, ...) type *name;
     SEARCH_VARIABLES(SEARCH_FIELD)
-    SEARCH_ADDED(SEARCH_FIELD)
 #undef SEARCH_FIELD
     char *title, *scenario, *first_scenario, *revision, *date, *note;
     int64_t chosen;           /* place among `confirmed`; -1: none yet */
@@ -104,8 +102,8 @@ struct search_file {
     double linear_limit, seconds; /* s, of all ranks' wall time, over all parts of the search */
 };
 
-/* Room for the lengths that *f has, all zeros, and for words; what is written later has at most
- * these. false: no memory. */
+/* Room for the lengths that *f has, all zeros, and for words that it has not; what is written later
+ * has at most these. false: no memory. */
 bool search_file_room(struct search_file *f);
 /* Variables over candidates or generations, of a file that has as many of all else. */
 void search_file_copy(struct search_file *f, const struct search_file *from,
@@ -115,7 +113,8 @@ void search_file_free(struct search_file *f);
 /* Whether a file is one of a search, as far as can be seen; no message. */
 bool search_file_is(const char *file);
 bool search_file_write(const struct search_file *f, const char *file, stance_message *message);
-/* Verifies checksums; everything in *f is new, and freed by search_file_free. */
+/* Verifies checksums; everything in *f is new, and freed by search_file_free. All texts but the
+ * scenarios are clean (results.h). */
 bool search_file_read(struct search_file *f, const char *file, stance_message *message);
 
 #endif

@@ -482,7 +482,7 @@ static bool verify_trajectory(struct store *store, uint64_t place, bool *whole,
     return good || store_failed(message, store->file, "read a trajectory");
 }
 
-bool store_verify(struct store *store, const struct rows *rows, stance_result *results, bool *whole,
+bool store_verify(struct store *store, const struct rows *rows, struct store_found *found,
                   stance_message *message)
 {
     if (!store->checked && !(store->checked = store_block_make(store, STORE_ROWS)))
@@ -494,13 +494,12 @@ bool store_verify(struct store *store, const struct rows *rows, stance_result *r
     const uint32_t *checksum = store->checked->column[COLUMN_CHECKSUM];
     for (size_t row = 0; row < rows->count; row++) {
         uint64_t place;
-        whole[row] = (status[row] == STANCE_DONE || status[row] == STANCE_FAILED) &&
-                     checksum[row] == store_row_checksum(store->checked, row);
-        if (whole[row] && plan_recorded(store->plan, rows_at(rows, row), &place) &&
-            !verify_trajectory(store, place, &whole[row], message))
+        const bool whole = (status[row] == STANCE_DONE || status[row] == STANCE_FAILED) &&
+                           checksum[row] == store_row_checksum(store->checked, row);
+        found[row] = (struct store_found){whole, status[row], outcome ? outcome[row] : STANCE_NONE};
+        if (whole && plan_recorded(store->plan, rows_at(rows, row), &place) &&
+            !verify_trajectory(store, place, &found[row].whole, message))
             return false;
-        results[row].status = status[row];
-        results[row].outcome = outcome ? outcome[row] : STANCE_NONE;
     }
     return true;
 }

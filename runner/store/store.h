@@ -144,27 +144,13 @@ bool store_blank_trajectory(const struct store *store, stance_trajectory *trajec
 /* The trajectory at one place of the recorded cases; before the row itself. */
 bool store_write_trajectory(struct store *store, uint64_t place,
                             const stance_trajectory *trajectory, stance_message *message);
-/* Which of 1 to STORE_ROWS rows are whole: done or failed, and as their checksums say; status (of
- * all rows, as the file has it) and outcome (where stored) are filled in. Trajectories of recorded
- * cases are verified, too. */
-bool store_verify(struct store *store, const struct rows *rows, stance_result *results, bool *whole,
-                  stance_message *message);
-/* What became of rows that were to be copied; the numbers add up over calls. */
-struct store_copied {
-    uint64_t copied;
-    uint64_t same;        /* were there already */
-    uint64_t damaged;     /* are not as their checksums say, and were left out */
-    uint64_t conflicting; /* differ from what was there; left as they were */
-    uint64_t conflict;    /* where the first of these is, in the file that is written */
+/* What the file has of 1 to STORE_ROWS rows. Trajectories of recorded cases are verified, too. */
+struct store_found {
+    bool whole;              /* done or failed, and as its checksum says */
+    uint8_t status, outcome; /* as in the file; outcome where it is stored */
 };
-/* Copies rows that are not pending, with their trajectories, to the rows that `target` says
- * (STORE_NOWHERE: it stays) of a file whose cases have the same answers and the same instants, each
- * once it has been verified. Where only that file has numbers of scenarios, the rows are of the
- * first one, 0. */
-#define STORE_NOWHERE UINT64_MAX
-bool store_copy(struct store *from, struct store *to,
-                uint64_t (*target)(void *context, uint64_t row), void *context,
-                struct store_copied *copied, stance_message *message);
+bool store_verify(struct store *store, const struct rows *rows, struct store_found *found,
+                  stance_message *message);
 /* Appends the times of a file to those of another, rank after rank from *rank on, which moves on.
  */
 bool store_copy_timing(struct store *from, struct store *to, int *rank, stance_message *message);
@@ -197,5 +183,7 @@ bool store_count(const char *file, struct store_counts *counts, stance_message *
 /* Whether a file of that size on the disk, and that length, can fit at all, before HDF5 begins what
  * it could not end. */
 bool store_fits(const char *file, uint64_t size, uint64_t length, stance_message *message);
+/* Brings a file that was made beside another to the disk, then under its name. */
+bool store_take_place(const char *made, const char *file, stance_message *message);
 
 #endif

@@ -6,6 +6,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <limits.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/resource.h>
@@ -69,4 +70,25 @@ bool store_reserve(const char *file, stance_message *message)
     if (close(descriptor) != 0 && error == 0)
         error = errno;
     return error == 0 || store_system_failed(message, file, "reserve its space", error);
+}
+
+bool store_take_place(const char *made, const char *file, stance_message *message)
+{
+    char directory[PATH_MAX];
+    struct stat before;
+    int descriptor = open(made, O_RDWR | O_CLOEXEC);
+    /* Whoever may write the old file may write this one, as far as the system lets us see to it. */
+    if (descriptor >= 0 && stat(file, &before) == 0 &&
+        fchown(descriptor, before.st_uid, before.st_gid) == 0)
+        (void)fchmod(descriptor, before.st_mode & 0777);
+    if (descriptor < 0 || fsync(descriptor) != 0 || close(descriptor) != 0 ||
+        rename(made, file) != 0)
+        return store_system_failed(message, file, "put the new file there", errno);
+    store_directory(file, directory, sizeof directory);
+    descriptor = open(directory, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (descriptor >= 0) {
+        (void)fsync(descriptor); /* some file systems cannot; then the rename takes its time */
+        close(descriptor);
+    }
+    return true;
 }

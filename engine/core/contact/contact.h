@@ -219,7 +219,7 @@ HOT mask contact_invert(int unknowns, enum contact_care care, const lanes own[2]
             const lanes before[2] = {own[0], own[1]};
             memcpy(copy, inverse, sizeof copy);
             memcpy(same, G, sizeof same);
-            contact_invert_singular(singular, before, (const lanes(*)[2])same, copy);
+            contact_invert_singular(singular, before, same, copy);
             memcpy(inverse, copy, sizeof copy);
         }
     }
@@ -265,8 +265,7 @@ HOT void contact_factor(contact_set touching, enum contact_care care, lanes (*M)
     EACH_IN (p, touching) {
         EACH (a, 0, 2)
             f->inverse[p][a][0] = f->inverse[p][a][1] = lanes_of(0);
-        f->regular &= contact_invert(contact_unknowns(p), care, own[p], (const lanes(*)[2])M[p][p],
-                                     f->inverse[p]);
+        f->regular &= contact_invert(contact_unknowns(p), care, own[p], M[p][p], f->inverse[p]);
         const int n = contact_unknowns(p);
         EACH_IN_FROM (k, p + 1, touching) {
             EACH (b, 0, 2)
@@ -338,15 +337,19 @@ HOT mask contact_rest(contact_set touching, enum contact_care care,
     EACH_IN (c, touching)
         EACH (a, 0, 2)
             u[c][a] = choose(rows[c][a], uf[c][a], lanes_of(0));
-    contact_back(touching, &f, (const lanes(*)[2])u, r);
+    contact_back(touching, &f, u, r);
     EACH_IN (c, touching)
         if (edge && contact_unknowns(c) == 2)
-            r[c][1] = lanes_fma(edge[c], contact_load(c, (const lanes(*)[2])r), r[c][1]);
+            r[c][1] = lanes_fma(edge[c], contact_load(c, r), r[c][1]);
     return f.regular;
 }
 
-/* What a contact problem is asked beside its operator. */
-struct contact_rule {
+/* A contact problem, and what is asked of its solution. */
+struct contact_problem {
+    const lanes (*D)[CONTACTS][2][2]; /* of contacts in `touching` ... */
+    const lanes (*uf)[2];             /* ... with their free velocities */
+    contact_set touching;
+    const mask *active; /* of all contacts */
     lanes friction;
     lanes prefer; /* of several solutions that with the least kinetic energy: 1; the most: -1 */
     /* NULL, or for each grip 0 or the sign of a slip that goes on whatever the impulse: for
@@ -381,14 +384,5 @@ struct contact_verdict {
     mask unsolved;  /* there is none */
     mask unranked;  /* too many contacts to know whether it is the one that is preferred */
 };
-
-/* Joins two verdicts: *a in the lanes of m, *b elsewhere. */
-HOT struct contact_verdict contact_verdicts(mask m, const struct contact_verdict *a,
-                                            const struct contact_verdict *b)
-{
-    return (struct contact_verdict){(a->ambiguous & m) | (b->ambiguous & LANES_NOT(m)),
-                                    (a->unsolved & m) | (b->unsolved & LANES_NOT(m)),
-                                    (a->unranked & m) | (b->unranked & LANES_NOT(m))};
-}
 
 #endif

@@ -32,8 +32,8 @@
 
 /* ---- one point ------------------------------------------------------------------------------- */
 
-/* Sliding: NULL or as in contact_rule, of this contact. Returns the lanes where r is certainly the
- * one solution. */
+/* Sliding: NULL or as in contact_problem, of this contact. Returns the lanes where r is certainly
+ * the one solution. */
 HOT mask direct_one(const lanes D[2][2], const lanes uf[2], lanes friction, const lanes *sliding,
                     lanes r[2])
 {
@@ -76,37 +76,36 @@ HOT void direct_rows(const mask *active, mask (*rows)[2])
 }
 
 /* Lanes where all active contacts stood, as `last` tells. */
-HOT mask direct_stood(const struct contact_rule *rule, contact_set touching, const mask *active)
+HOT mask direct_stood(const struct contact_problem *p)
 {
-    mask stood = rule->last ? rule->known : MASK_NONE;
-    EACH_IN (c, touching) {
-        if (!rule->last)
+    mask stood = p->last ? p->known : MASK_NONE;
+    EACH_IN (c, p->touching) {
+        if (!p->last)
             continue;
-        mask stands = mask_less(lanes_of(0), rule->last[c][0]);
+        mask stands = mask_less(lanes_of(0), p->last[c][0]);
         if (contact_is_point(c))
-            stands = contact_stands(rule->friction, rule->last[c][0], rule->last[c][1]);
-        stood &= LANES_NOT(active[c]) | stands;
+            stands = contact_stands(p->friction, p->last[c][0], p->last[c][1]);
+        stood &= LANES_NOT(p->active[c]) | stands;
         if (contact_unknowns(c) == 2 && !contact_is_point(c))
-            stood &= LANES_NOT(contact_part(c, active)) |
-                     contact_stands(rule->friction, contact_load(c, rule->last), rule->last[c][1]);
+            stood &= LANES_NOT(contact_part(c, p->active)) |
+                     contact_stands(p->friction, contact_load(c, p->last), p->last[c][1]);
     }
     return stood;
 }
 
 /* Lanes where the least energy is wanted, and nothing is in the way of all sticking: then that is
  * the solution, if it obeys the laws. */
-static inline mask direct_stick_is_least(const struct contact_rule *rule, contact_set touching,
-                                         const mask *active)
+static inline mask direct_stick_is_least(const struct contact_problem *p)
 {
     const lanes none = lanes_of(0);
-    mask least = rule->indefinite ? MASK_NONE : mask_less(none, rule->prefer);
-    EACH_IN (c, touching)
+    mask least = p->indefinite ? MASK_NONE : mask_less(none, p->prefer);
+    EACH_IN (c, p->touching)
         for (int a = 0; a < contact_unknowns(c); a++) {
-            const mask here = a == 0 ? active[c] : contact_part(c, active);
-            if (rule->shift)
-                least &= LANES_NOT(here & mask_less(none, lanes_abs(rule->shift[c][a])));
-            if (rule->sliding && a == 1)
-                least &= LANES_NOT(here & mask_less(none, lanes_abs(rule->sliding[c])));
+            const mask here = a == 0 ? p->active[c] : contact_part(c, p->active);
+            if (p->shift)
+                least &= LANES_NOT(here & mask_less(none, lanes_abs(p->shift[c][a])));
+            if (p->sliding && a == 1)
+                least &= LANES_NOT(here & mask_less(none, lanes_abs(p->sliding[c])));
         }
     return least;
 }
@@ -125,14 +124,12 @@ HOT mask direct_obeys(lanes friction, contact_set touching, const lanes (*r)[2])
 
 /* Impulses with which all active contacts stick; returns the lanes where they are in the cones, and
  * the operator is regular. */
-HOT mask direct_stick(const struct contact_rule *rule, const lanes (*D)[CONTACTS][2][2],
-                      const lanes (*uf)[2], contact_set touching, const mask *active, lanes (*r)[2])
+HOT mask direct_stick(const struct contact_problem *p, lanes (*r)[2])
 {
     mask rows[CONTACTS][2];
-    direct_rows(active, rows);
-    const mask regular =
-        contact_rest(touching, CONTACT_PLAIN, D, uf, (const mask(*)[2])rows, NULL, r);
-    return regular & direct_obeys(rule->friction, touching, (const lanes(*)[2])r);
+    direct_rows(p->active, rows);
+    const mask regular = contact_rest(p->touching, CONTACT_PLAIN, p->D, p->uf, rows, NULL, r);
+    return regular & direct_obeys(p->friction, p->touching, r);
 }
 
 /* Velocities with the impulses r of contacts in `touching`, of others zero. */
@@ -153,48 +150,53 @@ HOT void direct_velocities(const lanes (*D)[CONTACTS][2][2], const lanes (*uf)[2
         }
 }
 
-/* contact_matrix, then contact_factor, with their arguments; not inlined, as it is rarely needed.
- * ridge: share of their own diagonal that is added to tangential rows. */
-COLD void direct_factor(contact_set touching, enum contact_care care,
-                        const lanes (*D)[CONTACTS][2][2], const mask (*rows)[2], const lanes *edge,
-                        double ridge, lanes (*M)[CONTACTS][2][2], struct contact_factors *f)
+/* The operator of a problem in the rows that take part, eliminated. */
+struct direct_operator {
+    contact_set touching;
+    const lanes (*D)[CONTACTS][2][2];
+    mask rows[CONTACTS][2];
+    lanes G[CONTACTS][CONTACTS][2][2]; /* the blocks that elimination has left */
+    struct contact_factors factors;
+};
+
+/* contact_matrix, then contact_factor; not inlined, as it is rarely needed. ridge: share of their
+ * own diagonal that is added to tangential rows. */
+COLD void direct_factor(struct direct_operator *o, enum contact_care care, const lanes *edge,
+                        double ridge)
 {
-    contact_matrix(touching, D, rows, edge, M);
-    EACH_IN (c, touching)
+    contact_matrix(o->touching, o->D, o->rows, edge, o->G);
+    EACH_IN (c, o->touching)
         if (contact_unknowns(c) == 2)
-            M[c][c][1][1] = (1 + ridge) * M[c][c][1][1];
-    contact_factor(touching, care, M, f);
+            o->G[c][c][1][1] = (1 + ridge) * o->G[c][c][1][1];
+    contact_factor(o->touching, care, o->G, &o->factors);
 }
 
-/* The unknowns x that bring the velocities u to rest in `rows`, zero in others. */
-HOT void direct_rest(contact_set touching, const mask (*rows)[2], const struct contact_factors *f,
-                     const lanes (*u)[2], lanes (*x)[2])
+/* The unknowns x that bring the velocities u of contacts in `touching` to rest in the rows, zero in
+ * others. */
+HOT void direct_rest(contact_set touching, const struct direct_operator *o, const lanes (*u)[2],
+                     lanes (*x)[2])
 {
     lanes part[CONTACTS][2];
     EACH_IN (c, touching)
         EACH (a, 0, 2)
-            part[c][a] = choose(rows[c][a], u[c][a], lanes_of(0));
-    contact_back(touching, f, (const lanes(*)[2])part, x);
+            part[c][a] = choose(o->rows[c][a], u[c][a], lanes_of(0));
+    contact_back(touching, &o->factors, part, x);
 }
-/* direct_rest, not inlined: for callers that are rare. */
-COLD void direct_back(contact_set touching, const mask (*rows)[2], const struct contact_factors *f,
-                      const lanes (*u)[2], lanes (*x)[2])
+/* The same, not inlined: for callers that are rare. */
+COLD void direct_back(const struct direct_operator *o, const lanes (*u)[2], lanes (*x)[2])
 {
-    direct_rest(touching, rows, f, u, x);
+    direct_rest(o->touching, o, u, x);
 }
 
-/* What can be exchanged between contacts in `rows` without any change of velocity: n with D n = 0,
- * from the blocks G that elimination has left, with 1 for a row of contact p that depends on those
- * before; `second`: for the other one of its rows, where both do. Returns the lanes where there is
- * such a row. */
-static inline mask direct_null(contact_set touching, const lanes (*D)[CONTACTS][2][2],
-                               const mask (*rows)[2], const lanes (*G)[CONTACTS][2][2],
-                               const struct contact_factors *f, int p, bool second, lanes (*n)[2])
+/* What can be exchanged between contacts without any change of velocity: n with D n = 0, with 1 for
+ * a row of contact p that depends on those before; `second`: for the other one of its rows, where
+ * both do. Returns the lanes where there is such a row. */
+static inline mask direct_null(const struct direct_operator *o, int p, bool second, lanes (*n)[2])
 {
-    const lanes(*const g)[2] = G[p][p];
+    const lanes(*const g)[2] = o->G[p][p];
     lanes own[2], null[2] = {lanes_of(1), lanes_of(0)};
     for (int a = 0; a < 2; a++)
-        own[a] = choose(rows[p][a], lanes_abs(D[p][p][a][a]), lanes_of(1));
+        own[a] = choose(o->rows[p][a], lanes_abs(o->D[p][p][a][a]), lanes_of(1));
     mask here = mask_less_equal(lanes_abs(g[0][0]), LANE_PARALLEL * own[0]);
     if (contact_unknowns(p) == 2) {
         const mask first = mask_less_equal(lanes_abs(g[1][1]), lanes_abs(g[0][0]));
@@ -218,8 +220,9 @@ static inline mask direct_null(contact_set touching, const lanes (*D)[CONTACTS][
             if (q == p)
                 n[q][a] = choose(here, null[a], lanes_of(0));
             for (int k = q + 1; k <= p; k++)
-                if (touching >> q & touching >> k & 1 && a < contact_unknowns(q))
-                    n[q][a] = contact_row(contact_unknowns(k), f->push[q][k][a], n[k], n[q][a]);
+                if (o->touching >> q & o->touching >> k & 1 && a < contact_unknowns(q))
+                    n[q][a] =
+                        contact_row(contact_unknowns(k), o->factors.push[q][k][a], n[k], n[q][a]);
         }
     return here;
 }
@@ -259,13 +262,13 @@ struct direct_freedom {
 };
 
 /* sum over the rows of a . b, each row in units of its own diagonal of D. */
-static inline lanes direct_dot(contact_set touching, const lanes (*D)[CONTACTS][2][2],
-                               const lanes (*a)[2], const lanes (*b)[2])
+static inline lanes direct_dot(const struct direct_operator *o, const lanes (*a)[2],
+                               const lanes (*b)[2])
 {
     lanes sum = lanes_of(0);
-    EACH_IN (c, touching)
+    EACH_IN (c, o->touching)
         for (int k = 0; k < contact_unknowns(c); k++)
-            sum = lanes_fma(a[c][k] * lanes_abs(D[c][c][k][k]), b[c][k], sum);
+            sum = lanes_fma(a[c][k] * lanes_abs(o->D[c][c][k][k]), b[c][k], sum);
     return sum;
 }
 
@@ -278,33 +281,30 @@ static inline void direct_add(contact_set touching, mask m, lanes by, const lane
             x[c][a] = choose(m, lanes_fma(by, n[c][a], x[c][a]), x[c][a]);
 }
 
-/* The largest velocity that a unit of n leaves in `rows`. */
-static inline lanes direct_moves(const lanes (*D)[CONTACTS][2][2], contact_set touching,
-                                 const mask (*rows)[2], const lanes (*n)[2])
+/* The largest velocity that a unit of n leaves in the rows. */
+static inline lanes direct_moves(const struct direct_operator *o, const lanes (*n)[2])
 {
     lanes none[CONTACTS][2], u[CONTACTS][2], most = lanes_of(0);
     for (int c = 0; c < OWN_CONTACTS; c++)
         none[c][0] = none[c][1] = lanes_of(0);
-    direct_velocities(D, (const lanes(*)[2])none, touching, n, u);
-    EACH_IN (c, touching)
+    direct_velocities(o->D, none, o->touching, n, u);
+    EACH_IN (c, o->touching)
         for (int a = 0; a < 2; a++) {
             const lanes size = choose(mask_finite(u[c][a]), lanes_abs(u[c][a]), lanes_of(INFINITY));
-            most = lanes_max(choose(rows[c][a], size, lanes_of(0)), most);
+            most = lanes_max(choose(o->rows[c][a], size, lanes_of(0)), most);
         }
     return most;
 }
 
-static inline void direct_freedoms(contact_set touching, const lanes (*D)[CONTACTS][2][2],
-                                   const mask (*rows)[2], const lanes (*G)[CONTACTS][2][2],
-                                   const struct contact_factors *f, struct direct_freedom *free)
+static inline void direct_freedoms(const struct direct_operator *o, struct direct_freedom *free)
 {
     mask any = MASK_NONE;
     free->count = 0;
     free->several = MASK_NONE;
-    EACH_IN (p, touching)
+    EACH_IN (p, o->touching)
         for (int second = 0; second < 2; second++) {
             const int m = free->count;
-            free->here[m] = direct_null(touching, D, rows, G, f, p, second, free->along[m]);
+            free->here[m] = direct_null(o, p, second, free->along[m]);
             if (!mask_any(free->here[m]))
                 continue;
             free->several |= any & free->here[m];
@@ -314,19 +314,17 @@ static inline void direct_freedoms(contact_set touching, const lanes (*D)[CONTAC
     for (int m = 0; m < free->count && mask_any(free->several); m++) {
         lanes(*const own)[2] = free->along[m];
         for (int l = 0; l < m; l++) {
-            const lanes(*const other)[2] = (const lanes(*)[2])free->along[l];
-            const lanes by = direct_dot(touching, D, (const lanes(*)[2])own, other);
-            direct_add(touching, free->several & free->here[l], -by, other, own);
+            const lanes by = direct_dot(o, own, free->along[l]);
+            direct_add(o->touching, free->several & free->here[l], -by, free->along[l], own);
         }
-        const lanes size =
-            lanes_sqrt(direct_dot(touching, D, (const lanes(*)[2])own, (const lanes(*)[2])own));
+        const lanes size = lanes_sqrt(direct_dot(o, own, own));
         const lanes by = 1 / choose(free->several & free->here[m], size, lanes_of(1));
-        EACH_IN (c, touching)
+        EACH_IN (c, o->touching)
             for (int a = 0; a < 2; a++)
                 own[c][a] = by * own[c][a];
     }
     for (int m = 0; m < free->count; m++)
-        free->moves[m] = direct_moves(D, touching, rows, (const lanes(*)[2])free->along[m]);
+        free->moves[m] = direct_moves(o, free->along[m]);
 }
 
 /* Moves r by a multiple of the redundancy k in the lanes of m where that changes no velocity. */
@@ -334,50 +332,46 @@ static inline void direct_exchange(const struct direct_freedom *free, int k, con
                                    lanes tolerance, mask m, lanes by, lanes (*r)[2])
 {
     m &= mask_less_equal(lanes_abs(by) * free->moves[k], 0.25 * tolerance);
-    direct_add(touching, m, by, (const lanes(*)[2])free->along[k], r);
+    direct_add(touching, m, by, free->along[k], r);
 }
 
 /* As lane_hold, in lanes: impulses with which all active contacts stick, whatever the operator, and
  * the lanes where they obey the laws. */
-COLD mask direct_hold(lanes friction, lanes tolerance, const lanes (*D)[CONTACTS][2][2],
-                      const lanes (*uf)[2], contact_set touching, const mask *active, lanes (*r)[2])
+COLD mask direct_hold(const struct contact_problem *p, lanes tolerance, lanes (*r)[2])
 {
     const lanes none = lanes_of(0);
-    struct contact_factors f;
+    const contact_set touching = p->touching;
+    struct direct_operator o;
     struct direct_freedom free;
-    mask rows[CONTACTS][2], good = LANES_ALL;
-    lanes M[CONTACTS][CONTACTS][2][2], u[CONTACTS][2], x[CONTACTS][2], first[CONTACTS][2];
-    direct_rows(active, rows);
-    direct_factor(touching, CONTACT_CAREFUL, D, (const mask(*)[2])rows, NULL, 0, M, &f);
+    mask good = LANES_ALL;
+    lanes u[CONTACTS][2], x[CONTACTS][2], first[CONTACTS][2];
+    o.touching = touching, o.D = p->D;
+    direct_rows(p->active, o.rows);
+    direct_factor(&o, CONTACT_CAREFUL, NULL, 0);
     for (int c = 0; c < OWN_CONTACTS; c++)
         first[c][0] = first[c][1] = none;
-    direct_back(touching, (const mask(*)[2])rows, &f, uf, first);
-    direct_freedoms(touching, D, (const mask(*)[2])rows, (const lanes(*)[CONTACTS][2][2])M, &f,
-                    &free);
+    direct_back(&o, p->uf, first);
+    direct_freedoms(&o, &free);
     /* Once more with what is left. */
-    direct_velocities(D, uf, touching, (const lanes(*)[2])first, u);
-    direct_back(touching, (const mask(*)[2])rows, &f, (const lanes(*)[2])u, x);
+    direct_velocities(p->D, p->uf, touching, first, u);
+    direct_back(&o, u, x);
     for (int c = 0; c < OWN_CONTACTS; c++)
         for (int a = 0; a < 2; a++)
             r[c][a] = first[c][a] + x[c][a];
     const bool several = mask_any(free.several);
-    for (int m = 0; m < free.count && several; m++) { /* least norm */
-        const lanes(*const n)[2] = (const lanes(*)[2])free.along[m];
+    for (int m = 0; m < free.count && several; m++) /* least norm */
         direct_exchange(&free, m, touching, tolerance, free.several & free.here[m],
-                        -direct_dot(touching, D, n, (const lanes(*)[2])r), r);
-    }
+                        -direct_dot(&o, free.along[m], r), r);
     for (int sweep = 0; sweep < (several ? LANE_SWEEPS : 1); sweep++)
-        for (int m = 0; m < free.count; m++) {
-            const lanes(*const n)[2] = (const lanes(*)[2])free.along[m];
+        for (int m = 0; m < free.count; m++)
             direct_exchange(&free, m, touching, tolerance,
                             sweep > 0 ? free.several & free.here[m] : free.here[m],
-                            direct_middle(friction, touching, n, (const lanes(*)[2])r), r);
-        }
-    direct_velocities(D, uf, touching, (const lanes(*)[2])r, u);
+                            direct_middle(p->friction, touching, free.along[m], r), r);
+    direct_velocities(p->D, p->uf, touching, r, u);
     EACH_IN (c, touching)
         for (int a = 0; a < 2; a++)
-            good &= LANES_NOT(rows[c][a]) | mask_less_equal(lanes_abs(u[c][a]), tolerance);
-    return good & direct_obeys(friction, touching, (const lanes(*)[2])r);
+            good &= LANES_NOT(o.rows[c][a]) | mask_less_equal(lanes_abs(u[c][a]), tolerance);
+    return good & direct_obeys(p->friction, touching, r);
 }
 
 /* ---- one mode of all ------------------------------------------------------------------------- */
@@ -391,14 +385,14 @@ COLD mask direct_hold(lanes friction, lanes tolerance, const lanes (*D)[CONTACTS
  * largest eigenvalue and t any positive scale of the grips. By row sums, with the best t: mu^2 max
  * over grips of (row sum of |Q^-1|) (row sum of |D_TT|) < 4. The rows of D_TT need not be
  * independent. */
-COLD mask direct_unique(lanes friction, const lanes (*D)[CONTACTS][2][2], contact_set touching,
-                        const mask *active)
+COLD mask direct_unique(const struct contact_problem *p)
 {
-    struct contact_factors f;
-    mask rows[CONTACTS][2];
-    lanes M[CONTACTS][CONTACTS][2][2], u[CONTACTS][2], x[CONTACTS][2], sum[CONTACTS];
-    direct_rows(active, rows);
-    direct_factor(touching, CONTACT_GUARDED, D, (const mask(*)[2])rows, NULL, DIRECT_RIDGE, M, &f);
+    const contact_set touching = p->touching;
+    struct direct_operator o;
+    lanes u[CONTACTS][2], x[CONTACTS][2], sum[CONTACTS];
+    o.touching = touching, o.D = p->D;
+    direct_rows(p->active, o.rows);
+    direct_factor(&o, CONTACT_GUARDED, NULL, DIRECT_RIDGE);
     for (int c = 0; c < OWN_CONTACTS; c++)
         sum[c] = lanes_of(0);
     lanes largest = lanes_of(0);
@@ -409,10 +403,10 @@ COLD mask direct_unique(lanes friction, const lanes (*D)[CONTACTS][2][2], contac
             u[c][0] = lanes_of(contact_grip(c) == h ? -1 : 0);
             u[c][1] = lanes_of(0);
         }
-        direct_back(touching, (const mask(*)[2])rows, &f, (const lanes(*)[2])u, x);
+        direct_back(&o, u, x);
         EACH_IN (g, touching)
             if (contact_unknowns(g) == 2)
-                sum[g] += lanes_abs(contact_load(g, (const lanes(*)[2])x));
+                sum[g] += lanes_abs(contact_load(g, x));
     }
     for (int g = 0; g < OWN_CONTACTS; g++) {
         lanes row = lanes_of(0);
@@ -420,36 +414,36 @@ COLD mask direct_unique(lanes friction, const lanes (*D)[CONTACTS][2][2], contac
             continue;
         EACH_IN (h, touching)
             if (contact_unknowns(h) == 2)
-                row += choose(rows[g][1] & rows[h][1], lanes_abs(D[g][h][1][1]), lanes_of(0));
+                row +=
+                    choose(o.rows[g][1] & o.rows[h][1], lanes_abs(p->D[g][h][1][1]), lanes_of(0));
         largest = lanes_max(sum[g] * row, largest);
     }
-    return f.regular & mask_less(friction * (friction * largest), lanes_of(4));
+    return o.factors.regular & mask_less(p->friction * (p->friction * largest), lanes_of(4));
 }
 
 /* Largest violation of a law by the impulses r with the velocities u of active contacts. */
-HOT lanes direct_violation(const struct contact_rule *rule, const lanes (*D)[CONTACTS][2][2],
-                           contact_set touching, const mask *active, const lanes (*r)[2],
+HOT lanes direct_violation(const struct contact_problem *p, const lanes (*r)[2],
                            const lanes (*u)[2])
 {
     const lanes none = lanes_of(0);
     lanes worst = none;
-    EACH_IN (c, touching) {
-        const lanes pushes = r[c][0] * lanes_abs(D[c][c][0][0]);
+    EACH_IN (c, p->touching) {
+        const lanes pushes = r[c][0] * lanes_abs(p->D[c][c][0][0]);
         lanes off = lanes_max(-u[c][0], -pushes);
         off = lanes_max(lanes_min(lanes_abs(u[c][0]), lanes_abs(pushes)), off);
-        worst = lanes_max(choose(active[c], off, none), worst);
+        worst = lanes_max(choose(p->active[c], off, none), worst);
         if (contact_unknowns(c) == 1)
             continue;
-        const lanes scale = lanes_abs(D[c][c][1][1]);
-        const lanes bound = rule->friction * contact_load(c, r);
+        const lanes scale = lanes_abs(p->D[c][c][1][1]);
+        const lanes bound = p->friction * contact_load(c, r);
         lanes slip = u[c][1];
-        if (rule->sliding)
-            slip = choose(mask_less(none, lanes_abs(rule->sliding[c])),
-                          LANE_ENDLESS * rule->sliding[c], slip);
+        if (p->sliding)
+            slip = choose(mask_less(none, lanes_abs(p->sliding[c])), LANE_ENDLESS * p->sliding[c],
+                          slip);
         const lanes room = choose(mask_less(slip, none), bound - r[c][1], bound + r[c][1]);
         off = lanes_max(lanes_min(lanes_abs(slip), room * scale),
                         (lanes_abs(r[c][1]) - bound) * scale);
-        worst = lanes_max(choose(contact_part(c, active), off, none), worst);
+        worst = lanes_max(choose(contact_part(c, p->active), off, none), worst);
     }
     return worst;
 }
@@ -457,15 +451,16 @@ HOT lanes direct_violation(const struct contact_rule *rule, const lanes (*D)[CON
 /* A solution in the lanes of m, exactly inside the cones, and on their edges where it was before
  * its normal impulses were clipped, as lane_clip does it: over a very short time all impulses are
  * as small as the tolerance. */
-static inline void direct_take(lanes friction, contact_set touching, const lanes (*solution)[2],
-                               mask m, lanes (*r)[2])
+static inline void direct_take(const struct contact_problem *p, const lanes (*solution)[2], mask m,
+                               lanes (*r)[2])
 {
-    EACH_IN (c, touching)
+    const lanes friction = p->friction;
+    EACH_IN (c, p->touching)
         r[c][0] = choose(m, lanes_max(solution[c][0], lanes_of(0)), r[c][0]);
-    EACH_IN (c, touching) {
+    EACH_IN (c, p->touching) {
         if (contact_unknowns(c) == 1)
             continue;
-        const lanes bound = friction * contact_load(c, (const lanes(*)[2])r);
+        const lanes bound = friction * contact_load(c, r);
         const lanes asked = solution[c][1], size = lanes_abs(asked);
         const mask edge =
             mask_less_equal(CONTACT_STICKS * (friction * contact_load(c, solution)), size) &
@@ -482,14 +477,14 @@ struct direct_mode {
     lanes edge[CONTACTS];                    /* of each grip r_T by r_N: 0 where it sticks */
 };
 
-/* The mode of impulses r in the lanes of `known`; elsewhere all active contacts carry and stick. A
- * slip that goes on does so. */
-static inline void direct_mode_of(const struct contact_rule *rule, const mask *active, mask known,
-                                  const lanes (*r)[2], struct direct_mode *mode)
+/* The mode of the impulses before in the lanes of `known`; elsewhere all active contacts carry and
+ * stick. A slip that goes on does so. */
+static inline void direct_mode_of(const struct contact_problem *p, mask known,
+                                  struct direct_mode *mode)
 {
-    const lanes none = lanes_of(0), friction = rule->friction;
+    const lanes none = lanes_of(0), friction = p->friction, (*const r)[2] = p->last;
     for (int c = 0; c < OWN_CONTACTS; c++) {
-        mode->closed[c] = active[c];
+        mode->closed[c] = p->active[c];
         mode->sticks[c] = LANES_ALL;
         mode->edge[c] = none;
         if (r) {
@@ -499,24 +494,23 @@ static inline void direct_mode_of(const struct contact_rule *rule, const mask *a
             mode->edge[c] = choose(mask_less(r[c][1], none), -friction, friction);
         }
         mode->edge[c] = choose(mode->sticks[c], none, mode->edge[c]);
-        if (rule->sliding) {
-            const mask slides = mask_less(none, lanes_abs(rule->sliding[c]));
+        if (p->sliding) {
+            const mask slides = mask_less(none, lanes_abs(p->sliding[c]));
             mode->sticks[c] &= LANES_NOT(slides);
-            mode->edge[c] = choose(slides, -(friction * rule->sliding[c]), mode->edge[c]);
+            mode->edge[c] = choose(slides, -(friction * p->sliding[c]), mode->edge[c]);
         }
     }
 }
 
 /* In the lanes of m that which impulses r and velocities u, the mode's, point to. */
-static inline void direct_mode_next(const struct contact_rule *rule, contact_set touching,
-                                    const mask *active, mask m, const lanes (*r)[2],
+static inline void direct_mode_next(const struct contact_problem *p, mask m, const lanes (*r)[2],
                                     const lanes (*u)[2], struct direct_mode *mode)
 {
-    const lanes none = lanes_of(0), friction = rule->friction;
-    EACH_IN (c, touching) {
+    const lanes none = lanes_of(0), friction = p->friction;
+    EACH_IN (c, p->touching) {
         const mask was = mode->closed[c], grips = mode->sticks[c];
         const mask closed = (was & mask_less(none, r[c][0])) |
-                            (active[c] & LANES_NOT(was) & mask_less(u[c][0], none));
+                            (p->active[c] & LANES_NOT(was) & mask_less(u[c][0], none));
         mode->closed[c] = (m & closed) | (was & LANES_NOT(m));
         if (contact_unknowns(c) == 1)
             continue;
@@ -527,8 +521,8 @@ static inline void direct_mode_next(const struct contact_rule *rule, contact_set
         const mask leaves =
             grips & LANES_NOT(contact_inside(friction, load, r[c][1])) & mask_less(none, load);
         mask moves = m & (leaves | (LANES_NOT(grips) & turns));
-        if (rule->sliding)
-            moves &= LANES_NOT(mask_less(none, lanes_abs(rule->sliding[c])));
+        if (p->sliding)
+            moves &= LANES_NOT(mask_less(none, lanes_abs(p->sliding[c])));
         const lanes side = choose(mask_less(r[c][1], none), -friction, friction);
         mode->edge[c] = choose(moves, choose(leaves, side, none), mode->edge[c]);
         mode->sticks[c] = (moves & LANES_NOT(leaves)) | (grips & LANES_NOT(moves));
@@ -538,17 +532,16 @@ static inline void direct_mode_next(const struct contact_rule *rule, contact_set
 /* Lanes where a mode speaks for itself: not all contacts are at rest, or all stick and their
  * operator is regular. Else impulses may be shared in other ways, and one on its cone's edge for no
  * reason: see direct_hold. */
-static inline mask direct_is_plain(const struct contact_rule *rule, contact_set touching,
-                                   const mask *active, const struct direct_mode *mode, mask regular,
-                                   lanes tolerance, const lanes (*u)[2])
+static inline mask direct_is_plain(const struct contact_problem *p, const struct direct_mode *mode,
+                                   mask regular, lanes tolerance, const lanes (*u)[2])
 {
     mask rest = LANES_ALL, stick = regular;
-    EACH_IN (c, touching) {
-        rest &= LANES_NOT(active[c]) | mode->closed[c];
+    EACH_IN (c, p->touching) {
+        rest &= LANES_NOT(p->active[c]) | mode->closed[c];
         if (contact_unknowns(c) == 1)
             continue;
         const mask slips = contact_part(c, mode->closed) & LANES_NOT(mode->sticks[c]) &
-                           mask_less(lanes_of(0), rule->friction);
+                           mask_less(lanes_of(0), p->friction);
         rest &= LANES_NOT(slips & mask_less(tolerance, lanes_abs(u[c][1])));
         stick &= LANES_NOT(slips);
     }
@@ -557,44 +550,25 @@ static inline mask direct_is_plain(const struct contact_rule *rule, contact_set 
 
 /* Tries a mode in the lanes of `todo`: r where it is a solution's, and, in those of `plain`, speaks
  * for itself; these are returned. In the others of `todo` the mode becomes the next one to try. */
-COLD mask direct_try(const struct contact_rule *rule, const lanes (*D)[CONTACTS][2][2],
-                     const lanes (*uf)[2], contact_set touching, const mask *active,
-                     lanes tolerance, mask todo, mask plain, struct direct_mode *mode,
-                     lanes (*r)[2])
+COLD mask direct_try(const struct contact_problem *p, lanes tolerance, mask todo, mask plain,
+                     struct direct_mode *mode, lanes (*r)[2])
 {
-    struct contact_factors f;
-    mask rows[CONTACTS][2];
-    lanes M[CONTACTS][CONTACTS][2][2], candidate[CONTACTS][2], u[CONTACTS][2];
-    contact_mode_rows(mode->closed, mode->sticks, rows);
-    direct_factor(touching, CONTACT_CAREFUL, D, (const mask(*)[2])rows, mode->edge, 0, M, &f);
-    direct_back(touching, (const mask(*)[2])rows, &f, uf, candidate);
-    EACH_IN (c, touching)
+    struct direct_operator o;
+    lanes candidate[CONTACTS][2], u[CONTACTS][2];
+    o.touching = p->touching, o.D = p->D;
+    contact_mode_rows(mode->closed, mode->sticks, o.rows);
+    direct_factor(&o, CONTACT_CAREFUL, mode->edge, 0);
+    direct_back(&o, p->uf, candidate);
+    EACH_IN (c, p->touching)
         if (contact_unknowns(c) == 2)
-            candidate[c][1] = lanes_fma(
-                mode->edge[c], contact_load(c, (const lanes(*)[2])candidate), candidate[c][1]);
-    direct_velocities(D, uf, touching, (const lanes(*)[2])candidate, u);
-    const lanes violation = direct_violation(rule, D, touching, active,
-                                             (const lanes(*)[2])candidate, (const lanes(*)[2])u);
-    mask good = todo & mask_less_equal(violation, tolerance);
+            candidate[c][1] = lanes_fma(mode->edge[c], contact_load(c, candidate), candidate[c][1]);
+    direct_velocities(p->D, p->uf, p->touching, candidate, u);
+    mask good = todo & mask_less_equal(direct_violation(p, candidate, u), tolerance);
     if (mask_any(plain))
-        good &= LANES_NOT(plain) | direct_is_plain(rule, touching, active, mode, f.regular,
-                                                   tolerance, (const lanes(*)[2])u);
-    direct_take(rule->friction, touching, (const lanes(*)[2])candidate, good, r);
-    direct_mode_next(rule, touching, active, todo & LANES_NOT(good), (const lanes(*)[2])candidate,
-                     (const lanes(*)[2])u, mode);
+        good &= LANES_NOT(plain) | direct_is_plain(p, mode, o.factors.regular, tolerance, u);
+    direct_take(p, candidate, good, r);
+    direct_mode_next(p, todo & LANES_NOT(good), candidate, u, mode);
     return good;
-}
-
-/* direct_try, and again with what that points to, where a solution is the only one. */
-static inline mask direct_modes(const struct contact_rule *rule, const lanes (*D)[CONTACTS][2][2],
-                                const lanes (*uf)[2], contact_set touching, const mask *active,
-                                lanes tolerance, mask todo, struct direct_mode *mode, lanes (*r)[2])
-{
-    mask found = MASK_NONE;
-    for (int round = 0; round < DIRECT_ROUNDS && mask_any(todo & LANES_NOT(found)); round++)
-        found |= direct_try(rule, D, uf, touching, active, tolerance, todo & LANES_NOT(found),
-                            MASK_NONE, mode, r);
-    return found;
 }
 
 #endif

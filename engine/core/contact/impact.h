@@ -147,73 +147,78 @@ static inline lanes impact_mode(lanes friction, const lanes (*r)[2])
     return mode;
 }
 
-/* What is asked of an impact. */
+/* What is asked of an impact: contacts in `part` arrive with the velocities u. */
 struct impact_rule {
-    lanes friction, prefer; /* see contact_rule */
+    const lanes (*D)[CONTACTS][2][2];
+    const lanes (*u)[2];
+    const mask *part;
+    lanes friction, prefer; /* see contact_problem */
     const lanes *restitution;
     mask moreau, limited; /* else Newton's; never limited */
 };
 
-/* Impulses r, and the velocities after them, of contacts in `part` that arrive with u, by the
- * restitution e; what came of it. Returns the lanes where more energy is gained than rounding is.
- */
+/* Impulses r of an impact, and what the law added to the velocities u; consists of lanes. */
+struct impact_answer {
+    lanes shift[CONTACTS][2], r[CONTACTS][2];
+};
+
+/* The impulses by the restitution e; what came of it. Returns the lanes where more energy is gained
+ * than rounding is. */
 static inline mask impact_try(const struct impact_rule *rule, const lanes *e,
-                              const lanes (*D)[CONTACTS][2][2], const lanes (*u)[2],
-                              const mask *part, lanes (*shift)[2], lanes (*r)[2],
-                              struct contact_verdict *verdict, struct impact_tried *tried)
+                              struct impact_answer *to, struct contact_verdict *verdict,
+                              struct impact_tried *tried)
 {
-    const lanes none = lanes_of(0);
+    const lanes none = lanes_of(0), (*const u)[2] = rule->u;
     lanes uf[CONTACTS][2], after[CONTACTS][2], gain = none, size = none;
     for (int c = 0; c < OWN_CONTACTS; c++) {
-        shift[c][0] = e[c] * lanes_min(u[c][0], none);
-        shift[c][1] = none;
+        to->shift[c][0] = e[c] * lanes_min(u[c][0], none);
+        to->shift[c][1] = none;
         if (contact_unknowns(c) == 2)
-            shift[c][1] = choose(rule->moreau, e[c] * u[c][1], none);
-        uf[c][0] = u[c][0] + shift[c][0];
-        uf[c][1] = choose(rule->moreau, u[c][1] + shift[c][1], u[c][1]);
+            to->shift[c][1] = choose(rule->moreau, e[c] * u[c][1], none);
+        uf[c][0] = u[c][0] + to->shift[c][0];
+        uf[c][1] = choose(rule->moreau, u[c][1] + to->shift[c][1], u[c][1]);
     }
-    const struct contact_rule asked = {
-        .friction = rule->friction, .prefer = rule->prefer, .shift = (const lanes(*)[2])shift};
-    solve_contacts(&asked, D, (const lanes(*)[2])uf, CONTACT_ALL, LANES_ALL, part, r, verdict);
-    direct_velocities(D, u, CONTACT_ALL, (const lanes(*)[2])r, after);
+    const struct contact_problem asked = {.D = rule->D,
+                                          .uf = uf,
+                                          .touching = CONTACT_ALL,
+                                          .active = rule->part,
+                                          .friction = rule->friction,
+                                          .prefer = rule->prefer,
+                                          .shift = to->shift};
+    solve_contacts(&asked, LANES_ALL, to->r, verdict);
+    direct_velocities(rule->D, u, CONTACT_ALL, to->r, after);
     for (int c = 0; c < OWN_CONTACTS; c++)
         for (int a = 0; a < contact_unknowns(c); a++) {
-            const lanes added = 0.5 * (r[c][a] * (u[c][a] + after[c][a]));
-            const mask here = contact_part(c, part);
-            gain += choose(here, added, none);
-            size +=
-                choose(here, lanes_abs(r[c][a] * u[c][a]) + lanes_abs(r[c][a] * after[c][a]), none);
+            const lanes r = to->r[c][a];
+            const mask here = contact_part(c, rule->part);
+            gain += choose(here, 0.5 * (r * (u[c][a] + after[c][a])), none);
+            size += choose(here, lanes_abs(r * u[c][a]) + lanes_abs(r * after[c][a]), none);
         }
-    *tried = (struct impact_tried){gain, impact_mode(rule->friction, (const lanes(*)[2])r)};
+    *tried = (struct impact_tried){gain, impact_mode(rule->friction, to->r)};
     return mask_less(IMPACT_ROUNDING * size, gain);
 }
 
-/* Impulses of an impact in the lanes of `where`. shift: what the law added to the velocities u.
- * Returns the lanes that were limited. */
+/* The impulses in the lanes of `where`. Returns the lanes that were limited. */
 static inline mask impact_solve(const struct impact_rule *rule, mask where,
-                                const lanes (*D)[CONTACTS][2][2], const lanes (*u)[2],
-                                const mask *part, lanes (*shift)[2], lanes (*r)[2],
-                                struct contact_verdict *verdict)
+                                struct impact_answer *to, struct contact_verdict *verdict)
 {
     struct impact_tried said;
-    const mask gains = where & rule->limited &
-                       impact_try(rule, rule->restitution, D, u, part, shift, r, verdict, &said);
+    const mask gains =
+        where & rule->limited & impact_try(rule, rule->restitution, to, verdict, &said);
     struct impact_share share = impact_share_begin(said);
     for (mask open; mask_any(open = impact_share_open(&share, gains));) {
         const lanes tried = impact_share_next(&share);
-        lanes e[CONTACTS], shift1[CONTACTS][2], r1[CONTACTS][2];
+        lanes e[CONTACTS];
+        struct impact_answer next;
         struct contact_verdict also;
         for (int c = 0; c < OWN_CONTACTS; c++)
             e[c] = tried * rule->restitution[c];
-        const mask more = impact_try(rule, e, D, u, part, shift1, r1, &also, &said) &
-                          mask_less(lanes_of(0), tried);
-        const mask fits = impact_share_tell(&share, open, more, &said);
-        for (int c = 0; c < OWN_CONTACTS; c++)
-            for (int a = 0; a < 2; a++) {
-                shift[c][a] = choose(fits, shift1[c][a], shift[c][a]);
-                r[c][a] = choose(fits, r1[c][a], r[c][a]);
-            }
-        *verdict = contact_verdicts(fits, &also, verdict);
+        const mask more = impact_try(rule, e, &next, &also, &said) & mask_less(lanes_of(0), tried);
+        const mask fits = impact_share_tell(&share, open, more, &said), not = LANES_NOT(fits);
+        choose_all(fits, &next, to, sizeof next);
+        *verdict = (struct contact_verdict){(also.ambiguous & fits) | (verdict->ambiguous & not ),
+                                            (also.unsolved & fits) | (verdict->unsolved & not ),
+                                            (also.unranked & fits) | (verdict->unranked & not )};
     }
     return gains & impact_share_counts(&share);
 }

@@ -76,8 +76,9 @@ struct lane_modes {
 
 /* ---- the problem ----------------------------------------------------------------------------- */
 
-static void lane_gather(const struct contact_rule *rule, const lanes (*D)[CONTACTS][2][2],
-                        const lanes (*uf)[2], contact_set active, int lane, struct lane_problem *p)
+/* The problem of a lane, of the contacts in `active`. */
+static void lane_gather(const struct contact_problem *of, contact_set active, int lane,
+                        struct lane_problem *p)
 {
     double largest = 0;
     p->rows = p->elements = 0;
@@ -88,7 +89,7 @@ static void lane_gather(const struct contact_rule *rule, const lanes (*D)[CONTAC
         struct lane_element *const e = &p->element[p->elements++];
         e->grips = contact_grip(c) == c;
         e->first = p->rows;
-        e->slide = e->grips && rule->sliding ? lane_get(&rule->sliding[c], lane) : 0;
+        e->slide = e->grips && of->sliding ? lane_get(&of->sliding[c], lane) : 0;
         if (e->grips)
             p->contact[p->rows] = c, p->axis[p->rows++] = 1;
         for (int k = c; k < OWN_CONTACTS; k++)
@@ -100,17 +101,17 @@ static void lane_gather(const struct contact_rule *rule, const lanes (*D)[CONTAC
     }
     for (int i = 0; i < p->rows; i++) {
         const int c = p->contact[i], a = p->axis[i];
-        p->uf[i] = lane_get(&uf[c][a], lane);
-        p->shift[i] = rule->shift ? lane_get(&rule->shift[c][a], lane) : 0;
+        p->uf[i] = lane_get(&of->uf[c][a], lane);
+        p->shift[i] = of->shift ? lane_get(&of->shift[c][a], lane) : 0;
         largest = fmax(fabs(p->uf[i]), largest);
         for (int j = 0; j < p->rows; j++)
-            p->D[i][j] = lane_get(&D[c][p->contact[j]][a][p->axis[j]], lane);
+            p->D[i][j] = lane_get(&of->D[c][p->contact[j]][a][p->axis[j]], lane);
     }
-    p->friction = lane_get(&rule->friction, lane);
-    p->prefer = lane_get(&rule->prefer, lane);
+    p->friction = lane_get(&of->friction, lane);
+    p->prefer = lane_get(&of->prefer, lane);
     p->tolerance = CONTACT_TOLERANCE * fmax(largest, 1);
     p->exact = CONTACT_TOLERANCE * fmax(largest, CONTACT_STILL);
-    p->indefinite = rule->indefinite;
+    p->indefinite = of->indefinite;
 }
 
 /* ---- candidates ------------------------------------------------------------------------------ */

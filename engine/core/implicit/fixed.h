@@ -42,16 +42,15 @@ static void advance_free(struct advance *a)
 /* One step. Where Newton's iteration does not end because a torque that acts inside the step comes
  * and goes at its limit, each torque is taken for free or for being at either end of its range, one
  * way after the other, until a solution agrees with what was assumed. */
-COLD mask fixed_step(const struct setting *set, const struct motion *from, const lanes *torque,
-                     lanes h, mask run, bool coupled, int freeze_after, struct motion *to,
+COLD mask fixed_step(const struct step *step, mask run, struct motion *to,
                      struct step_report *report)
 {
-    mask good = take_step(set, from, torque, h, run, coupled, freeze_after, to, report);
-    mask limited = MASK_NONE;
+    const lanes *const limit = step->set->law.limit;
+    mask good = take_step(step, run, to, report), limited = MASK_NONE;
     for (int i = 0; i < OWN_ACTUATORS; i++)
-        limited |= mask_less(set->law.limit[i], lanes_of(INFINITY));
+        limited |= mask_less(limit[i], lanes_of(INFINITY));
     mask failed = run & limited & LANES_NOT(good);
-    if (OWN_ACTUATORS == 0 || !coupled || !mask_any(failed))
+    if (OWN_ACTUATORS == 0 || !step->coupled || !mask_any(failed))
         return good;
     int ways = 1;
     EACH (i, 0, OWN_ACTUATORS)
@@ -59,12 +58,13 @@ COLD mask fixed_step(const struct setting *set, const struct motion *from, const
     for (int way = 0; way < ways && mask_any(failed); way++) {
         static const int ends[3] = {0, 1, -1};
         int corner[ACTUATORS], rest = way;
-        struct motion next = *from;
+        struct motion next = *step->from;
         struct step_report part;
+        struct step at = *step;
         for (int i = 0; i < ACTUATORS; i++, rest /= 3)
             corner[i] = ends[rest % 3];
-        const mask found =
-            take_step_at(corner, set, from, torque, h, failed, coupled, freeze_after, &next, &part);
+        at.corner = corner;
+        const mask found = take_step(&at, failed, &next, &part);
         part.iterations += report->iterations;
         choose_all(found, &next, to, sizeof next);
         choose_all(found, &part, report, sizeof part);
@@ -76,23 +76,26 @@ COLD mask fixed_step(const struct setting *set, const struct motion *from, const
 }
 
 /* Lanes that did not converge: the step again in 2, 4, ... equal parts. */
-COLD mask fixed_subdivide(const struct setting *set, const struct motion *from, const lanes *torque,
-                          lanes h, mask run, bool coupled, struct motion *to,
+COLD mask fixed_subdivide(const struct step *step, mask run, struct motion *to,
                           struct step_report *total)
 {
     mask failed = run;
     for (int level = 1; level <= FIXED_MAX_SUBDIVISION && mask_any(failed); level++) {
         const int parts = 1 << level;
-        const int freeze = level < FIXED_MAX_SUBDIVISION ? STEP_MAX_ITERATIONS : FIXED_FREEZE_AFTER;
-        struct motion here = *from;
+        struct motion here = *step->from;
+        struct step part_of = *step;
         struct step_report sum;
+        part_of.from = &here;
+        part_of.h = step->h / parts;
+        if (level == FIXED_MAX_SUBDIVISION)
+            part_of.freeze_after = FIXED_FREEZE_AFTER;
         report_clear(&sum);
         sum.iterations = total->iterations;
         mask good = failed;
         for (int k = 0; k < parts && mask_any(good); k++) {
             struct step_report part;
             struct motion next = here;
-            good &= fixed_step(set, &here, torque, h / parts, good, coupled, freeze, &next, &part);
+            good &= fixed_step(&part_of, good, &next, &part);
             here = next;
             report_add(&sum, &part);
         }
@@ -112,43 +115,39 @@ static bool advance_was_ordinary(const struct advance *a, int lane)
 {
     return lane_get(&a->quick.known, lane) > 0;
 }
-HOT bool advance_ordinary(struct advance *a, const struct setting *set, const lanes *torque,
-                          bool coupled, lanes h, mask live, contact_set touching,
-                          struct motion *now, struct step_report *report)
+HOT bool advance_ordinary(struct advance *a, const struct step *step, mask live,
+                          contact_set touching, struct motion *now, struct step_report *report)
 {
     struct iterate it;
     mask apart = MASK_NONE;
     EACH_IN (c, touching)
-        apart |= live & LANES_NOT(ordinary_active(set, now, c));
+        apart |= live & LANES_NOT(ordinary_active(step->set, now, c));
     if (mask_any(apart))
         return false;
-    const mask good =
-        ordinary_try(&a->quick, set, now, torque, h, coupled, live, touching, true, &it, report);
+    const mask good = ordinary_try(&a->quick, step, live, touching, true, &it, report);
     if (mask_any(live & LANES_NOT(good)))
         return false;
-    ordinary_keep(&a->quick, &it, h, true, good, now);
+    ordinary_keep(&a->quick, &it, step->h, true, good, now);
     return true;
 }
 
-COLD mask advance(struct advance *a, const struct setting *set, const lanes *torque, lanes h,
-                  mask live, bool coupled, struct motion *now, struct step_report *report,
-                  mask *failed)
+COLD mask advance(struct advance *a, const struct step *step, mask live, struct motion *now,
+                  struct step_report *report, mask *failed)
 {
     struct iterate it;
-    const mask ok = ordinary_try(&a->quick, set, now, torque, h, coupled, live,
-                                 step_touching(set, now->gap, live), false, &it, report);
-    ordinary_keep(&a->quick, &it, h, false, ok, now);
+    const contact_set touching = step_touching(step->set, now->gap, live);
+    const mask ok = ordinary_try(&a->quick, step, live, touching, false, &it, report);
+    ordinary_keep(&a->quick, &it, step->h, false, ok, now);
     mask arrived = ok;
     const mask other = live & LANES_NOT(ok);
     *failed = MASK_NONE;
     if (mask_any(other)) {
         struct step_report slow;
         struct motion next = *now;
-        mask there =
-            fixed_step(set, now, torque, h, other, coupled, STEP_MAX_ITERATIONS, &next, &slow);
+        mask there = fixed_step(step, other, &next, &slow);
         const mask stuck = other & LANES_NOT(there);
         if (mask_any(stuck))
-            there |= fixed_subdivide(set, now, torque, h, stuck, coupled, &next, &slow);
+            there |= fixed_subdivide(step, stuck, &next, &slow);
         choose_all(other, &slow, report, sizeof slow);
         choose_all(there, &next, now, sizeof next);
         *failed = other & LANES_NOT(there);

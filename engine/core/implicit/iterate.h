@@ -4,6 +4,22 @@
 
 #include "report.h"
 
+#define STEP_MAX_ITERATIONS 25
+
+/* A step that is asked for. */
+struct step {
+    const struct setting *set;
+    const struct motion *from;
+    const lanes *torque; /* held over it, unless ... */
+    bool coupled;        /* ... the law acts inside it */
+    lanes h;             /* s, its length */
+    /* From this iteration on inertia and directions stay those of its iterate: with parallel legs
+     * the contact solution can jump with the geometry, and Newton then cycles between two modes for
+     * every h. Not before STEP_MAX_ITERATIONS: never. */
+    int freeze_after;
+    const int *corner; /* NULL, or as in law_inside: what converges has to agree with it */
+};
+
 /* What is known of the contacts of a step: nothing, that none comes to the ground, or moreover that
  * all that touch anywhere touch in every lane that matters. */
 enum step_kind { STEP_ANY, STEP_ORDINARY, STEP_FULL };
@@ -19,13 +35,16 @@ struct iterate {
     scene_trig middle, end; /* trigonometry at u and at s1; one and the same for theta = 1 */
     mask active[CONTACTS];
     mask brought[CONTACTS]; /* not active, but come to the ground with the end's position mended */
+    contact_set missed;     /* have come to the ground and take no part */
+    mask impact;            /* lanes whose step has an impact */
     mask decides;           /* which of several contact solutions it is, whatever was before */
     struct contact_verdict verdict;
     lanes size;                                /* of the last correction */
     lanes shift;                               /* how far impulses moved with it, as a velocity */
     lanes approach[CONTACTS], energy, kinetic; /* at the end, see struct motion */
+    lanes iterations;
+    lanes before[SCENE_COORDINATES]; /* w before the last iteration of an ordinary step */
     const lanes *along; /* NULL, or what restitution adds to tangential velocities, m/s */
-    const int *corner;  /* see law_inside */
 };
 
 /* The tangential velocity of contact c that Coulomb's law is about: u[1] but for Moreau's impacts.
@@ -56,9 +75,11 @@ static inline lanes step_velocity(lanes w0, lanes w)
 }
 
 /* Position at the end and, unless the geometry is frozen, the trigonometry that goes with it. */
-static inline void iterate_place(const struct setting *set, const struct motion *from, lanes h,
-                                 bool frozen, struct iterate *it)
+static inline void iterate_place(const struct step *step, bool frozen, struct iterate *it)
 {
+    const struct setting *const set = step->set;
+    const struct motion *const from = step->from;
+    const lanes h = step->h;
     lanes middle[SCENE_COORDINATES];
     EACH (i, 0, SCENE_COORDINATES) {
         const lanes v = step_velocity(from->w[i], it->w[i]);
@@ -77,14 +98,30 @@ static inline void iterate_place(const struct setting *set, const struct motion 
         it->gap[c] = scene_gap(&set->body, it->s1, &it->end, c);
 }
 
-/* Contact impulses of an iterate in the lanes of `running`, of contacts in `touching`: adds what
- * they do to the correction dw of the velocity; `all`: whatever becomes of the others. Keeps
- * responses to impulses at contacts in `near`, a larger set. */
-HOT void iterate_contacts(const struct setting *set, const struct motion *from, bool all,
-                          mask running, bool coupled, contact_set touching, contact_set near,
-                          const scene_matrix *J, const scene_trig *direction, lanes lever,
-                          lanes *dw, struct iterate *it)
+/* One Newton iteration. */
+struct iteration {
+    bool all;             /* of all lanes, or ... */
+    mask running;         /* ... of these: nothing becomes of the others */
+    bool impacts;         /* some lanes may have an impact */
+    bool frozen;          /* the geometry: then the derivatives by it are left out, too */
+    contact_set touching; /* contacts that take part, and ... */
+    contact_set near;     /* ... those, more, whose responses are kept */
+};
+
+/* The equation about an iterate: its matrix, where impulses act and by how much that place moves
+ * with the velocity. */
+struct linearised {
+    scene_matrix J;
+    const scene_trig *direction;
+    lanes lever;
+};
+
+/* Contact impulses of an iterate: adds what they do to the correction dw of the velocity. */
+HOT void iterate_contacts(const struct step *step, const struct iteration *of,
+                          const struct linearised *linear, lanes *dw, struct iterate *it)
 {
+    const struct setting *const set = step->set;
+    const contact_set touching = of->touching;
     lanes response[CONTACTS][2][SCENE_COORDINATES], rebound[CONTACTS][2];
     EACH_CONTACT (c, 0) {
         rebound[c][0] = rebound[c][1] = lanes_of(0);
@@ -92,20 +129,21 @@ HOT void iterate_contacts(const struct setting *set, const struct motion *from, 
             response[c][0][i] = response[c][1][i] = lanes_of(0);
     }
     lanes D[CONTACTS][CONTACTS][2][2], uf[CONTACTS][2]; /* of those in `touching` */
-    EACH_IN (c, near)
-        scene_contact_response(&set->body, J, coupled, direction, c, response[c]);
-    EACH_IN (c, near)
+    EACH_IN (c, of->near)
+        scene_contact_response(&set->body, &linear->J, step->coupled, linear->direction, c,
+                               response[c]);
+    EACH_IN (c, of->near)
         EACH (i, 0, SCENE_COORDINATES)
             for (int a = 0; a < contact_unknowns(c); a++)
                 it->response[c][a][i] =
-                    choose_unless(all, running, response[c][a][i], it->response[c][a][i]);
+                    choose_unless(of->all, of->running, response[c][a][i], it->response[c][a][i]);
     EACH_IN (c, touching) {
         lanes now[2], moved[2];
         scene_contact_velocity(&set->body, &it->end, c, it->w, now);
         scene_rows rows;
-        scene_contact_rows(&set->body, &it->end, c, it->w, lever, &rows);
+        scene_contact_rows(&set->body, &it->end, c, it->w, linear->lever, &rows);
         scene_rows_velocity(&set->body, c, &rows, dw, moved);
-        rebound[c][0] = set->restitution[c] * lanes_min(from->approach[c], lanes_of(0));
+        rebound[c][0] = set->restitution[c] * lanes_min(step->from->approach[c], lanes_of(0));
         uf[c][0] = now[0] + moved[0] + rebound[c][0];
         uf[c][1] = now[1] + moved[1];
         if (it->along)
@@ -121,16 +159,20 @@ HOT void iterate_contacts(const struct setting *set, const struct motion *from, 
     }
     lanes r[CONTACTS][2];
     struct contact_verdict now;
-    const struct contact_rule rule = {.friction = set->friction,
-                                      .prefer = set->prefer,
-                                      .shift = (const lanes(*)[2])rebound,
-                                      .last = (const lanes(*)[2])it->r,
-                                      .known = LANES_NOT(it->decides)};
-    solve_contacts(&rule, (const lanes(*)[CONTACTS][2][2])D, (const lanes(*)[2])uf, touching,
-                   running, it->active, r, &now);
-    it->verdict.ambiguous |= running & now.ambiguous; /* a decision is taken once in a step */
-    it->verdict.unranked |= running & now.unranked;
-    it->verdict.unsolved = (it->verdict.unsolved & LANES_NOT(running)) | (running & now.unsolved);
+    const struct contact_problem problem = {.D = D,
+                                            .uf = uf,
+                                            .touching = touching,
+                                            .active = it->active,
+                                            .friction = set->friction,
+                                            .prefer = set->prefer,
+                                            .shift = rebound,
+                                            .last = it->r,
+                                            .known = LANES_NOT(it->decides)};
+    solve_contacts(&problem, of->running, r, &now);
+    it->verdict.ambiguous |= of->running & now.ambiguous; /* a decision is taken once in a step */
+    it->verdict.unranked |= of->running & now.unranked;
+    it->verdict.unsolved =
+        (it->verdict.unsolved & LANES_NOT(of->running)) | (of->running & now.unsolved);
     EACH_IN (c, touching) {
         const int n = contact_unknowns(c);
         const mask part = contact_part(c, it->active);
@@ -146,18 +188,18 @@ HOT void iterate_contacts(const struct setting *set, const struct motion *from, 
             const lanes moves =
                 choose(part, lanes_abs(r[c][a] - it->r[c][a]) * D[c][c][a][a], lanes_of(0));
             it->shift = it->shift + moves;
-            it->r[c][a] = choose_unless(all, running, r[c][a], it->r[c][a]);
+            it->r[c][a] = choose_unless(of->all, of->running, r[c][a], it->r[c][a]);
         }
     }
 }
 
-/* One Newton iteration in the lanes that still run; `all`: whatever becomes of the others. With the
- * geometry frozen the derivatives by it are left out too, so that the operator is constant. */
-HOT void iterate_newton(const struct setting *set, const struct motion *from, lanes h, bool all,
-                        mask running, bool impacts, mask impact, bool coupled, bool frozen,
-                        contact_set touching, contact_set near, struct iterate *it)
+/* One Newton iteration. With the geometry frozen the operator is constant. */
+HOT void iterate_newton(const struct step *step, const struct iteration *of, struct iterate *it)
 {
-    const double moves = frozen ? 0 : METHOD_THETA;
+    const struct setting *const set = step->set;
+    const struct motion *const from = step->from;
+    const lanes h = step->h;
+    const double moves = of->frozen ? 0 : METHOD_THETA;
     const lanes lever = h * (METHOD_THETA * moves), end_lever = h * moves;
     const scene_trig *const trig = METHOD_THETA == 1 ? &it->end : &it->middle;
     lanes v[SCENE_COORDINATES], change[SCENE_COORDINATES], residual[SCENE_COORDINATES];
@@ -165,13 +207,14 @@ HOT void iterate_newton(const struct setting *set, const struct motion *from, la
         v[i] = step_velocity(from->w[i], it->w[i]);
         change[i] = it->w[i] - from->w[i];
     }
-    const scene_trig *direction = trig;
+    struct linearised linear;
     scene_trig mixed;
+    linear.direction = trig, linear.lever = end_lever;
     lanes direction_lever = METHOD_THETA == 1 ? end_lever : lever;
-    if (METHOD_THETA != 1 && impacts) {
-        scene_choose_trig(impact, &it->end, &it->middle, &mixed);
-        direction = &mixed;
-        direction_lever = choose(impact, end_lever, lever);
+    if (METHOD_THETA != 1 && of->impacts) {
+        scene_choose_trig(it->impact, &it->end, &it->middle, &mixed);
+        linear.direction = &mixed;
+        direction_lever = choose(it->impact, end_lever, lever);
     }
 
     lanes torque[ACTUATORS], torque_rate[ACTUATORS][POSTURES];
@@ -180,30 +223,29 @@ HOT void iterate_newton(const struct setting *set, const struct motion *from, la
     lanes u[SCENE_COORDINATES];
     EACH (i, 0, SCENE_COORDINATES)
         u[i] = from->s[i] + (METHOD_THETA * h) * v[i];
-    if (coupled)
-        law_inside(&set->law, u, v, h * (METHOD_THETA * METHOD_THETA), METHOD_THETA, it->torque,
-                   it->corner, torque, torque_rate);
+    const struct state place = {.s = u, .w = v};
+    if (step->coupled)
+        law_inside(&set->law, &place, h * (METHOD_THETA * METHOD_THETA), METHOD_THETA, step->corner,
+                   torque, torque_rate);
 
-    scene_matrix J;
     lanes dw[SCENE_COORDINATES];
     scene_residual(&set->body, h, from->t + METHOD_THETA * h, u, trig, v, change, torque, residual);
-    scene_factor(&set->body, h, moves, lever, direction_lever, trig, direction, v, change,
-                 (const lanes(*)[2])it->r, coupled, (const lanes(*)[POSTURES])torque_rate, &J);
+    scene_factor(&set->body, h, moves, lever, direction_lever, trig, linear.direction, v, change,
+                 it->r, step->coupled, torque_rate, &linear.J);
     EACH (i, 0, SCENE_COORDINATES)
         residual[i] = -residual[i];
-    scene_solve(&J, coupled, residual, dw);
+    scene_solve(&linear.J, step->coupled, residual, dw);
 
     it->shift = lanes_of(0);
-    if (touching)
-        iterate_contacts(set, from, all, running, coupled, touching, near, &J, direction, end_lever,
-                         dw, it);
+    if (of->touching)
+        iterate_contacts(step, of, &linear, dw, it);
     it->size = lanes_of(0);
     EACH (i, 0, SCENE_COORDINATES) {
-        it->w[i] = choose_unless(all, running, it->w[i] + dw[i], it->w[i]);
+        it->w[i] = choose_unless(of->all, of->running, it->w[i] + dw[i], it->w[i]);
         it->size += lanes_abs(dw[i]); /* a sum keeps NAN */
     }
     EACH (i, 0, SCENE_ACTUATORS)
-        it->torque[i] = choose_unless(all, running, torque[i], it->torque[i]);
+        it->torque[i] = choose_unless(of->all, of->running, torque[i], it->torque[i]);
 }
 
 #endif

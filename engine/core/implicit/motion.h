@@ -15,7 +15,7 @@ struct setting {
     lanes restitution[CONTACTS]; /* of each contact */
     lanes moreau, limited;       /* 1 or 0: whose restitution, see impact.h */
     lanes may_touch[CONTACTS];   /* 1 or 0 */
-    lanes prefer;                /* of several contact solutions, see contact_rule */
+    lanes prefer;                /* of several contact solutions, see contact_problem */
     struct law law;
 };
 
@@ -32,6 +32,11 @@ struct motion {
     lanes integral[ACTUATORS]; /* what the law has summed, see law.h */
     lanes energy, kinetic;     /* J, of this state; where steps of step.h are taken */
 };
+
+static inline struct state state_of(const struct motion *m)
+{
+    return (struct state){m->t, m->s, m->w, m->integral};
+}
 
 /* Contacts that are closed in any of the lanes m: is there anything to solve? */
 static inline contact_set step_touching(const struct setting *set, const lanes *gap, mask m)

@@ -62,9 +62,11 @@ HOT void ordinary_take(bool all, mask m, const scene_trig *from, scene_trig *to)
 
 /* Places the iterate in the lanes of m - `all`: whatever becomes of the others -, its end position
  * and the sines there (and halfway). */
-HOT void ordinary_place(const struct ordinary *q, const struct motion *from, lanes h, bool all,
-                        mask m, struct iterate *it)
+HOT void ordinary_place(const struct ordinary *q, const struct step *step, bool all, mask m,
+                        struct iterate *it)
 {
+    const struct motion *const from = step->from;
+    const lanes h = step->h;
     lanes d[SLOTS(SCENE_ANGLES)], halfway[SCENE_COORDINATES], farthest = lanes_of(0);
     EACH (i, 0, SCENE_COORDINATES) {
         const lanes move = h * step_velocity(from->w[i], it->w[i]);
@@ -100,13 +102,13 @@ HOT void ordinary_place(const struct ordinary *q, const struct motion *from, lan
         ordinary_take(all, m, &middle, &it->middle);
 }
 
-/* Moves the end by the last correction, from `old` to it->w: the sines follow to third order.
+/* Moves the end by the last correction, from it->before to it->w: the sines follow to third order.
  * Returns the lanes where that is enough. */
-HOT mask ordinary_arrive(const struct motion *from, lanes h, const lanes *old, struct iterate *it)
+HOT mask ordinary_arrive(const struct motion *from, lanes h, struct iterate *it)
 {
     lanes d[SCENE_COORDINATES], farthest = lanes_of(0);
     EACH (i, 0, SCENE_COORDINATES) {
-        d[i] = (h * METHOD_THETA) * (it->w[i] - old[i]);
+        d[i] = (h * METHOD_THETA) * (it->w[i] - it->before[i]);
         it->s1[i] = lanes_fma(h, step_velocity(from->w[i], it->w[i]), from->s[i]);
         if (i >= FIRST_ANGLE && !SCENE_SLIDES(i - FIRST_ANGLE))
             farthest = lanes_max(lanes_abs(d[i]), farthest);
@@ -118,19 +120,20 @@ HOT mask ordinary_arrive(const struct motion *from, lanes h, const lanes *old, s
 /* A law that acts inside the step: its torques at the iterate, in the lanes of m. Returns the lanes
  * where those that the last iteration was taken with are at the same limits, or at none: elsewhere
  * it says nothing of the error left. */
-COLD mask ordinary_law(const struct setting *set, const struct motion *from, lanes h, mask m,
-                       struct iterate *it)
+COLD mask ordinary_law(const struct step *step, mask m, struct iterate *it)
 {
+    const struct law *const law = &step->set->law;
+    const struct motion *const from = step->from;
     lanes u[SCENE_COORDINATES], v[SCENE_COORDINATES], torque[ACTUATORS];
     mask same = LANES_ALL;
     EACH (i, 0, SCENE_COORDINATES) {
         v[i] = step_velocity(from->w[i], it->w[i]);
-        u[i] = from->s[i] + (METHOD_THETA * h) * v[i];
+        u[i] = from->s[i] + (METHOD_THETA * step->h) * v[i];
     }
-    law_torque(&set->law, u, v, torque);
-    law_clip(&set->law, torque);
+    law_torque(law, u, v, torque);
+    law_clip(law, torque);
     EACH (i, 0, SCENE_ACTUATORS) {
-        const lanes limit = set->law.limit[i], before = it->torque[i], now = torque[i];
+        const lanes limit = law->limit[i], before = it->torque[i], now = torque[i];
         const mask high = mask_less_equal(limit, before), low = mask_less_equal(before, -limit);
         const mask free = LANES_NOT(high | low);
         same &= (high & mask_less_equal(limit, now)) | (low & mask_less_equal(now, -limit)) |
@@ -140,36 +143,35 @@ COLD mask ordinary_law(const struct setting *set, const struct motion *from, lan
     return same;
 }
 
-/* One iteration in the lanes of m; `all`: whatever becomes of the others. `old` is where it
- * started. Returns the lanes where the error left is certainly small. */
-HOT mask ordinary_iterate(const struct ordinary *q, const struct setting *set,
-                          const struct motion *from, lanes h, bool coupled, bool all, mask m,
-                          contact_set touching, lanes *old, struct iterate *it)
+/* One iteration in the lanes of m; `all`: whatever becomes of the others. Returns the lanes where
+ * the error left is certainly small. */
+HOT mask ordinary_iterate(const struct ordinary *q, const struct step *step, bool all, mask m,
+                          contact_set touching, struct iterate *it)
 {
-    ordinary_place(q, from, h, all, m, it);
+    const struct iteration of = {.all = all, .running = m, .touching = touching, .near = touching};
+    ordinary_place(q, step, all, m, it);
     EACH (i, 0, SCENE_COORDINATES)
-        old[i] = choose_unless(all, m, it->w[i], old[i]);
-    iterate_newton(set, from, h, all, m, false, MASK_NONE, coupled, false, touching, touching, it);
-    const lanes left = (h * scene_curvature(&set->body) * it->size) * (it->size + it->shift);
+        it->before[i] = choose_unless(all, m, it->w[i], it->before[i]);
+    iterate_newton(step, &of, it);
+    const lanes curved = step->h * scene_curvature(&step->set->body);
+    const lanes left = (curved * it->size) * (it->size + it->shift);
     mask small = mask_less_equal(left, lanes_of(ORDINARY_ERROR));
     if (mask_any(m & LANES_NOT(small)))
         small |= mask_less_equal(left, ORDINARY_ERROR * iterate_speed(it));
-    if (coupled)
-        small &= ordinary_law(set, from, h, m, it);
+    if (step->coupled)
+        small &= ordinary_law(step, m, it);
     return small;
 }
 
 /* Further iterations, where one was not enough; returns the lanes where they got there. */
-COLD mask ordinary_more(const struct ordinary *q, const struct setting *set,
-                        const struct motion *from, lanes h, bool coupled, int first, mask running,
-                        contact_set touching, lanes *old, lanes *iterations, struct iterate *it)
+COLD mask ordinary_more(const struct ordinary *q, const struct step *step, int first, mask running,
+                        contact_set touching, struct iterate *it)
 {
     mask there = MASK_NONE;
     for (int k = first; k < ORDINARY_ITERATIONS && mask_any(running); k++) {
         if (k > 0)
-            *iterations += choose(running, lanes_of(1), lanes_of(0));
-        const mask small =
-            ordinary_iterate(q, set, from, h, coupled, false, running, touching, old, it);
+            it->iterations += choose(running, lanes_of(1), lanes_of(0));
+        const mask small = ordinary_iterate(q, step, false, running, touching, it);
         there |= running & small;
         running &= LANES_NOT(small);
     }
@@ -178,34 +180,27 @@ COLD mask ordinary_more(const struct ordinary *q, const struct setting *set,
 
 /* Newton's iteration to its end, from the extrapolated velocity. Returns the lanes where it got
  * there. */
-HOT mask ordinary_newton(const struct ordinary *q, const struct setting *set,
-                         const struct motion *from, lanes h, bool coupled, mask run,
-                         contact_set touching, bool full, struct iterate *it, lanes *iterations)
+HOT mask ordinary_newton(const struct ordinary *q, const struct step *step, mask run,
+                         contact_set touching, bool full, struct iterate *it)
 {
-    lanes old[SCENE_COORDINATES];
     EACH (i, 0, SCENE_COORDINATES)
-        it->w[i] = from->w[i] + lanes_fms(lanes_of(2), q->change[i], q->before[i]);
-    *iterations = lanes_of(1);
+        it->w[i] = step->from->w[i] + lanes_fms(lanes_of(2), q->change[i], q->before[i]);
+    it->iterations = lanes_of(1);
     mask there = MASK_NONE;
     if (full)
-        there = run & ordinary_iterate(q, set, from, h, coupled, true, run, touching, old, it);
+        there = run & ordinary_iterate(q, step, true, run, touching, it);
     const mask running = run & LANES_NOT(there);
     if (mask_any(running)) {
 #ifdef CONTACT_LISTS
-        there |=
-            ordinary_more(q, set, from, h, coupled, full, running, touching, old, iterations, it);
+        there |= ordinary_more(q, step, full, running, touching, it);
 #else /* with copies: what is passed on by address stays in memory */
+        const struct step same = *step;
         struct iterate copy = *it;
-        lanes start[SCENE_COORDINATES], count = *iterations;
-        memcpy(start, old, sizeof start);
-        there |=
-            ordinary_more(q, set, from, h, coupled, full, running, touching, start, &count, &copy);
+        there |= ordinary_more(q, &same, full, running, touching, &copy);
         *it = copy;
-        *iterations = count;
-        memcpy(old, start, sizeof old);
 #endif
     }
-    return there & ordinary_arrive(from, h, old, it);
+    return there & ordinary_arrive(step->from, step->h, it);
 }
 
 /* Lanes where a contact that did not touch is not above the ground. */
@@ -227,48 +222,44 @@ HOT mask ordinary_active(const struct setting *set, const struct motion *from, i
 
 /* The solution of an ordinary step's equation in the lanes of `run`, where contacts in `touching`
  * are closed in some of them or, `full`, in all. Returns the lanes where it was found. */
-HOT mask ordinary_reach(const struct ordinary *q, const struct setting *set,
-                        const struct motion *from, const lanes *torque, lanes h, bool coupled,
-                        mask run, contact_set touching, bool full, struct iterate *it,
-                        lanes *iterations)
+HOT mask ordinary_reach(const struct ordinary *q, const struct step *step, mask run,
+                        contact_set touching, bool full, struct iterate *it)
 {
+    const struct motion *const from = step->from;
     mask good = run;
-    it->corner = NULL;
     it->along = NULL;
-    it->decides = MASK_NONE;
+    it->missed = 0;
+    it->impact = it->decides = MASK_NONE;
     it->verdict = (struct contact_verdict){MASK_NONE, MASK_NONE, MASK_NONE};
     EACH (i, 0, SCENE_ACTUATORS)
-        it->torque[i] = torque[i];
+        it->torque[i] = step->torque[i];
     EACH_CONTACT (c, 0) {
         it->active[c] = MASK_NONE;
         it->r[c][0] = it->r[c][1] = lanes_of(0);
     }
     EACH_IN (c, touching) {
-        it->active[c] = full ? LANES_ALL : ordinary_active(set, from, c);
+        it->active[c] = full ? LANES_ALL : ordinary_active(step->set, from, c);
         good &= LANES_NOT(it->active[c] & mask_less(from->approach[c], lanes_of(-STEP_APPROACH)));
         EACH (a, 0, 2)
             it->r[c][a] = choose(it->active[c], from->impulse[c][a], lanes_of(0));
     }
-    good &= ordinary_newton(q, set, from, h, coupled, good, touching, full, it, iterations);
+    good &= ordinary_newton(q, step, good, touching, full, it);
     return good & LANES_NOT(it->verdict.unsolved | it->verdict.ambiguous);
 }
 
 /* Tries one ordinary step, arguments as above. Returns the lanes where it was one. */
-HOT mask ordinary_try(const struct ordinary *q, const struct setting *set,
-                      const struct motion *from, const lanes *torque, lanes h, bool coupled,
-                      mask run, contact_set touching, bool full, struct iterate *it,
+HOT mask ordinary_try(const struct ordinary *q, const struct step *step, mask run,
+                      contact_set touching, bool full, struct iterate *it,
                       struct step_report *report)
 {
-    lanes iterations;
-    mask good =
-        ordinary_reach(q, set, from, torque, h, coupled, run, touching, full, it, &iterations);
+    mask good = ordinary_reach(q, step, run, touching, full, it);
     EACH_CONTACT (c, 0)
-        it->gap[c] = scene_gap(&set->body, it->s1, &it->end, c);
-    good &= LANES_NOT(ordinary_arrivals(set, it));
-    good = step_finish(set, from, h, touching, full ? STEP_FULL : STEP_ORDINARY, MASK_NONE, good,
-                       false, it, report, NULL);
-    good &= LANES_NOT(ordinary_arrivals(set, it)); /* removing position errors may bring some */
-    report->iterations = report->evaluations = iterations;
+        it->gap[c] = scene_gap(&step->set->body, it->s1, &it->end, c);
+    good &= LANES_NOT(ordinary_arrivals(step->set, it));
+    good = step_finish(step, touching, full ? STEP_FULL : STEP_ORDINARY, good, it, report);
+    /* Removing position errors may bring some. */
+    good &= LANES_NOT(ordinary_arrivals(step->set, it));
+    report->iterations = report->evaluations = it->iterations;
     return good;
 }
 

@@ -89,7 +89,7 @@ HOT void project_multipliers(contact_set touching, const struct lifts *f, const 
         multiplier[p] = lanes_fma(multiplier[p], f->reciprocal[p], lanes_of(0));
     }
     if (mask_any(f->any))
-        project_lift(touching, f->idle, (const lanes(*)[CONTACTS])f->G, error, multiplier);
+        project_lift(touching, f->idle, f->G, error, multiplier);
 }
 
 /* Sine and cosine after turning by small angles d, to third order. */
@@ -170,19 +170,19 @@ static inline contact_set project_missed(const struct setting *set, contact_set 
 }
 
 /* Moves the end position until loaded contacts have their gap and no contact penetrates, of those
- * in `touching`; `missed`: with impacts, others that came to the ground. Returns the lanes where
+ * in `touching`; `impacts`: others may have come to the ground, it->missed. Returns the lanes where
  * that needed no more than STEP_FARTHEST of turning: elsewhere the step is too long for its
  * velocity. */
-HOT mask project_position(const struct setting *set, const struct motion *from, lanes h,
-                          contact_set touching, bool impacts, mask run, struct iterate *it,
-                          lanes *energy, contact_set *missed)
+HOT mask project_position(const struct step *step, contact_set touching, bool impacts, mask run,
+                          struct iterate *it, lanes *energy)
 {
+    const struct setting *const set = step->set;
     lanes wanted[CONTACTS], error[CONTACTS];
     mask held[CONTACTS], somewhere = MASK_NONE;
     EACH_IN (c, touching) {
         somewhere |= it->active[c];
         /* A rebound has used part of the step to arrive: it leaves e times what it overshot. */
-        const lanes overshoot = -lanes_fma(h, from->approach[c], from->gap[c]);
+        const lanes overshoot = -lanes_fma(step->h, step->from->approach[c], step->from->gap[c]);
         wanted[c] = set->restitution[c] * lanes_max(overshoot, lanes_of(0));
         held[c] = run & it->active[c] & mask_less(lanes_of(0), it->r[c][0]);
     }
@@ -191,7 +191,7 @@ HOT mask project_position(const struct setting *set, const struct motion *from, 
     for (int round = 0; round < 12; round++) {
         todo = MASK_NONE;
         if (impacts)
-            *missed |= project_missed(set, touching, run, it);
+            it->missed |= project_missed(set, touching, run, it);
         EACH_IN (c, touching) {
             mask near = run & it->active[c];
             if (impacts)
@@ -240,48 +240,60 @@ HOT mask project_position(const struct setting *set, const struct motion *from, 
     return run & LANES_NOT(todo) & mask_less(turned, lanes_of(STEP_FARTHEST));
 }
 
-/* The operator that takes impulses at contacts to their velocities at one place, in the rows that
- * are held, factored. */
+/* What holds contacts in `touching` at one place: the operator that takes impulses to velocities,
+ * in the rows that are held, factored. */
 struct grip {
-    mask rows[CONTACTS][2]; /* normal, tangential of each contact */
+    const struct setting *set;
+    const scene_trig *trig;
+    contact_set touching;
+    const lanes (*response)[2][SCENE_COORDINATES]; /* to a unit impulse at a contact */
+    const lanes (*rebound)[2]; /* NULL, or minus the velocities that restitution asks for */
+    mask rows[CONTACTS][2];    /* normal, tangential of each contact */
     struct contact_factors factors;
 };
 
-/* Fills in the factors from the rows, for contacts in `touching`. */
-HOT void grip_factor(const struct setting *set, const scene_trig *trig, contact_set touching,
-                     const lanes (*response)[2][SCENE_COORDINATES], struct grip *g)
+/* At the end of a step, without restitution. */
+HOT void grip_of(const struct step *step, contact_set touching, const struct iterate *it,
+                 struct grip *g)
+{
+    g->set = step->set;
+    g->trig = &it->end;
+    g->touching = touching;
+    g->response = it->response;
+    g->rebound = NULL;
+}
+/* Fills in the factors from the rows. */
+HOT void grip_factor(struct grip *g)
 {
     lanes D[CONTACTS][CONTACTS][2][2], M[CONTACTS][CONTACTS][2][2];
-    EACH_IN (c, touching) {
+    EACH_IN (c, g->touching) {
         scene_rows rows;
-        scene_contact_rows(&set->body, trig, c, NULL, lanes_of(0), &rows);
-        EACH_IN (k, touching)
+        scene_contact_rows(&g->set->body, g->trig, c, NULL, lanes_of(0), &rows);
+        EACH_IN (k, g->touching)
             EACH (b, 0, 2) {
                 D[c][k][0][b] = D[c][k][1][b] = lanes_of(0);
                 if (b >= contact_unknowns(k))
                     continue;
                 lanes moved[2];
-                scene_rows_velocity(&set->body, c, &rows, response[k][b], moved);
+                scene_rows_velocity(&g->set->body, c, &rows, g->response[k][b], moved);
                 D[c][k][0][b] = moved[0], D[c][k][1][b] = moved[1];
             }
     }
-    contact_matrix(touching, (const lanes(*)[CONTACTS][2][2])D, (const mask(*)[2])g->rows, NULL, M);
-    contact_factor(touching, CONTACT_CAREFUL, M, &g->factors);
+    contact_matrix(g->touching, D, g->rows, NULL, M);
+    contact_factor(g->touching, CONTACT_CAREFUL, M, &g->factors);
 }
 
-/* What is wrong with the velocities u of contacts in `touching`, in the rows that are held;
- * rebound: NULL, or minus the velocities that restitution asks for. Returns the lanes where it
- * matters. */
-HOT mask project_wrong(const lanes (*rebound)[2], contact_set touching, const struct grip *g,
-                       const lanes (*u)[2], lanes (*wrong)[2])
+/* What is wrong with the velocities u of the contacts, in the rows that are held. Returns the lanes
+ * where it matters. */
+HOT mask project_wrong(const struct grip *g, const lanes (*u)[2], lanes (*wrong)[2])
 {
     const lanes none = lanes_of(0);
     mask off = MASK_NONE;
-    EACH_IN (c, touching) {
+    EACH_IN (c, g->touching) {
         wrong[c][0] = wrong[c][1] = none;
         lanes normal = u[c][0], along = u[c][1];
-        if (rebound)
-            normal = normal + rebound[c][0], along = along + rebound[c][1];
+        if (g->rebound)
+            normal = normal + g->rebound[c][0], along = along + g->rebound[c][1];
         wrong[c][0] = choose(g->rows[c][0], normal, none);
         if (contact_unknowns(c) == 2)
             wrong[c][1] = choose(g->rows[c][1], along, none);
@@ -294,22 +306,20 @@ HOT mask project_wrong(const lanes (*rebound)[2], contact_set touching, const st
 
 /* Takes that away by moving the velocity w along the responses, in the lanes of `where`; u follows.
  * Returns what that adds to the energy. */
-HOT lanes project_move_velocity(const struct setting *set, const scene_trig *trig,
-                                contact_set touching, const struct grip *g, mask where,
-                                const lanes (*response)[2][SCENE_COORDINATES],
-                                const lanes (*wrong)[2], lanes *w, lanes (*u)[2])
+HOT lanes project_move_velocity(const struct grip *g, mask where, const lanes (*wrong)[2], lanes *w,
+                                lanes (*u)[2])
 {
     lanes x[CONTACTS][2], energy = lanes_of(0);
-    contact_back(touching, &g->factors, wrong, x);
-    EACH_IN (c, touching)
+    contact_back(g->touching, &g->factors, wrong, x);
+    EACH_IN (c, g->touching)
         EACH (a, 0, 2)
             if (a < contact_unknowns(c))
                 EACH (i, 0, SCENE_COORDINATES)
                     w[i] = choose(g->rows[c][a] & where,
-                                  lanes_fma(response[c][a][i], x[c][a], w[i]), w[i]);
-    EACH_IN (c, touching) {
+                                  lanes_fma(g->response[c][a][i], x[c][a], w[i]), w[i]);
+    EACH_IN (c, g->touching) {
         const lanes before[2] = {u[c][0], u[c][1]};
-        scene_contact_velocity(&set->body, trig, c, w, u[c]);
+        scene_contact_velocity(&g->set->body, g->trig, c, w, u[c]);
         EACH (a, 0, 2)
             if (a < contact_unknowns(c))
                 energy =
@@ -319,50 +329,47 @@ HOT lanes project_move_velocity(const struct setting *set, const scene_trig *tri
 }
 
 /* Once more, and again, in the lanes of `off`. */
-COLD lanes project_again(const struct setting *set, const lanes (*rebound)[2],
-                         const scene_trig *trig, contact_set touching, const struct grip *g,
-                         mask off, const lanes (*response)[2][SCENE_COORDINATES], lanes *w,
-                         lanes (*u)[2])
+COLD lanes project_again(const struct grip *g, mask off, lanes *w, lanes (*u)[2])
 {
     lanes energy = lanes_of(0), wrong[CONTACTS][2];
     for (int round = 1; round < PROJECT_ROUNDS && mask_any(off); round++) {
-        project_wrong(rebound, touching, g, (const lanes(*)[2])u, wrong);
-        const lanes added = project_move_velocity(set, trig, touching, g, off, response,
-                                                  (const lanes(*)[2])wrong, w, u);
+        project_wrong(g, u, wrong);
+        const lanes added = project_move_velocity(g, off, wrong, w, u);
         energy += choose(off, added, lanes_of(0));
-        off &= project_wrong(rebound, touching, g, (const lanes(*)[2])u, wrong);
+        off &= project_wrong(g, u, wrong);
     }
     return energy;
 }
 
-/* Moves the velocity at the end along the responses until the contacts' velocities u (out, of those
- * in `touching`) are what the laws ask for, in the rows that are held. *energy: the sum of what
- * that adds. */
-HOT void project_along(const struct setting *set, const lanes (*rebound)[2], contact_set touching,
-                       const struct grip *g, const lanes (*response)[2][SCENE_COORDINATES],
-                       struct iterate *it, lanes (*u)[2], lanes *energy)
+/* Moves the velocity w along the responses until the contacts' velocities u (out) are what the laws
+ * ask for, in the rows that are held. *energy: the sum of what that adds. */
+HOT void project_along(const struct grip *g, lanes *w, lanes (*u)[2], lanes *energy)
 {
     lanes wrong[CONTACTS][2];
-    EACH_IN (c, touching)
-        scene_contact_velocity(&set->body, &it->end, c, it->w, u[c]);
-    project_wrong(rebound, touching, g, (const lanes(*)[2])u, wrong);
-    *energy += project_move_velocity(set, &it->end, touching, g, LANES_ALL, response,
-                                     (const lanes(*)[2])wrong, it->w, u);
-    const mask off = project_wrong(rebound, touching, g, (const lanes(*)[2])u, wrong);
+    EACH_IN (c, g->touching)
+        scene_contact_velocity(&g->set->body, g->trig, c, w, u[c]);
+    project_wrong(g, u, wrong);
+    *energy += project_move_velocity(g, LANES_ALL, wrong, w, u);
+    const mask off = project_wrong(g, u, wrong);
     if (!mask_any(off))
         return;
 #ifdef CONTACT_LISTS
-    *energy += project_again(set, rebound, &it->end, touching, g, off, response, it->w, u);
+    *energy += project_again(g, off, w, u);
 #else /* with copies: what is passed by address has to stay in memory */
-    lanes w[SCENE_COORDINATES], v[CONTACTS][2], same[CONTACTS][2][SCENE_COORDINATES];
-    const struct grip factors = *g;
-    const scene_trig trig = it->end;
-    memcpy(w, it->w, sizeof w);
+    lanes moved[SCENE_COORDINATES], v[CONTACTS][2], response[CONTACTS][2][SCENE_COORDINATES];
+    lanes rebound[CONTACTS][2];
+    const scene_trig trig = *g->trig;
+    struct grip same = *g;
+    memcpy(moved, w, sizeof moved);
     memcpy(v, u, sizeof v);
-    memcpy(same, response, sizeof same);
-    *energy += project_again(set, rebound, &trig, touching, &factors, off,
-                             (const lanes(*)[2][SCENE_COORDINATES])same, w, v);
-    memcpy(it->w, w, sizeof w);
+    memcpy(response, g->response, sizeof response);
+    same.trig = &trig, same.response = response;
+    if (g->rebound) {
+        memcpy(rebound, g->rebound, sizeof rebound);
+        same.rebound = rebound;
+    }
+    *energy += project_again(&same, off, moved, v);
+    memcpy(w, moved, sizeof moved);
     memcpy(u, v, sizeof v);
 #endif
 }
@@ -390,7 +397,7 @@ HOT void project_rows(const struct setting *set, contact_set touching, mask run,
 {
     EACH_IN (c, touching) {
         g->rows[c][0] = run & it->active[c] & mask_less(lanes_of(0), it->r[c][0]);
-        const lanes load = contact_load(c, (const lanes(*)[2])it->r);
+        const lanes load = contact_load(c, it->r);
         g->rows[c][1] = MASK_NONE;
         if (contact_unknowns(c) == 2)
             g->rows[c][1] = run & contact_part(c, it->active) &
@@ -409,7 +416,7 @@ static inline void project_slides(const struct setting *set, const struct iterat
         lanes u[2], moved[2];
         scene_contact_velocity(&set->body, &it->end, c, it->w, u);
         scene_contact_velocity(&set->body, &it->end, c, it->response[c][1], moved);
-        const lanes load = contact_load(c, (const lanes(*)[2])it->r);
+        const lanes load = contact_load(c, it->r);
         u[1] = iterate_slip(it, c, u);
         g->rows[c][1] &= mask_less(lanes_fma(lanes_abs(it->r[c][1]), moved[1], lanes_abs(u[1])),
                                    set->friction * load * moved[1]);
@@ -439,29 +446,30 @@ HOT mask project_turns(const struct grip *g, int c, const struct iterate *it, co
 }
 
 /* Position, then velocity at the end of a step in which contacts may have come, in the lanes of
- * `run`; `missed`: see project_position. Returns those where the position could be mended. */
-static inline mask project_far(const struct setting *set, const struct motion *from, lanes h,
-                               contact_set touching, mask impact, mask run, struct iterate *it,
-                               lanes (*u)[2], lanes *energy, contact_set *missed)
+ * `run`; `lands`: those with an impact. Returns those where the position could be mended. */
+static inline mask project_far(const struct step *step, contact_set touching, mask lands, mask run,
+                               struct iterate *it, lanes (*u)[2], lanes *energy)
 {
-    struct grip g;
+    const struct setting *const set = step->set;
     lanes response[CONTACTS][2][SCENE_COORDINATES], rebound[CONTACTS][2];
+    struct grip g;
+    grip_of(step, touching, it, &g);
+    g.response = response, g.rebound = rebound;
     memset(g.rows, 0, sizeof g.rows);
     for (int c = 0; c < OWN_CONTACTS; c++) {
         it->brought[c] = MASK_NONE;
-        rebound[c][0] = set->restitution[c] * lanes_min(from->approach[c], lanes_of(0));
+        rebound[c][0] = set->restitution[c] * lanes_min(step->from->approach[c], lanes_of(0));
         rebound[c][1] = it->along ? it->along[c] : lanes_of(0);
     }
     project_rows(set, touching, run, it, &g);
     project_slides(set, it, touching, &g);
-    const mask near = project_position(set, from, h, touching, true, run, it, energy, missed);
-    project_inertia(set, impact, it, touching, response);
+    const mask near = project_position(step, touching, true, run, it, energy);
+    project_inertia(set, lands, it, touching, response);
     mask where = run; /* a lane in which nothing is left to do has done with it */
     for (int round = 0; round < 2 + OWN_CONTACTS; round++) {
         mask falls[CONTACTS], turns[CONTACTS], any = MASK_NONE;
-        grip_factor(set, &it->end, touching, (const lanes(*)[2][SCENE_COORDINATES])response, &g);
-        project_along(set, (const lanes(*)[2])rebound, touching, &g,
-                      (const lanes(*)[2][SCENE_COORDINATES])response, it, u, energy);
+        grip_factor(&g);
+        project_along(&g, it->w, u, energy);
         EACH_IN (c, touching) {
             falls[c] = project_falls(set, where, &g, c, it, u[c]);
             it->brought[c] |= falls[c] & LANES_NOT(it->active[c]);
@@ -483,32 +491,32 @@ static inline mask project_far(const struct setting *set, const struct motion *f
 
 /* The same for an ordinary step; `full`: with every contact in `touching` active in every lane that
  * matters. Returns the lanes where it still is one. */
-HOT mask project_near(const struct setting *set, const struct motion *from, lanes h,
-                      contact_set touching, bool full, mask run, struct iterate *it, lanes (*u)[2],
-                      lanes *energy)
+HOT mask project_near(const struct step *step, contact_set touching, bool full, mask run,
+                      struct iterate *it, lanes (*u)[2], lanes *energy)
 {
     struct grip g;
+    grip_of(step, touching, it, &g);
     mask good = run, slides = MASK_NONE;
-    project_rows(set, touching, run, it, &g);
+    project_rows(step->set, touching, run, it, &g);
     EACH_IN (c, touching)
         slides |= run & LANES_NOT(g.rows[c][0] & g.rows[c][contact_unknowns(c) - 1]);
     const bool stands = full && !mask_any(slides);
     /* The factors do not wait for the position: where they are a little off a second round helps.
      */
-    if (stands) {
+    if (stands) { /* with rows that are known to the compiler */
         EACH_IN (c, touching)
             g.rows[c][0] = g.rows[c][1] = LANES_ALL;
-        grip_factor(set, &it->end, touching, it->response, &g);
-        good &= project_position(set, from, h, touching, false, run, it, energy, NULL);
-        project_along(set, NULL, touching, &g, it->response, it, u, energy);
+        grip_factor(&g);
+        good &= project_position(step, touching, false, run, it, energy);
+        project_along(&g, it->w, u, energy);
         return good;
     }
-    grip_factor(set, &it->end, touching, it->response, &g);
-    good &= project_position(set, from, h, touching, false, run, it, energy, NULL);
-    project_along(set, NULL, touching, &g, it->response, it, u, energy);
+    grip_factor(&g);
+    good &= project_position(step, touching, false, run, it, energy);
+    project_along(&g, it->w, u, energy);
     /* Of contacts that are active: others may be in `touching` for a neighbour's sake. */
     EACH_IN (c, touching) {
-        good &= LANES_NOT(project_falls(set, run & it->active[c], &g, c, it, u[c]));
+        good &= LANES_NOT(project_falls(step->set, run & it->active[c], &g, c, it, u[c]));
         if (contact_unknowns(c) == 2)
             good &= LANES_NOT(project_turns(&g, c, it, u[c]));
     }

@@ -34,7 +34,6 @@
 
 #include "project.h"
 
-#define STEP_MAX_ITERATIONS 25
 #define STEP_DECIDED 2 /* iterations in which an impact decides between several solutions */
 #define STEP_NEAR 1e-3 /* m, rad: what is nearer may close in a step with an impact */
 #define STEP_TOLERANCE                                                                             \
@@ -86,23 +85,24 @@ static inline mask step_gains(const struct setting *set, const struct motion *fr
 static inline struct impact_tried step_tried(const struct setting *set, mask good,
                                              const struct step_report *report)
 {
-    const lanes mode = impact_mode(set->friction, (const lanes(*)[2])report->impulse);
+    const lanes mode = impact_mode(set->friction, report->impulse);
     return (struct impact_tried){choose(good, report->impact_energy, lanes_of(INFINITY)),
                                  choose(good, mode, lanes_of(-1))};
 }
 
 /* Lanes where an iterate with frozen geometry obeys the contact laws. */
-static inline mask step_obeys(const struct setting *set, const struct motion *from,
-                              const struct iterate *it)
+static inline mask step_obeys(const struct step *step, const struct iterate *it)
 {
+    const struct setting *const set = step->set;
     struct step_report laws;
     report_clear(&laws);
     EACH_CONTACT (c, 0) {
         lanes u[2];
         scene_contact_velocity(&set->body, &it->end, c, it->w, u);
-        u[0] = lanes_fma(set->restitution[c], lanes_min(from->approach[c], lanes_of(0)), u[0]);
+        u[0] =
+            lanes_fma(set->restitution[c], lanes_min(step->from->approach[c], lanes_of(0)), u[0]);
         u[1] = iterate_slip(it, c, u);
-        report_residuals(&laws, c, it->active, set->friction, (const lanes(*)[2])it->r, u);
+        report_residuals(&laws, c, it->active, set->friction, it->r, u);
     }
     return mask_less_equal(lanes_max(laws.signorini_residual, laws.dissipation_residual),
                            lanes_of(STEP_FROZEN_RESIDUAL));
@@ -146,17 +146,17 @@ HOT void step_hold(bool left, contact_set touching, const lanes (*end)[2], struc
     }
 }
 
-/* What one contact says in a step that has arrived: velocity u, impulses r of all, where they are
- * in `part`. What hardly carries has no direction, see CONTACT_TOLERANCE. */
-HOT void report_contact(const struct setting *set, const struct motion *from, lanes h,
-                        const mask *part, lanes load, int c, const lanes u[2],
-                        const struct iterate *it, struct step_report *report)
+/* What one contact says in a step that has arrived: velocity u, impulses of all, where they are in
+ * `part`. What hardly carries has no direction, see CONTACT_TOLERANCE. */
+HOT void report_contact(const struct step *step, const struct iterate *it, const mask *part,
+                        lanes load, int c, const lanes u[2], struct step_report *report)
 {
-    const lanes(*const r)[2] = (const lanes(*)[2])it->r;
+    const struct setting *const set = step->set;
+    const lanes h = step->h, (*const r)[2] = it->r;
     const lanes none = lanes_of(0);
     const mask loaded = part[c] & mask_less(none, r[c][0]);
     const lanes relative[2] = {
-        lanes_fma(set->restitution[c], lanes_min(from->approach[c], none), it->u[c][0]),
+        lanes_fma(set->restitution[c], lanes_min(step->from->approach[c], none), it->u[c][0]),
         iterate_slip(it, c, it->u[c])};
     lanes carried[CONTACTS][2];
     EACH_IN (k, contact_with(c) | contact_ends(c)) {
@@ -164,11 +164,11 @@ HOT void report_contact(const struct setting *set, const struct motion *from, la
         carried[k][1] = choose(mask_less(1e-6 * load, contact_load(k, r)), r[k][1], none);
     }
     if (!contact_is_point(c)) { /* an end of it may be left out, and with it its share */
-        const lanes whole = contact_load(c, r), left = contact_load(c, (const lanes(*)[2])carried);
+        const lanes whole = contact_load(c, r), left = contact_load(c, carried);
         const mask less = mask_less(none, left) & mask_less(left, whole);
         carried[c][1] = choose(less, carried[c][1] * (left / whole), carried[c][1]);
     }
-    report_residuals(report, c, part, set->friction, (const lanes(*)[2])carried, relative);
+    report_residuals(report, c, part, set->friction, carried, relative);
     report->impulse[c][0] = choose(loaded, r[c][0], none);
     report->least[c] = choose(loaded, r[c][0] / h, none);
     report->impulse[c][1] = report->slip[c] = none;
@@ -191,37 +191,28 @@ HOT mask step_lands(const struct motion *from, contact_set touching, const struc
     return lands;
 }
 
-/* What dampers take over a step, of which `moved` is the way, or half of it where there are pushes.
- */
-HOT lanes step_damped(const struct setting *set, const struct motion *from,
-                      const struct iterate *it, const lanes *moved)
-{
-    lanes rate[SCENE_COORDINATES];
-    EACH (i, 0, SCENE_COORDINATES)
-        rate[i] = lanes_fma(lanes_of(METHOD_THETA), it->w[i] - from->w[i], from->w[i]);
-    return (SCENE_PUSHES > 0 ? 2 : 1) * scene_damped(&set->body, rate, moved);
-}
-
 /* What an iterate that has arrived leaves: position errors removed, the balance of energy, the
  * report. `touching`: contacts that are active anywhere; `kind`: with STEP_ANY not all were closed
- * before, those in `impact` are, and others may be `missed`; `frozen`: the geometry was. Returns
- * the lanes of `converged` whose step is admitted. */
-HOT mask step_finish(const struct setting *set, const struct motion *from, lanes h,
-                     contact_set touching, enum step_kind kind, mask impact, mask converged,
-                     bool frozen, struct iterate *it, struct step_report *report,
-                     contact_set *missed)
+ * before, those in it->impact are. Returns the lanes of `converged` whose step is admitted. */
+HOT mask step_finish(const struct step *step, contact_set touching, enum step_kind kind,
+                     mask converged, struct iterate *it, struct step_report *report)
 {
-    const lanes none = lanes_of(0);
+    const struct setting *const set = step->set;
+    const struct motion *const from = step->from;
+    const lanes none = lanes_of(0), h = step->h;
     const bool impacts = kind == STEP_ANY;
+    const mask impact = it->impact;
     mask somewhere = MASK_NONE;
-    lanes moved[SCENE_COORDINATES], load = none;
-    EACH (i, 0, SCENE_COORDINATES)
+    lanes moved[SCENE_COORDINATES], rate[SCENE_COORDINATES], load = none;
+    EACH (i, 0, SCENE_COORDINATES) {
         moved[i] = (SCENE_PUSHES > 0 ? 0.5 : 1) * (it->s1[i] - from->s[i]);
+        rate[i] = lanes_fma(lanes_of(METHOD_THETA), it->w[i] - from->w[i], from->w[i]);
+    }
     const lanes middle = from->t + METHOD_THETA * h;
     report->work = scene_work(&set->body, h, middle, &it->end, it->torque, moved);
     if (SCENE_PUSHES > 0) /* whose ways bend: half of it at either end */
         report->work += scene_work(&set->body, h, middle, &from->trig, it->torque, moved);
-    const lanes damped = step_damped(set, from, it, moved);
+    const lanes damped = (SCENE_PUSHES > 0 ? 2 : 1) * scene_damped(&set->body, rate, moved);
     report_clear_answers(report);
     report->failure = none;
     EACH (i, 0, SCENE_ACTUATORS)
@@ -237,10 +228,10 @@ HOT mask step_finish(const struct setting *set, const struct motion *from, lanes
         EACH_CONTACT (c, 0)
             struck[c] = it->active[c] & converged & impact;
         EACH_IN (c, touching)
-            report_friction(&report->impact_friction, c, struck, (const lanes(*)[2])it->r);
+            report_friction(&report->impact_friction, c, struck, it->r);
     }
-    if (frozen)
-        converged &= step_obeys(set, from, it);
+    if (step->freeze_after < STEP_MAX_ITERATIONS)
+        converged &= step_obeys(step, it);
     lanes u[CONTACTS][2];
     mask part[CONTACTS], lands = MASK_NONE, rebounds = MASK_NONE;
     if (impacts)
@@ -249,12 +240,12 @@ HOT mask step_finish(const struct setting *set, const struct motion *from, lanes
         if (impacts)
             scene_contact_velocity(&set->body, &it->end, c, it->w, it->u[c]);
     if (touching) {
-        const mask right = impacts ? project_far(set, from, h, touching, lands, somewhere, it, u,
-                                                 &report->projection_energy, missed)
-                                   : project_near(set, from, h, touching, kind == STEP_FULL,
-                                                  somewhere, it, u, &report->projection_energy);
+        lanes *const energy = &report->projection_energy;
+        const mask right =
+            impacts ? project_far(step, touching, lands, somewhere, it, u, energy)
+                    : project_near(step, touching, kind == STEP_FULL, somewhere, it, u, energy);
         converged &= right | LANES_NOT(somewhere);
-        step_hold(impacts, touching, (const lanes(*)[2])u, it);
+        step_hold(impacts, touching, u, it);
     }
     EACH_CONTACT (c, 0) {
         /* One that has left the ground may move back towards it. */
@@ -271,7 +262,7 @@ HOT mask step_finish(const struct setting *set, const struct motion *from, lanes
         it->approach[c] = u[c][0];
     }
     EACH_IN (c, touching)
-        report_contact(set, from, h, part, load, c, u[c], it, report);
+        report_contact(step, it, part, load, c, u[c], report);
     it->kinetic = scene_kinetic(&set->body, &it->end, it->w);
     it->energy = it->kinetic + scene_potential(&set->body, it->s1, &it->end);
     rebounds &= somewhere;
@@ -326,22 +317,17 @@ static inline bool step_moreau(const struct setting *set, const struct motion *f
     return true;
 }
 
-/* Takes one step of length h from `from` in the lanes of `run`; *to and *report are written there
- * only where it converged. `torque` is held over the step unless `coupled`: then the law acts
- * inside it. From iteration `freeze_after` on inertia and directions stay those of that iterate:
- * with parallel legs the contact solution can jump with the geometry, and Newton then cycles
- * between two modes for every h. `corner`: as in law_inside; converged is then only what agrees
- * with it. `near`: contacts that may take part; `missed`: others that did come to the ground, and
- * nothing is written. brought: contacts that take part from the first iterate on though they were
- * open; those that turn out to be such are added. Returns the lanes that converged. */
-COLD mask step_within(contact_set near, contact_set *missed, const int *corner,
-                      const struct setting *set, const struct motion *from, const lanes *torque,
-                      lanes h, mask run, bool coupled, int freeze_after, mask *brought,
-                      struct motion *to, struct step_report *report)
+/* Takes one step in the lanes of `run`; *to and *report are written there only where it converged.
+ * `near`: contacts that may take part; *missed: others that did come to the ground, and nothing is
+ * written. brought: contacts that take part from the first iterate on though they were open; those
+ * that turn out to be such are added. Returns the lanes that converged. */
+COLD mask step_within(const struct step *step, contact_set near, contact_set *missed, mask run,
+                      mask *brought, struct motion *to, struct step_report *report)
 {
+    const struct setting *const set = step->set;
+    const struct motion *const from = step->from;
     struct iterate it;
-    it.corner = corner;
-    mask impact = MASK_NONE, running = run;
+    mask running = run;
     mask closed[CONTACTS];
     lanes tangential[CONTACTS], along[CONTACTS];
     const bool moreau = step_moreau(set, from, run, tangential);
@@ -349,36 +335,43 @@ COLD mask step_within(contact_set near, contact_set *missed, const int *corner,
     EACH (i, 0, SCENE_COORDINATES)
         it.w[i] = from->w[i];
     EACH (i, 0, SCENE_ACTUATORS)
-        it.torque[i] = torque[i];
+        it.torque[i] = step->torque[i];
+    it.impact = MASK_NONE;
+    it.missed = 0;
     EACH_CONTACT (c, 0) {
         closed[c] = mask_less(lanes_of(0), set->may_touch[c]) &
                     mask_less_equal(from->gap[c], lanes_of(STEP_CLOSED));
         it.active[c] = closed[c] | brought[c];
         it.brought[c] = MASK_NONE;
-        impact |= closed[c] & mask_less(from->approach[c], lanes_of(-STEP_APPROACH));
-        impact |= brought[c];
+        it.impact |= closed[c] & mask_less(from->approach[c], lanes_of(-STEP_APPROACH));
+        it.impact |= brought[c];
         EACH (a, 0, 2)
             EACH (i, 0, SCENE_COORDINATES)
                 it.response[c][a][i] = lanes_of(0);
     }
     EACH_CONTACT (c, 0)
         EACH (a, 0, 2)
-            it.r[c][a] = choose(it.active[c] & LANES_NOT(impact), from->impulse[c][a], lanes_of(0));
+            it.r[c][a] =
+                choose(it.active[c] & LANES_NOT(it.impact), from->impulse[c][a], lanes_of(0));
     it.verdict = (struct contact_verdict){MASK_NONE, MASK_NONE, MASK_NONE};
-    iterate_place(set, from, h, false, &it);
-    lanes iterations = lanes_of(0);
+    iterate_place(step, false, &it);
+    it.iterations = lanes_of(0);
     for (int k = 0; k < STEP_MAX_ITERATIONS && mask_any(running); k++) {
-        it.decides = k < STEP_DECIDED ? impact : MASK_NONE;
+        it.decides = k < STEP_DECIDED ? it.impact : MASK_NONE;
         contact_set touching = 0;
         EACH_CONTACT (c, 0)
             touching |= mask_any(it.active[c] & running) ? contact_with(c) : 0;
         /* Responses of all that are near or none: position errors may have to be removed. */
         for (int c = 0; c < OWN_CONTACTS && moreau; c++)
-            along[c] = choose(impact, tangential[c], lanes_of(0));
-        iterate_newton(set, from, h, false, running, true, impact, coupled, k > freeze_after,
-                       touching, touching ? near : 0, &it);
-        iterations += choose(running, lanes_of(1), lanes_of(0));
-        iterate_place(set, from, h, k >= freeze_after, &it);
+            along[c] = choose(it.impact, tangential[c], lanes_of(0));
+        const struct iteration of = {.running = running,
+                                     .impacts = true,
+                                     .frozen = k > step->freeze_after,
+                                     .touching = touching,
+                                     .near = touching ? near : 0};
+        iterate_newton(step, &of, &it);
+        it.iterations += choose(running, lanes_of(1), lanes_of(0));
+        iterate_place(step, k >= step->freeze_after, &it);
         mask news = MASK_NONE;
         *missed = project_missed(set, near, running, &it);
         if (*missed)
@@ -390,63 +383,44 @@ COLD mask step_within(contact_set near, contact_set *missed, const int *corner,
             it.active[c] |= hit;
             news |= hit;
         }
-        impact |= news;
+        it.impact |= news;
         const mask done = mask_less_equal(it.size, STEP_TOLERANCE * iterate_speed(&it)) &
                           LANES_NOT(news) & LANES_NOT(it.verdict.unsolved);
         running &= LANES_NOT(done);
     }
     mask converged = run & LANES_NOT(running);
-    if (corner) {
+    if (step->corner) {
         lanes u[SCENE_COORDINATES], v[SCENE_COORDINATES];
         EACH (i, 0, SCENE_COORDINATES) {
             v[i] = step_velocity(from->w[i], it.w[i]);
-            u[i] = from->s[i] + (METHOD_THETA * h) * v[i];
+            u[i] = from->s[i] + (METHOD_THETA * step->h) * v[i];
         }
-        converged &= law_agrees(&set->law, u, v, corner);
+        converged &= law_agrees(&set->law, u, v, step->corner);
     }
-    if (freeze_after < STEP_MAX_ITERATIONS)
-        iterate_place(set, from, h, false, &it);
+    if (step->freeze_after < STEP_MAX_ITERATIONS)
+        iterate_place(step, false, &it);
     if (METHOD_THETA != 1)
         scene_trigonometry(it.s1, &it.end);
-    converged = step_finish(set, from, h, near, STEP_ANY, impact, converged,
-                            freeze_after < STEP_MAX_ITERATIONS, &it, report, missed);
+    converged = step_finish(step, near, STEP_ANY, converged, &it, report);
+    *missed = it.missed;
     if (*missed)
         return MASK_NONE;
-    report->iterations = report->evaluations = iterations;
-    step_commit(from->t + h, &it, false, converged, mask_less(lanes_of(0), report->landed), to);
+    report->iterations = report->evaluations = it.iterations;
+    step_commit(from->t + step->h, &it, false, converged, mask_less(lanes_of(0), report->landed),
+                to);
     EACH_CONTACT (c, 0)
         brought[c] |= converged & it.brought[c];
     return converged;
 }
 
 /* step_within the contacts that are or may come near, and those that it turns out to miss: what it
- * finds in a lane does not depend on others. */
-static inline mask step_once(const int *corner, const struct setting *set,
-                             const struct motion *from, const lanes *torque, lanes h, mask run,
-                             bool coupled, int freeze_after, mask *brought, struct motion *to,
-                             struct step_report *report)
+ * finds in a lane does not depend on others. Repeated where mending the position brings contacts to
+ * the ground that no iterate saw there: to stop them is an impact, not mending, so the step is
+ * taken again with them. */
+COLD mask step_solve(const struct step *step, mask run, struct motion *to,
+                     struct step_report *report)
 {
-    contact_set near = 0, missed = 0;
-    EACH_CONTACT (c, 0) {
-        const lanes way = (2 * h) * lanes_min(from->approach[c], lanes_of(0));
-        if (mask_any(run & mask_less(lanes_of(0), set->may_touch[c]) &
-                     (brought[c] | mask_less(from->gap[c] + way, lanes_of(STEP_NEAR)))))
-            near |= contact_with(c);
-    }
-    for (;; near |= missed) {
-        const mask good = step_within(near, &missed, corner, set, from, torque, h, run, coupled,
-                                      freeze_after, brought, to, report);
-        if (!missed)
-            return good;
-    }
-}
-
-/* step_once, repeated where mending the position brings contacts to the ground that no iterate saw
- * there: to stop them is an impact, not mending, so the step is taken again with them. */
-COLD mask step_solve(const int *corner, const struct setting *set, const struct motion *from,
-                     const lanes *torque, lanes h, mask run, bool coupled, int freeze_after,
-                     struct motion *to, struct step_report *report)
-{
+    const struct motion *const from = step->from;
     mask todo = run, good = MASK_NONE, brought[CONTACTS], known[CONTACTS];
     lanes cost = lanes_of(0);
     report_clear(report); /* in lanes that do not run nothing was done */
@@ -454,9 +428,19 @@ COLD mask step_solve(const int *corner, const struct setting *set, const struct 
         brought[c] = MASK_NONE;
     for (int round = 0; round <= OWN_CONTACTS && mask_any(todo); round++) {
         struct step_report part;
+        contact_set near = 0, missed = 0;
+        mask there;
         memcpy(known, brought, sizeof known);
-        const mask there = step_once(corner, set, from, torque, h, todo, coupled, freeze_after,
-                                     brought, to, &part);
+        EACH_CONTACT (c, 0) {
+            const lanes way = (2 * step->h) * lanes_min(from->approach[c], lanes_of(0));
+            if (mask_any(todo & mask_less(lanes_of(0), step->set->may_touch[c]) &
+                         (brought[c] | mask_less(from->gap[c] + way, lanes_of(STEP_NEAR)))))
+                near |= contact_with(c);
+        }
+        do {
+            near |= missed;
+            there = step_within(step, near, &missed, todo, brought, to, &part);
+        } while (missed);
         cost += choose(todo, part.iterations, lanes_of(0));
         choose_all(round == 0 ? todo : there, &part, report, sizeof part);
         good |= there;
@@ -470,24 +454,25 @@ COLD mask step_solve(const int *corner, const struct setting *set, const struct 
 
 /* The same in the lanes of `gains`, whose impact would add energy, with the largest share of the
  * restitution by which it does not. */
-COLD mask step_limit(const int *corner, const struct setting *set, const struct motion *from,
-                     const lanes *torque, lanes h, mask gains, bool coupled, int freeze_after,
-                     struct motion *to, struct step_report *report)
+COLD mask step_limit(const struct step *step, mask gains, struct motion *to,
+                     struct step_report *report)
 {
+    const struct setting *const set = step->set;
     struct impact_tried said = step_tried(set, gains, report);
     struct impact_share share = impact_share_begin(said);
     struct setting law = *set;
+    struct step limited = *step;
     lanes cost = report->iterations;
+    limited.set = &law;
     for (mask open; mask_any(open = impact_share_open(&share, gains));) {
         const lanes tried = impact_share_next(&share);
-        struct motion next = *from;
+        struct motion next = *step->from;
         struct step_report part;
         EACH_CONTACT (c, 0)
             law.restitution[c] = tried * set->restitution[c];
-        const mask good =
-            step_solve(corner, &law, from, torque, h, open, coupled, freeze_after, &next, &part);
-        const mask more =
-            LANES_NOT(good) | (step_gains(set, from, &next, &part) & mask_less(lanes_of(0), tried));
+        const mask good = step_solve(&limited, open, &next, &part);
+        const mask more = LANES_NOT(good) | (step_gains(set, step->from, &next, &part) &
+                                             mask_less(lanes_of(0), tried));
         said = step_tried(set, good, &part);
         const mask fits = impact_share_tell(&share, open, more, &said);
         cost += choose(open, part.iterations, lanes_of(0));
@@ -502,29 +487,17 @@ COLD mask step_limit(const int *corner, const struct setting *set, const struct 
 }
 
 /* One step: step_solve, with restitution that creates no energy. */
-COLD mask take_step_at(const int *corner, const struct setting *set, const struct motion *from,
-                       const lanes *torque, lanes h, mask run, bool coupled, int freeze_after,
-                       struct motion *to, struct step_report *report)
+static inline mask take_step(const struct step *step, mask run, struct motion *to,
+                             struct step_report *report)
 {
     struct motion next = *to;
-    const mask good =
-        step_solve(corner, set, from, torque, h, run, coupled, freeze_after, &next, report);
-    const mask gains =
-        good & mask_less(lanes_of(0), set->limited) & step_gains(set, from, &next, report);
+    const mask good = step_solve(step, run, &next, report);
+    const mask gains = good & mask_less(lanes_of(0), step->set->limited) &
+                       step_gains(step->set, step->from, &next, report);
     choose_all(good & LANES_NOT(gains), &next, to, sizeof next);
     if (!mask_any(gains))
         return good;
-    const mask limited =
-        step_limit(corner, set, from, torque, h, gains, coupled, freeze_after, to, report);
-    return (good & LANES_NOT(gains)) | limited;
-}
-
-/* The same without `corner`. */
-static inline mask take_step(const struct setting *set, const struct motion *from,
-                             const lanes *torque, lanes h, mask run, bool coupled, int freeze_after,
-                             struct motion *to, struct step_report *report)
-{
-    return take_step_at(NULL, set, from, torque, h, run, coupled, freeze_after, to, report);
+    return (good & LANES_NOT(gains)) | step_limit(step, gains, to, report);
 }
 
 #endif

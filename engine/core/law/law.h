@@ -35,6 +35,13 @@
 #include "engine/core/lanes/lanes.h"
 #include "engine/core/lanes/sizes.h"
 
+/* A state that a law, or the equations of motion, are asked about. */
+struct state {
+    lanes t;               /* s */
+    const lanes *s, *w;    /* coordinates of the core, and rates */
+    const lanes *integral; /* what the law has summed */
+};
+
 struct linear_law {
     lanes feedforward[ACTUATORS];
     lanes gain[ACTUATORS][2 * POSTURES];
@@ -120,27 +127,28 @@ static inline void law_clip(const struct law *law, lanes *torque)
 
 /* The linear law acting inside the step: torque and its derivative by the velocity at the end, of
  * which the positions move by `lever` and the velocities by `rate_lever` per unit. A decoupling law
- * holds the torque `held`. `corner`: NULL, or for each torque 0 where it is taken for free, -1 or 1
- * where it is taken for being at its limit, whatever is commanded. */
-static inline void law_inside(const struct law *law, const lanes *s, const lanes *w, lanes lever,
-                              double rate_lever, const lanes *held, const int *corner,
-                              lanes *torque, lanes rate[ACTUATORS][POSTURES])
+ * holds the torque. `corner`: NULL, or for each torque 0 where it is taken for free, -1 or 1 where
+ * it is taken for being at its limit, whatever is commanded. */
+static inline void law_inside(const struct law *law, const struct state *at, lanes lever,
+                              double rate_lever, const int *corner, lanes *torque,
+                              lanes rate[ACTUATORS][POSTURES])
 {
     lanes command[ACTUATORS];
     const mask decouples = mask_less(lanes_of(0), law->decouples);
-    law_torque(law, s, w, command);
+    lanes clipped[ACTUATORS];
+    law_torque(law, at->s, at->w, command);
     for (int i = 0; i < SCENE_ACTUATORS; i++)
-        torque[i] = command[i];
-    law_clip(law, torque);
+        clipped[i] = command[i];
+    law_clip(law, clipped);
     for (int i = 0; i < SCENE_ACTUATORS; i++) {
         mask free = mask_less(lanes_abs(command[i]), law->limit[i]);
         if (corner) {
-            torque[i] = corner[i] == 0  ? command[i]
-                        : corner[i] > 0 ? law->limit[i]
-                                        : -law->limit[i];
+            clipped[i] = corner[i] == 0  ? command[i]
+                         : corner[i] > 0 ? law->limit[i]
+                                         : -law->limit[i];
             free = corner[i] == 0 ? LANES_ALL : MASK_NONE;
         }
-        torque[i] = choose(decouples, held[i], torque[i]);
+        torque[i] = choose(decouples, torque[i], clipped[i]);
         for (int j = 0; j < SCENE_POSTURE; j++) {
             const lanes slope =
                 law->near.gain[i][j] * lever + law->near.gain[i][SCENE_POSTURE + j] * rate_lever;

@@ -82,9 +82,9 @@ COLD void rest_law(const struct rest *r, const lanes *s, const lanes *w, const l
     for (int i = 0; i < ACTUATORS; i++)
         rate[i] = lanes_of(0);
     if (REST_INPUTS > 0 && mask_any(mask_less(lanes_of(0), law->decouples + law->switches))) {
+        const struct state at = {r->t, s, w, integral};
         scene_trigonometry(s, &e.trig);
-        const mask servos =
-            law_command(r->set, LANES_ALL, r->t, s, w, integral, &r->mode, &e, torque);
+        const mask servos = law_command(r->set, LANES_ALL, &at, &r->mode, &e, torque);
         for (int i = 0; i < REST_INPUTS; i++)
             rate[i] = choose(servos, e.integral_rate[i], rate[i]);
     }
@@ -100,8 +100,9 @@ static void rest_evaluate(const struct rest *r, const lanes *s, const lanes *tor
     lanes still[SCENE_COORDINATES];
     for (int i = 0; i < SCENE_COORDINATES; i++)
         still[i] = lanes_of(0);
+    const struct state at = {.t = r->t, .s = s, .w = still};
     scene_trigonometry(s, &e->trig);
-    dynamics_evaluate(r->set, r->t, s, still, torque, CONTACT_ALL, false, e);
+    dynamics_evaluate(r->set, &at, torque, CONTACT_ALL, false, e);
 }
 
 /* Accelerations along the ways. */

@@ -93,8 +93,8 @@ static void bundle_decouple(struct bundle *b, mask due, const lanes *s, const la
     }
     decoupling_contacts(&b->set, &e, lanes_of(SAMPLE_REST), &contact);
     e.trig = *trig;
-    const mask servos =
-        law_command(&b->set, due, b->now.t, s, w, b->now.integral, &contact, &e, command);
+    const struct state at = {b->now.t, s, w, b->now.integral};
+    const mask servos = law_command(&b->set, due, &at, &contact, &e, command);
     law_integrate(&b->set.law, servos, b->sample_every * b->h, e.integral_rate, b->now.integral);
     b->answer.degraded_samples += choose(servos, e.degraded, lanes_of(0));
     b->answer.ambiguous_steps += choose(servos, e.several, lanes_of(0));

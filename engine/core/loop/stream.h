@@ -6,8 +6,8 @@
  *
  *   struct advance                        what it remembers of its lanes between steps,
  *   void advance_load(a, lane, case)      at the start of a case,
- *   mask advance(a, set, torque, h, live, coupled, now, report, failed)
- *                                         moves *now towards the end of the step of length h;
+ *   mask advance(a, step, live, now, report, failed)
+ *                                         moves *now, where the step begins, towards its end;
  *                                         returns the lanes that are there, with *report about the
  *                                         whole step; the others go on at the next call, but for
  *                                         *failed,
@@ -87,8 +87,8 @@ COLD void bundle_start(struct bundle *b, mask fresh, bool coupled)
     } else {
         struct dynamics e;
         const struct drive drive = {b->torque, true, NULL};
-        between_evaluate(&b->set, b->now.t, b->now.s, b->now.w, b->now.integral, &drive,
-                         step_touching(&b->set, b->now.gap, LANES_ALL), &e);
+        const struct state at = state_of(&b->now);
+        between_evaluate(&b->set, &at, &drive, step_touching(&b->set, b->now.gap, LANES_ALL), &e);
         for (int i = 0; i < SCENE_ACTUATORS; i++)
             b->torque[i] = choose(fresh, e.torque[i], b->torque[i]);
         for (int i = 0; i < SCENE_ACTUATORS; i++)
@@ -116,13 +116,19 @@ HOT void stream_follow(struct bundle *b, bool all, mask ok, mask failed, bool or
     bundle_end(b, b->live, failed, &v, last);
 }
 
+/* The step of length h that begins at the present state. */
+HOT struct step stream_asks(const struct bundle *b, bool coupled, lanes h)
+{
+    return (struct step){&b->set, &b->now, b->torque, coupled, h, STEP_MAX_ITERATIONS, NULL};
+}
+
 #ifdef ADVANCE_ORDINARY
 /* One step of all lanes, if it is ordinary in all; false: nothing has happened. */
 PER_SET bool stream_ordinary(struct bundle *b, bool coupled, contact_set touching)
 {
     struct step_report report;
-    if (!advance_ordinary(&b->advance, &b->set, b->torque, coupled, b->h, b->live, touching,
-                          &b->now, &report))
+    const struct step step = stream_asks(b, coupled, b->h);
+    if (!advance_ordinary(&b->advance, &step, b->live, touching, &b->now, &report))
         return false;
     walk_effort(b, b->live, coupled ? report.torque : b->torque, false);
     for (int i = 0; i < SCENE_ACTUATORS && coupled; i++)
@@ -220,8 +226,8 @@ COLD void stream_any(struct bundle *b, bool coupled)
         memcpy(&before, &b->advance, sizeof before);
     }
 #endif
-    mask ok =
-        advance(&b->advance, &b->set, b->torque, h, b->live, coupled, &b->now, &report, &failed);
+    const struct step step = stream_asks(b, coupled, h);
+    mask ok = advance(&b->advance, &step, b->live, &b->now, &report, &failed);
 #if SCENE_PLATES
     if (tree_plates > 0) {
         const mask back = plates_back(b, &from, &before, h, ok, failed | LANES_NOT(near));

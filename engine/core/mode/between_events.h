@@ -54,8 +54,7 @@ struct drive {
 
 /* Everything that does not depend on the mode but for what a law makes of it; contact terms of the
  * contacts in `touching`. */
-static inline void between_evaluate(const struct setting *set, lanes t, const lanes *s,
-                                    const lanes *w, const lanes *integral,
+static inline void between_evaluate(const struct setting *set, const struct state *at,
                                     const struct drive *drive, contact_set touching,
                                     struct dynamics *e)
 {
@@ -65,19 +64,19 @@ static inline void between_evaluate(const struct setting *set, lanes t, const la
     for (int i = 0; i < SCENE_ACTUATORS; i++)
         torque[i] = drive->torque[i];
     if (drive->coupled) {
-        law_torque(&set->law, s, w, torque);
+        law_torque(&set->law, at->s, at->w, torque);
         law_clip(&set->law, torque);
         for (int i = 0; i < SCENE_ACTUATORS; i++)
             torque[i] = choose(decouples, lanes_of(0), torque[i]);
     }
-    scene_trigonometry(s, &e->trig);
-    dynamics_evaluate(set, t, s, w, torque, touching, servos, e);
+    scene_trigonometry(at->s, &e->trig);
+    dynamics_evaluate(set, at, torque, touching, servos, e);
     if (!servos)
         return;
     struct contact_state now;
     if (!drive->mode) /* of a slip that turns, law and mode must think the same */
         decoupling_contacts(set, e, lanes_of(BETWEEN_REST), &now);
-    decouple(set, decouples, t, s, w, integral, touching, drive->mode ? drive->mode : &now, e);
+    decouple(set, decouples, at, touching, drive->mode ? drive->mode : &now, e);
     decoupling_apply(set, decouples, touching, e);
 }
 
@@ -126,18 +125,15 @@ COLD void between_forces(const struct contact_state *m, const lanes (*D)[CONTACT
     }
     contact_mode_rows(m->closed, sticks, rows);
     const contact_set set = between_set(m->closed);
-    const mask regular =
-        contact_rest(set, CONTACT_CAREFUL, D, free, (const mask(*)[2])rows, edge, r);
+    const mask regular = contact_rest(set, CONTACT_CAREFUL, D, free, rows, edge, r);
     if (!mask_any(LANES_NOT(regular)))
         return;
-    direct_velocities(D, free, set, (const lanes(*)[2])r, left);
-    const mask again = LANES_NOT(regular) &
-                       between_moves(set, (const mask(*)[2])rows, free, (const lanes(*)[2])left);
+    direct_velocities(D, free, set, r, left);
+    const mask again = LANES_NOT(regular) & between_moves(set, rows, free, left);
     if (!mask_any(again))
         return;
-    contact_rest(set, CONTACT_CAREFUL, D, (const lanes(*)[2])left, (const mask(*)[2])rows, edge,
-                 more);
-    direct_add(set, again, lanes_of(1), (const lanes(*)[2])more, r);
+    contact_rest(set, CONTACT_CAREFUL, D, left, rows, edge, more);
+    direct_add(set, again, lanes_of(1), more, r);
 }
 
 /* Adds what forces or impulses r of contacts in `part` do, by their responses, to x. */
@@ -157,10 +153,8 @@ static inline void between_push(const mask *part, const lanes (*response)[2][SCE
 static inline void between_solve(const struct setting *set, const struct contact_state *m,
                                  struct dynamics *e)
 {
-    between_forces(m, (const lanes(*)[CONTACTS][2][2])e->D, (const lanes(*)[2])e->free,
-                   set->friction, e->force);
-    between_push(m->closed, (const lanes(*)[2][SCENE_COORDINATES])e->response,
-                 (const lanes(*)[2])e->force, e->acceleration);
+    between_forces(m, e->D, e->free, set->friction, e->force);
+    between_push(m->closed, e->response, e->force, e->acceleration);
 }
 
 /* Why a state has no smooth motion ahead of it. */
@@ -219,14 +213,12 @@ static inline mask between_jammed(const struct setting *set, const struct dynami
 {
     lanes r[CONTACTS][2], u[CONTACTS][2];
     mask jammed = MASK_NONE;
-    between_forces(m, (const lanes(*)[CONTACTS][2][2])e->D, (const lanes(*)[2])e->free,
-                   set->friction, r);
-    direct_velocities((const lanes(*)[CONTACTS][2][2])e->D, (const lanes(*)[2])e->free, CONTACT_ALL,
-                      (const lanes(*)[2])r, u);
+    between_forces(m, e->D, e->free, set->friction, r);
+    direct_velocities(e->D, e->free, CONTACT_ALL, r, u);
     for (int c = 0; c < OWN_CONTACTS; c++)
         if (contact_unknowns(c) == 2)
             jammed |= starting[c] & (mask_less(u[c][1] * m->slide[c], lanes_of(0)) |
-                                     mask_less(contact_load(c, (const lanes(*)[2])r), lanes_of(0)));
+                                     mask_less(contact_load(c, r), lanes_of(0)));
     return jammed;
 }
 
@@ -270,15 +262,17 @@ static inline void between_mode(const struct setting *set, const struct dynamics
     }
     for (int c = 0; c < OWN_CONTACTS; c++)
         last[c][0] = stood[c], last[c][1] = none;
-    const struct contact_rule rule = {.friction = set->friction,
-                                      .prefer = set->prefer,
-                                      .sliding = sliding,
-                                      .last = (const lanes(*)[2])last,
-                                      .known = LANES_NOT(moves)};
-    solve_contacts(&rule, (const lanes(*)[CONTACTS][2][2])e->D, (const lanes(*)[2])e->free,
-                   touching, LANES_ALL, part, r, &verdict);
-    direct_velocities((const lanes(*)[CONTACTS][2][2])e->D, (const lanes(*)[2])e->free, CONTACT_ALL,
-                      (const lanes(*)[2])r, u);
+    const struct contact_problem problem = {.D = e->D,
+                                            .uf = e->free,
+                                            .touching = touching,
+                                            .active = part,
+                                            .friction = set->friction,
+                                            .prefer = set->prefer,
+                                            .sliding = sliding,
+                                            .last = last,
+                                            .known = LANES_NOT(moves)};
+    solve_contacts(&problem, LANES_ALL, r, &verdict);
+    direct_velocities(e->D, e->free, CONTACT_ALL, r, u);
     trouble->none = any & verdict.unsolved;
     trouble->several = any & verdict.ambiguous & slides;
     trouble->chosen = any & verdict.ambiguous & LANES_NOT(slides);
@@ -291,7 +285,7 @@ static inline void between_mode(const struct setting *set, const struct dynamics
             continue;
         lanes scale = lanes_max(lanes_abs(e->free[c][0]), one);
         scale = lanes_max(lanes_abs(e->free[c][1]), scale);
-        const lanes load = contact_load(c, (const lanes(*)[2])r);
+        const lanes load = contact_load(c, r);
         /* solve_contacts clips to the cone: on its edge the slip begins, against the force, unless
          * another contact prevents it. */
         const mask edge = mask_less_equal((1 - 1e-10) * (set->friction * load), lanes_abs(r[c][1]));
@@ -324,7 +318,7 @@ static inline mask between_violated(const struct setting *set, const struct cont
             continue;
         const mask part = contact_part(c, m->closed);
         const mask sticks = mask_less_equal(lanes_abs(m->slide[c]), none);
-        const lanes load = contact_load(c, (const lanes(*)[2])e->force);
+        const lanes load = contact_load(c, e->force);
         const lanes bound = (1 + 1e-12) * (set->friction * load);
         out |= part & sticks & mask_less(bound, lanes_abs(e->force[c][1]));
         out |= part & mask_less(none, set->friction) &
@@ -396,9 +390,8 @@ static inline void between_project(const struct setting *set, const struct conta
         for (int a = 0; a < 2; a++)
             velocity[c][a] = e->u[c][a];
     }
-    between_forces(m, (const lanes(*)[CONTACTS][2][2])e->D, (const lanes(*)[2])velocity,
-                   lanes_of(0), r);
-    between_push(held, (const lanes(*)[2][SCENE_COORDINATES])e->response, (const lanes(*)[2])r, w);
+    between_forces(m, e->D, velocity, lanes_of(0), r);
+    between_push(held, e->response, r, w);
     for (int c = 0; c < OWN_CONTACTS; c++)
         scene_contact_velocity(&set->body, &e->trig, c, w, e->u[c]);
 }
@@ -413,11 +406,13 @@ static inline mask between_impact(const struct setting *set, mask where, struct 
     struct dynamics e;
     mask part[CONTACTS];
     struct contact_verdict verdict;
-    lanes torque[ACTUATORS], rebound[CONTACTS][2], r[CONTACTS][2], energy = none;
+    const struct state at = state_of(now);
+    struct impact_answer found;
+    lanes torque[ACTUATORS], energy = none;
     for (int i = 0; i < ACTUATORS; i++)
         torque[i] = none;
     scene_trigonometry(now->s, &e.trig);
-    dynamics_evaluate(set, now->t, now->s, now->w, torque, CONTACT_ALL, false, &e);
+    dynamics_evaluate(set, &at, torque, CONTACT_ALL, false, &e);
     for (int c = 0; c < OWN_CONTACTS; c++)
         part[c] = where & mask_less(none, set->may_touch[c]) &
                   mask_less_equal(e.gap[c], lanes_of(STEP_CLOSED));
@@ -427,35 +422,34 @@ static inline mask between_impact(const struct setting *set, mask where, struct 
         scene_contact_velocity(&set->body, &e.trig, c, now->w, e.u[c]);
         impact |= part[c] & mask_less(e.u[c][0], lanes_of(-BETWEEN_REST));
     }
-    const struct impact_rule rule = {.friction = set->friction,
+    const struct impact_rule rule = {.D = e.D,
+                                     .u = e.u,
+                                     .part = part,
+                                     .friction = set->friction,
                                      .prefer = set->prefer,
                                      .restitution = set->restitution,
                                      .moreau = impact & mask_less(none, set->moreau),
                                      .limited = impact & mask_less(none, set->limited)};
-    const mask limited = impact_solve(&rule, where, (const lanes(*)[CONTACTS][2][2])e.D,
-                                      (const lanes(*)[2])e.u, part, rebound, r, &verdict);
-    between_push(part, (const lanes(*)[2][SCENE_COORDINATES])e.response, (const lanes(*)[2])r,
-                 now->w);
+    const mask limited = impact_solve(&rule, where, &found, &verdict);
+    between_push(part, e.response, found.r, now->w);
     for (int c = 0; c < OWN_CONTACTS; c++) {
         lanes after[2];
         scene_contact_velocity(&set->body, &e.trig, c, now->w, after);
         now->gap[c] = choose(where, e.gap[c], now->gap[c]);
         now->approach[c] = choose(where, after[0], now->approach[c]);
         for (int a = 0; a < contact_unknowns(c); a++) {
-            energy += choose(contact_part(c, part), 0.5 * (r[c][a] * (e.u[c][a] + after[a])), none);
-            report->impulse[c][a] += choose(contact_part(c, part), r[c][a], none);
+            energy +=
+                choose(contact_part(c, part), 0.5 * (found.r[c][a] * (e.u[c][a] + after[a])), none);
+            report->impulse[c][a] += choose(contact_part(c, part), found.r[c][a], none);
         }
-        after[0] += rebound[c][0];
-        after[1] = choose(rule.moreau, after[1] + rebound[c][1], after[1]);
+        after[0] += found.shift[c][0];
+        after[1] = choose(rule.moreau, after[1] + found.shift[c][1], after[1]);
         struct step_report laws = *report;
-        report_residuals(&laws, c, part, set->friction, (const lanes(*)[2])r, after);
-        report_friction(&laws.impact_friction, c, part, (const lanes(*)[2])r);
+        report_residuals(&laws, c, part, set->friction, found.r, after);
+        report_friction(&laws.impact_friction, c, part, found.r);
         choose_all(impact, &laws, report, sizeof laws);
     }
-    for (int a = 0; a < SCENE_ANGLES; a++) {
-        now->trig.sine[a] = choose(where, e.trig.sine[a], now->trig.sine[a]);
-        now->trig.cosine[a] = choose(where, e.trig.cosine[a], now->trig.cosine[a]);
-    }
+    choose_all(where, &e.trig, &now->trig, sizeof e.trig);
     report->impact_energy =
         choose(where, lanes_max(energy, report->impact_energy), report->impact_energy);
     report->limited_impacts += choose(limited, lanes_of(1), none);

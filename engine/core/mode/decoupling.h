@@ -163,14 +163,24 @@ static inline void decoupling_reach(const struct setting *set, const struct dyna
         }
 }
 
+/* What the torques are to answer: contacts in `touching`, what each does, the rows of what is
+ * controlled, and the equations. */
+struct decoupling {
+    const struct setting *set;
+    contact_set touching;
+    const struct contact_state *contact;
+    const lanes (*row)[SCENE_COORDINATES];
+    struct dynamics *e;
+};
+
 /* Adds to torque[] what the reactions change, e->several where more than one set of them fits;
  * returns the lanes where none does. */
-static inline mask decoupling_react(const struct setting *set, mask where, contact_set touching,
-                                    const struct contact_state *contact,
-                                    const lanes (*row)[SCENE_COORDINATES],
-                                    lanes inverse[ACTUATORS][ACTUATORS], struct dynamics *e,
-                                    lanes *torque)
+static inline mask decoupling_react(const struct decoupling *of, mask where,
+                                    lanes inverse[ACTUATORS][ACTUATORS], lanes *torque)
 {
+    const struct setting *const set = of->set;
+    const contact_set touching = of->touching;
+    struct dynamics *const e = of->e;
     struct {
         lanes D[CONTACTS][CONTACTS][2][2], free[CONTACTS][2], r[CONTACTS][2];
     } problem;
@@ -179,7 +189,7 @@ static inline mask decoupling_react(const struct setting *set, mask where, conta
     mask part[CONTACTS], none = MASK_NONE, several = MASK_NONE;
     decoupling_reach(set, e, touching, reach);
     for (int c = 0; c < OWN_CONTACTS; c++) {
-        part[c] = where & contact->closed[c];
+        part[c] = where & of->contact->closed[c];
         for (int a = 0; a < 2; a++) {
             lanes rate[ACTUATORS];
             problem.free[c][a] = lanes_of(0);
@@ -187,7 +197,7 @@ static inline mask decoupling_react(const struct setting *set, mask where, conta
                 answer[c][a][i] = lanes_of(0);
             if (!(touching >> c & 1))
                 continue;
-            decoupling_rates(set, &e->trig, row, e->response[c][a], rate);
+            decoupling_rates(set, &e->trig, of->row, e->response[c][a], rate);
             problem.free[c][a] = e->free[c][a];
             for (int i = 0; i < OWN_ACTUATORS; i++) {
                 problem.free[c][a] += reach[c][i][a] * torque[i];
@@ -204,14 +214,16 @@ static inline mask decoupling_react(const struct setting *set, mask where, conta
                     for (int i = 0; i < OWN_ACTUATORS; i++)
                         problem.D[c][k][a][b] += reach[c][i][a] * answer[k][b][i];
                 }
-    const struct contact_rule rule = {.friction = set->friction,
-                                      .prefer = set->prefer,
-                                      .sliding = contact->slide,
-                                      .indefinite = true};
+    const struct contact_problem reactions = {.D = problem.D,
+                                              .uf = problem.free,
+                                              .touching = touching,
+                                              .active = part,
+                                              .friction = set->friction,
+                                              .prefer = set->prefer,
+                                              .sliding = of->contact->slide,
+                                              .indefinite = true};
     for (int round = 0; round < 2; round++) {
-        solve_contacts(&rule, (const lanes(*)[CONTACTS][2][2])problem.D,
-                       (const lanes(*)[2])problem.free, touching, LANES_ALL, part, problem.r,
-                       &verdict);
+        solve_contacts(&reactions, LANES_ALL, problem.r, &verdict);
         several |= where & verdict.ambiguous;
         if (round > 0 || !mask_any(verdict.unsolved))
             break;
@@ -236,11 +248,12 @@ static inline mask decoupling_react(const struct setting *set, mask where, conta
 
 /* Torques with which the accelerations are as `wanted` while all closed contacts stick; returns the
  * lanes of `where` where none slides, that is regular, and reactions are in their cones. */
-static inline mask decoupling_hold(const struct setting *set, mask where, contact_set touching,
-                                   const struct contact_state *contact,
-                                   const lanes (*row)[SCENE_COORDINATES], const lanes *wanted,
-                                   const struct dynamics *e, lanes *torque)
+static inline mask decoupling_hold(const struct decoupling *of, mask where, const lanes *wanted,
+                                   lanes *torque)
 {
+    const struct contact_state *const contact = of->contact;
+    const struct dynamics *const e = of->e;
+    const contact_set touching = of->touching;
     const int m = OWN_ACTUATORS;
     lanes reach[CONTACTS][ACTUATORS][2], r[CONTACTS][2], by[ACTUATORS][CONTACTS][2];
     lanes G[ACTUATORS][ACTUATORS], inverse[ACTUATORS][ACTUATORS], rate[ACTUATORS], x[ACTUATORS];
@@ -251,21 +264,20 @@ static inline mask decoupling_hold(const struct setting *set, mask where, contac
             LANES_NOT(contact->closed[c] & mask_less(lanes_of(0), lanes_abs(contact->slide[c])));
     }
     contact_mode_rows(contact->closed, sticks, rows);
-    decoupling_reach(set, e, touching, reach);
+    decoupling_reach(of->set, e, touching, reach);
     for (int i = -1; i < m; i++) { /* without torques, then by each of them */
         lanes pull[CONTACTS][2], push[SCENE_COORDINATES], (*const force)[2] = i < 0 ? r : by[i];
         for (int c = 0; c < OWN_CONTACTS; c++)
             for (int a = 0; a < 2; a++)
                 pull[c][a] = i < 0 ? e->free[c][a] : reach[c][i][a];
-        contact_rest(touching, CONTACT_CAREFUL, (const lanes(*)[CONTACTS][2][2])e->D,
-                     (const lanes(*)[2])pull, (const mask(*)[2])rows, NULL, force);
+        contact_rest(touching, CONTACT_CAREFUL, e->D, pull, rows, NULL, force);
         for (int k = 0; k < SCENE_COORDINATES; k++) {
             push[k] = i < 0 ? lanes_of(0) : e->push[i][k];
             EACH_IN (c, touching)
                 for (int a = 0; a < contact_unknowns(c); a++)
                     push[k] += choose(rows[c][a], e->response[c][a][k] * force[c][a], lanes_of(0));
         }
-        decoupling_rates(set, &e->trig, row, push, rate);
+        decoupling_rates(of->set, &e->trig, of->row, push, rate);
         for (int j = 0; j < m; j++)
             if (i < 0)
                 x[j] = wanted[j] - rate[j];
@@ -282,7 +294,7 @@ static inline mask decoupling_hold(const struct setting *set, mask where, contac
             for (int a = 0; a < contact_unknowns(c); a++)
                 r[c][a] = choose(rows[c][a], r[c][a] + with[i] * by[i][c][a], lanes_of(0));
     }
-    good &= direct_obeys(set->friction, touching, (const lanes(*)[2])r);
+    good &= direct_obeys(of->set->friction, touching, r);
     for (int i = 0; i < m; i++)
         torque[i] = choose(good, with[i], torque[i]);
     return good;
@@ -290,27 +302,27 @@ static inline mask decoupling_hold(const struct setting *set, mask where, contac
 
 /* The law in the lanes of `where`: e->command, e->integral_rate and e->degraded. *e was evaluated
  * with pushes and without torques in these lanes; `contact`: what each contact does. */
-static inline void decouple(const struct setting *set, mask where, lanes t, const lanes *s,
-                            const lanes *w, const lanes *integral, contact_set touching,
-                            const struct contact_state *contact, struct dynamics *e)
+static inline void decouple(const struct setting *set, mask where, const struct state *at,
+                            contact_set touching, const struct contact_state *contact,
+                            struct dynamics *e)
 {
     lanes q[SCENE_COORDINATES], v[SCENE_COORDINATES], curvature[SCENE_COORDINATES];
     lanes wanted[ACTUATORS], rate[ACTUATORS], torque[ACTUATORS], weighted[ACTUATORS];
     lanes G[ACTUATORS][ACTUATORS], inverse[ACTUATORS][ACTUATORS];
-    scene_coordinates(&set->body, &e->trig, s, w, q, v);
+    scene_coordinates(&set->body, &e->trig, at->s, at->w, q, v);
     struct law_wish wish;
-    const lanes(*const row)[SCENE_COORDINATES] = (const lanes(*)[SCENE_COORDINATES])wish.row;
+    const lanes(*const row)[SCENE_COORDINATES] = wish.row;
     const mask constant = mask_less(lanes_of(0), set->law.constant);
-    law_servo(&set->law, t, q, v, integral, &wish);
+    law_servo(&set->law, at->t, q, v, at->integral, &wish);
     law_constant(&set->law, wish.wanted, weighted);
     if (!mask_any(where & LANES_NOT(constant))) { /* no model is asked */
         for (int i = 0; i < SCENE_ACTUATORS; i++)
             e->command[i] = weighted[i];
-        law_integral_rate(&set->law, wish.error, integral, weighted, e->integral_rate);
+        law_integral_rate(&set->law, wish.error, at->integral, weighted, e->integral_rate);
         e->degraded = e->several = lanes_of(0);
         return;
     }
-    scene_coordinate_curvature(&set->body, &e->trig, w, curvature);
+    scene_coordinate_curvature(&set->body, &e->trig, at->w, curvature);
     decoupling_rates(set, &e->trig, row, e->acceleration, rate);
     for (int j = 0; j < OWN_ACTUATORS; j++) {
         wanted[j] = wish.wanted[j] - rate[j] + wish.bend[j];
@@ -333,15 +345,15 @@ static inline void decouple(const struct setting *set, mask where, lanes t, cons
     for (int c = 0; c < OWN_CONTACTS; c++)
         stands |= where & contact->closed[c] & LANES_NOT(constant);
     mask held = stands & degraded;
+    const struct decoupling of = {set, touching, contact, row, e};
     if (touching && mask_any(held))
-        held = decoupling_hold(set, held, touching, contact, row, wanted, e, torque);
+        held = decoupling_hold(&of, held, wanted, torque);
     if (touching && mask_any(stands & LANES_NOT(held)))
-        degraded |= decoupling_react(set, where & LANES_NOT(constant | held), touching, contact,
-                                     row, inverse, e, torque);
+        degraded |= decoupling_react(&of, where & LANES_NOT(constant | held), inverse, torque);
     degraded &= LANES_NOT(held);
     for (int i = 0; i < SCENE_ACTUATORS; i++)
         e->command[i] = torque[i] = choose(constant, weighted[i], torque[i]);
-    law_integral_rate(&set->law, wish.error, integral, torque, e->integral_rate);
+    law_integral_rate(&set->law, wish.error, at->integral, torque, e->integral_rate);
     e->degraded = choose(where & degraded & LANES_NOT(constant), lanes_of(1), lanes_of(0));
 }
 
@@ -367,12 +379,11 @@ static inline void decoupling_apply(const struct setting *set, mask where, conta
 
 #else /* no servos */
 
-static inline void decouple(const struct setting *set, mask where, lanes t, const lanes *s,
-                            const lanes *w, const lanes *integral, contact_set touching,
-                            const struct contact_state *contact, struct dynamics *e)
+static inline void decouple(const struct setting *set, mask where, const struct state *at,
+                            contact_set touching, const struct contact_state *contact,
+                            struct dynamics *e)
 {
-    (void)set, (void)where, (void)t, (void)s, (void)w, (void)integral, (void)touching;
-    (void)contact, (void)e;
+    (void)set, (void)where, (void)at, (void)touching, (void)contact, (void)e;
 }
 static inline void decoupling_apply(const struct setting *set, mask where, contact_set touching,
                                     struct dynamics *e)
@@ -383,10 +394,9 @@ static inline void decoupling_apply(const struct setting *set, mask where, conta
 #endif
 
 /* What a law that is not linear commands in the lanes of `due`, in place of the linear law's
- * command; e->trig: at s. contact: what the contacts do. Returns the lanes where servos act, and *e
- * says how. */
-static inline mask law_command(const struct setting *set, mask due, lanes t, const lanes *s,
-                               const lanes *w, const lanes *integral,
+ * command; e->trig: at its place. contact: what the contacts do. Returns the lanes where servos
+ * act, and *e says how. */
+static inline mask law_command(const struct setting *set, mask due, const struct state *at,
                                const struct contact_state *contact, struct dynamics *e,
                                lanes *command)
 {
@@ -394,8 +404,8 @@ static inline mask law_command(const struct setting *set, mask due, lanes t, con
     const mask switches = mask_less(lanes_of(0), law->switches);
     const mask decouples = mask_less(lanes_of(0), law->decouples);
     lanes posture[POSTURES], rate[POSTURES], far[ACTUATORS], none[ACTUATORS];
-    scene_posture(s, posture);
-    scene_posture(w, rate);
+    scene_posture(at->s, posture);
+    scene_posture(at->w, rate);
     const mask inside = switches & law_near(law, posture, rate);
     linear_torque(&law->far, posture, rate, far);
     const mask servos = due & decouples & LANES_NOT(inside);
@@ -409,8 +419,8 @@ static inline mask law_command(const struct setting *set, mask due, lanes t, con
         return servos;
     const contact_set all = CONTACT_ALL;
     if (mask_any(servos & mask_less_equal(law->constant, lanes_of(0))))
-        dynamics_evaluate(set, t, s, w, none, all, true, e);
-    decouple(set, servos, t, s, w, integral, all, contact, e);
+        dynamics_evaluate(set, at, none, all, true, e);
+    decouple(set, servos, at, all, contact, e);
     for (int i = 0; i < OWN_ACTUATORS; i++)
         command[i] = choose(servos, e->command[i], command[i]);
     return servos;

@@ -80,42 +80,42 @@ HOT void dynamics_place(const struct setting *set, contact_set touching, bool pu
 
 /* What follows from velocities and torques there; contact terms but u of the contacts in `touching`
  * only. */
-HOT void dynamics_motion(const struct setting *set, lanes t, const lanes *s, const lanes *w,
-                         const lanes *torque, contact_set touching, const scene_matrix *A,
-                         struct dynamics *e)
+HOT void dynamics_motion(const struct setting *set, const struct state *at, const lanes *torque,
+                         contact_set touching, const scene_matrix *A, struct dynamics *e)
 {
     lanes load[SCENE_COORDINATES];
     EACH (i, 0, SCENE_ACTUATORS)
         e->torque[i] = torque[i];
-    scene_forces(&set->body, t, s, &e->trig, w, e->torque, load);
+    scene_forces(&set->body, at->t, at->s, &e->trig, at->w, e->torque, load);
     scene_solve(A, false, load, e->acceleration);
     EACH_CONTACT (c, 0) {
         lanes curvature[2], forced[2];
-        scene_contact_velocity(&set->body, &e->trig, c, w, e->u[c]);
+        scene_contact_velocity(&set->body, &e->trig, c, at->w, e->u[c]);
         if (!(touching >> c & 1))
             continue;
-        scene_contact_curvature(&set->body, &e->trig, c, w, curvature);
+        scene_contact_curvature(&set->body, &e->trig, c, at->w, curvature);
         scene_contact_velocity(&set->body, &e->trig, c, e->acceleration, forced);
         EACH (a, 0, 2)
             e->free[c][a] = forced[a] + curvature[a];
     }
 }
 
-/* Evaluates what e->trig, s and w lead to. Contact terms of the contacts in `touching`, zero of the
- * others, so that sums may run over all; `pushes`: responses to the actuators too. */
-static inline void dynamics_evaluate(const struct setting *set, lanes t, const lanes *s,
-                                     const lanes *w, const lanes *torque, contact_set touching,
-                                     bool pushes, struct dynamics *e)
+/* Evaluates what a state leads to, with e->trig at its place. Contact terms of the contacts in
+ * `touching`, zero of the others, so that sums may run over all; `pushes`: responses to the
+ * actuators too. */
+static inline void dynamics_evaluate(const struct setting *set, const struct state *at,
+                                     const lanes *torque, contact_set touching, bool pushes,
+                                     struct dynamics *e)
 {
     scene_matrix A;
     dynamics_place(set, touching, pushes, &A, e);
-    dynamics_motion(set, t, s, w, torque, touching, &A, e);
+    dynamics_motion(set, at, torque, touching, &A, e);
     dynamics_clear(touching, e);
     for (int i = 0; i < SCENE_ACTUATORS; i++)
         e->integral_rate[i] = lanes_of(0);
     e->degraded = e->several = lanes_of(0);
     for (int c = 0; c < OWN_CONTACTS; c++) {
-        e->gap[c] = scene_gap(&set->body, s, &e->trig, c);
+        e->gap[c] = scene_gap(&set->body, at->s, &e->trig, c);
         e->force[c][0] = e->force[c][1] = lanes_of(0);
     }
 }

@@ -68,7 +68,7 @@ static inline void explicit_report(const struct setting *set, const struct conta
     for (int c = 0; c < OWN_CONTACTS; c++)
         part[c] = m->closed[c] & mask_less(1e-9 * load, e->force[c][0]);
     for (int c = 0; c < OWN_CONTACTS; c++)
-        report_residuals(report, c, part, set->friction, (const lanes(*)[2])e->force, e->u[c]);
+        report_residuals(report, c, part, set->friction, e->force, e->u[c]);
 }
 
 #ifdef METHOD_EMBEDDED
@@ -119,7 +119,8 @@ COLD void explicit_look(const struct explicit_way *e, mask where, lanes x,
         cubic_hermite(e->sum[0][i], e->rate[0][i], e->sum[1][i], e->rate[1][i], e->way.h, b);
         z[i] = cubic_at(b, x);
     }
-    between_evaluate(set, e->way.t + x * e->way.h, s, w, z, e->drive, e->touches, &at);
+    const struct state state = {e->way.t + x * e->way.h, s, w, z};
+    between_evaluate(set, &state, e->drive, e->touches, &at);
     if (e->touches)
         between_solve(set, e->drive->mode, &at);
     inside_tell(e->drive->mode, &at, where, report);
@@ -142,16 +143,18 @@ static inline lanes explicit_range(lanes (*kw)[SCENE_COORDINATES], const lanes *
 }
 #endif
 
-/* One step of length h from `from` in the mode `m` with `begin` evaluated and solved there. */
-static inline void explicit_take(const struct setting *set, const struct motion *from,
-                                 const lanes *torque, lanes h, mask run, bool coupled,
-                                 const struct contact_state *m, const struct dynamics *begin,
-                                 struct explicit_step *out)
+/* One step in the mode `m` with `begin` evaluated and solved at its beginning. */
+static inline void explicit_take(const struct step *step, mask run, const struct contact_state *m,
+                                 const struct dynamics *begin, struct explicit_step *out)
 {
+    const struct setting *const set = step->set;
+    const struct motion *const from = step->from;
+    const bool coupled = step->coupled;
+    const lanes h = step->h;
     lanes ks[METHOD_STAGES][SCENE_COORDINATES], kw[METHOD_STAGES][SCENE_COORDINATES];
     lanes kz[METHOD_STAGES][ACTUATORS];
     const bool sums = law_sums(&set->law, coupled);
-    const struct drive drive = {torque, coupled, m};
+    const struct drive drive = {step->torque, coupled, m};
     contact_set touches = 0;
     struct dynamics e = *begin;
     for (int c = 0; c < OWN_CONTACTS; c++)
@@ -180,6 +183,7 @@ static inline void explicit_take(const struct setting *set, const struct motion 
             s[i] = from->s[i], w[i] = from->w[i];
         for (int i = 0; i < SCENE_ACTUATORS; i++)
             z[i] = from->integral[i];
+        const struct state at = {from->t + h * tableau_c[k], s, w, z};
         if (k > 0) {
 #pragma GCC unroll 16
             for (int j = 0; j < k; j++)
@@ -187,7 +191,7 @@ static inline void explicit_take(const struct setting *set, const struct motion 
                     explicit_add(s, w, h * tableau_a[k][j], ks[j], kw[j]);
                     explicit_sum(sums, z, h * tableau_a[k][j], kz[j]);
                 }
-            between_evaluate(set, from->t + h * tableau_c[k], s, w, z, &drive, touches, &e);
+            between_evaluate(set, &at, &drive, touches, &e);
             if (touches)
                 between_solve(set, m, &e);
             out->violated |= between_violated(set, m, &e);
@@ -207,8 +211,7 @@ static inline void explicit_take(const struct setting *set, const struct motion 
             const lanes part = h * tableau_b[k];
             for (int i = 0; i < SCENE_COORDINATES; i++)
                 moved[i] = part * w[i];
-            out->report.work += motion_work(&set->body, part, from->t + h * tableau_c[k], &e.trig,
-                                            e.torque, w, moved);
+            out->report.work += motion_work(&set->body, part, at.t, &e.trig, e.torque, w, moved);
             explicit_add(out->end.s, out->end.w, part, ks[k], kw[k]);
             explicit_sum(sums, out->end.integral, part, kz[k]);
             for (int c = 0; c < OWN_CONTACTS; c++) {
@@ -222,7 +225,9 @@ static inline void explicit_take(const struct setting *set, const struct motion 
     }
     struct motion *const end = &out->end;
     out->bad = run & LANES_NOT(scene_angles_in_range(end->s));
-    between_evaluate(set, from->t + h, end->s, end->w, end->integral, &drive, touches, &e);
+    end->t = from->t + h;
+    const struct state last = state_of(end);
+    between_evaluate(set, &last, &drive, touches, &e);
     out->report.degraded_samples = e.degraded;
     out->report.ambiguous_steps = e.several;
     if (touches)
@@ -254,14 +259,6 @@ static inline void explicit_take(const struct setting *set, const struct motion 
         out->error = choose(turned, lanes_max(most, out->error), out->error);
     }
     inside_note(&e, CUBIC - 1, &values);
-    out->dipped = missed_between(set, m, begin, &e, from->w, end->w, h, &values);
-#endif
-    report_forces(&out->report, m->closed, (const lanes(*)[2])begin->force);
-    report_forces(&out->report, m->closed, (const lanes(*)[2])e.force);
-    report_torques(&out->report, begin->torque);
-    report_torques(&out->report, e.torque);
-    out->report.evaluations = lanes_of(METHOD_STAGES);
-#ifdef METHOD_EMBEDDED
     const struct explicit_way way = {
         {set, {from->s, end->s}, {from->w, end->w}, {&from->trig, &e.trig}, from->t, h},
         {kw[0], e.acceleration},
@@ -269,6 +266,14 @@ static inline void explicit_take(const struct setting *set, const struct motion 
         {kz[0], e.integral_rate},
         &drive,
         touches};
+    out->dipped = missed_between(&way.way, m, begin, &e, &values);
+#endif
+    report_forces(&out->report, m->closed, begin->force);
+    report_forces(&out->report, m->closed, e.force);
+    report_torques(&out->report, begin->torque);
+    report_torques(&out->report, e.torque);
+    out->report.evaluations = lanes_of(METHOD_STAGES);
+#ifdef METHOD_EMBEDDED
     const mask whole = run & LANES_NOT(out->violated | out->bad | out->dipped);
     struct inside_peaks peaks;
     inside_find(m, touches, coupled, &values, &out->report, &peaks);
@@ -289,7 +294,6 @@ static inline void explicit_take(const struct setting *set, const struct motion 
         end->approach[c] = e.u[c][0];
     }
     end->trig = e.trig;
-    end->t = from->t + h;
     explicit_report(set, m, &e, &out->report);
     for (int i = 0; i < SCENE_ACTUATORS; i++)
         out->report.torque[i] = e.torque[i];

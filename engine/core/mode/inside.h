@@ -247,7 +247,7 @@ static inline void inside_note(const struct dynamics *e, int k, struct inside_va
 {
     for (int c = 0; c < OWN_CONTACTS; c++) {
         values->normal[k][c] = e->force[c][0];
-        values->load[k][c] = contact_load(c, (const lanes(*)[2])e->force);
+        values->load[k][c] = contact_load(c, e->force);
         values->tangential[k][c] = e->force[c][1];
     }
     for (int i = 0; i < SCENE_ACTUATORS; i++)
@@ -313,7 +313,7 @@ static inline void inside_tell(const struct contact_state *m, const struct dynam
                                struct step_report *report)
 {
     struct step_report seen = *report;
-    report_forces(&seen, m->closed, (const lanes(*)[2])e->force);
+    report_forces(&seen, m->closed, e->force);
     report_torques(&seen, e->torque);
     choose_all(where, &seen, report, sizeof seen);
 }

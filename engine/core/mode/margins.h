@@ -70,19 +70,17 @@ struct event_point {
  * with them. */
 static void event_hold(const struct setting *set, const struct contact_state *m, struct dynamics *e)
 {
-    const struct contact_rule rule = {.friction = set->friction};
+    const struct contact_problem problem = {.D = e->D, .uf = e->free, .friction = set->friction};
     struct lane_problem p;
     contact_set closed = 0;
     double r[LANE_ROWS] = {0};
     for (int c = 0; c < OWN_CONTACTS; c++)
         closed |= m->closed[c] ? 1u << c : 0;
-    lane_gather(&rule, (const double(*)[CONTACTS][2][2])e->D, (const double(*)[2])e->free, closed,
-                0, &p);
+    lane_gather(&problem, closed, 0, &p);
     lane_hold(&p, r);
     for (int i = 0; i < p.rows; i++)
         e->force[p.contact[i]][p.axis[i]] = r[i];
-    between_push(m->closed, (const double(*)[2][SCENE_COORDINATES])e->response,
-                 (const double(*)[2])e->force, e->acceleration);
+    between_push(m->closed, e->response, e->force, e->acceleration);
 }
 
 static void event_evaluate(struct event_problem *problem, double tau, const double *y,
@@ -100,8 +98,8 @@ static void event_evaluate(struct event_problem *problem, double tau, const doub
                 torque[i] = problem->mode.clipped[i] * problem->set->law.limit[i];
     }
     const struct drive drive = {torque, servos, &problem->mode.contact};
-    between_evaluate(problem->set, problem->begin + tau, s, w, y + EVENT_INTEGRAL, &drive,
-                     problem->mode.touches, e);
+    const struct state at = {problem->begin + tau, s, w, y + EVENT_INTEGRAL};
+    between_evaluate(problem->set, &at, &drive, problem->mode.touches, e);
     const struct contact_state *const m = &problem->mode.contact;
     bool holds = problem->mode.touches;
     for (int c = 0; c < OWN_CONTACTS; c++)
@@ -184,7 +182,7 @@ static void event_margins(const struct event_problem *problem, const double *y,
             own[0] = problem->set->may_touch[c] > 0 ? e->gap[c] : 1;
         if (!event_grips(m, c))
             continue;
-        const double bound = problem->set->friction * contact_load(c, (const double(*)[2])e->force);
+        const double bound = problem->set->friction * contact_load(c, e->force);
         const double mobility = e->D[c][c][1][1];
         if (problem->set->friction > 0 && m->slide[c] != 0) {
             own[1] = m->slide[c] * e->u[c][1];

@@ -67,13 +67,13 @@ static inline mask missed_of_forces(lanes friction, mask closed, mask sticks,
            (sticks & mask_less(room, friction * none));
 }
 
-/* Lanes where the mode may have been left between `begin` and `end`, both solved in it, with the
- * velocities w0 and w1, a time h apart. */
-static inline mask missed_between(const struct setting *set, const struct contact_state *m,
+/* Lanes where the mode may have been left on a way from `begin` to `end`, both solved in it. */
+static inline mask missed_between(const struct inside_way *way, const struct contact_state *m,
                                   const struct dynamics *begin, const struct dynamics *end,
-                                  const lanes *w0, const lanes *w1, lanes h,
                                   const struct inside_values *forces)
 {
+    const struct setting *const set = way->set;
+    const lanes h = way->h;
     const lanes none = lanes_of(0);
     mask dips = MASK_NONE;
     for (int c = 0; c < OWN_CONTACTS; c++) {
@@ -91,8 +91,8 @@ static inline mask missed_between(const struct setting *set, const struct contac
         if (!mask_any(near | slides))
             continue;
         lanes a0[2], a1[2];
-        between_acceleration(set, begin, w0, c, a0);
-        between_acceleration(set, end, w1, c, a1);
+        between_acceleration(set, begin, way->w[0], c, a0);
+        between_acceleration(set, end, way->w[1], c, a1);
         const lanes gap = lanes_min(missed_quintic(begin->gap[c], begin->u[c][0], a0[0], h),
                                     missed_quintic(end->gap[c], -end->u[c][0], a1[0], h));
         const lanes slip = lanes_min(m->slide[c] * (begin->u[c][1] + h * (a0[1] / 3)),

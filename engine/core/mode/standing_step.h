@@ -49,7 +49,7 @@ HOT mask standing_factor(contact_set touching, const struct dynamics *e, struct 
     mask rows[CONTACTS][2];
     EACH_CONTACT (c, 0)
         rows[c][0] = rows[c][1] = LANES_ALL;
-    contact_matrix(touching, (const lanes(*)[CONTACTS][2][2])e->D, (const mask(*)[2])rows, NULL, M);
+    contact_matrix(touching, e->D, rows, NULL, M);
     contact_factor(touching, CONTACT_PLAIN, M, f);
     return f->regular;
 }
@@ -57,7 +57,7 @@ HOT mask standing_factor(contact_set touching, const struct dynamics *e, struct 
 /* Forces that hold the contacts in `touching` where they are, and the accelerations with them. */
 HOT void standing_hold(contact_set touching, const struct contact_factors *f, struct dynamics *e)
 {
-    contact_back(touching, f, (const lanes(*)[2])e->free, e->force);
+    contact_back(touching, f, e->free, e->force);
     EACH_IN (c, touching)
         EACH (a, 0, 2)
             if (a < contact_unknowns(c))
@@ -209,7 +209,7 @@ HOT mask standing_project(contact_set touching, const struct setting *set, const
         if (touching >> c & 1)
             scene_contact_velocity(&set->body, &end->trig, c, end->w, u[c]);
     }
-    contact_back(touching, f, (const lanes(*)[2])u, r);
+    contact_back(touching, f, u, r);
     EACH_IN (c, touching)
         EACH (a, 0, 2)
             if (a < contact_unknowns(c))
@@ -226,7 +226,7 @@ HOT mask standing_project(contact_set touching, const struct setting *set, const
                 lanes_max(lanes_abs(u[c][1]), report->dissipation_residual);
         there &= mask_less_equal(end->gap[c], lanes_of(STEP_CLOSED));
     }
-    return there & standing_rests(touching, (const lanes(*)[2])u);
+    return there & standing_rests(touching, u);
 }
 
 /* Lanes where no contact outside `touching` may come to the ground on the way. */
@@ -260,8 +260,7 @@ HOT void standing_torque(const struct setting *set, const lanes *held, bool coup
 /* The decoupling law in the lanes where it acts, with the contacts in `touching` standing: torques
  * and what they do go into *e, evaluated with pushes and without torques there. Returns the lanes
  * where it is what it promises. */
-COLD mask standing_decouple(contact_set touching, const struct setting *set, lanes t,
-                            const lanes *s, const lanes *w, const lanes *integral,
+COLD mask standing_decouple(contact_set touching, const struct setting *set, const struct state *at,
                             struct dynamics *e)
 {
     const mask decouples = mask_less(lanes_of(0), set->law.decouples);
@@ -271,7 +270,7 @@ COLD mask standing_decouple(contact_set touching, const struct setting *set, lan
         stands.slide[c] = lanes_of(0);
     }
     dynamics_clear(touching, e);
-    decouple(set, decouples, t, s, w, integral, touching, &stands, e);
+    decouple(set, decouples, at, touching, &stands, e);
     decoupling_apply(set, decouples, touching, e);
     /* Sums of errors stop and go on at limits, which accelerations do not show: not judged here. */
     lanes sums = lanes_of(0);
@@ -280,13 +279,16 @@ COLD mask standing_decouple(contact_set touching, const struct setting *set, lan
     return LANES_NOT(decouples) | mask_less_equal(e->degraded + e->several + sums, lanes_of(0));
 }
 
-/* Tries a step of length h from `from`, where exactly the contacts in `touching` are closed and all
- * of them stood; `anew`: lanes whose sines are to be computed anew. Returns the lanes where *end
- * and *report are defined, *error its estimate. */
-HOT mask standing_take(contact_set touching, const struct setting *set, const struct motion *from,
-                       const lanes *held, bool coupled, lanes h, mask run, mask anew,
+/* Tries a step, where exactly the contacts in `touching` are closed and all of them stood; `anew`:
+ * lanes whose sines are to be computed anew. Returns the lanes where *end and *report are defined,
+ * *error its estimate. */
+HOT mask standing_take(contact_set touching, const struct step *step, mask run, mask anew,
                        struct motion *end, struct step_report *report, lanes *error)
 {
+    const struct setting *const set = step->set;
+    const struct motion *const from = step->from;
+    const bool coupled = step->coupled;
+    const lanes h = step->h;
     lanes a[STANDING_PLACES][SCENE_COORDINATES]; /* at the second the sum of two */
     lanes force[STANDING_PLACES][CONTACTS][2];   /* likewise */
     lanes s[SCENE_COORDINATES], w[SCENE_COORDINATES];
@@ -312,19 +314,20 @@ HOT mask standing_take(contact_set touching, const struct setting *set, const st
         integral[i] = end->integral[i] = from->integral[i];
     e.trig = from->trig;
     EACH (k, 0, STANDING_PLACES) {
-        const lanes t = from->t + (0.5 * k) * h, part = h * (k == 1 ? 1.0 / 3 : 1.0 / 6);
+        const struct state at = {from->t + (0.5 * k) * h, s, w, integral};
+        const lanes part = h * (k == 1 ? 1.0 / 3 : 1.0 / 6);
         dynamics_place(set, touching, servos, &A, &e);
         good &= standing_factor(touching, &e, &factors);
         EACH (again, 0, 2) {
             lanes moved[SCENE_COORDINATES], torque[ACTUATORS];
             if (again && k != 1)
                 continue;
-            standing_torque(set, held, coupled, s, w, torque);
-            dynamics_motion(set, t, s, w, torque, touching, &A, &e);
+            standing_torque(set, step->torque, coupled, s, w, torque);
+            dynamics_motion(set, &at, torque, touching, &A, &e);
             if (k == 0)
-                good &= standing_rests(touching, (const lanes(*)[2])e.u);
+                good &= standing_rests(touching, e.u);
             if (servos) {
-                good &= standing_decouple(touching, set, t, s, w, integral, &e);
+                good &= standing_decouple(touching, set, &at, &e);
                 EACH (i, 0, SCENE_ACTUATORS) {
                     const lanes ahead = h * (k == 1 && again ? 1 : 0.5);
                     const lanes rate = choose(decouples, e.integral_rate[i], lanes_of(0));
@@ -339,7 +342,7 @@ HOT mask standing_take(contact_set touching, const struct setting *set, const st
                 end->s[i] += moved[i];
                 end->w[i] = lanes_fma(part, e.acceleration[i], end->w[i]);
             }
-            report->work += motion_work(&set->body, part, t, &e.trig, e.torque, w, moved);
+            report->work += motion_work(&set->body, part, at.t, &e.trig, e.torque, w, moved);
             EACH (i, 0, SCENE_ACTUATORS)
                 if (coupled)
                     driven[k][i] = again ? (lanes)(driven[k][i] + e.torque[i]) : e.torque[i];
@@ -371,7 +374,7 @@ HOT mask standing_take(contact_set touching, const struct setting *set, const st
         }
         trig_turned(&from->trig, turn, &e.trig);
     }
-    good &= standing_forces(touching, set, (const lanes(*)[CONTACTS][2])force, report);
+    good &= standing_forces(touching, set, force, report);
     lanes first = lanes_of(0), second = lanes_of(0), turn[SCENE_COORDINATES];
     EACH (i, 0, SCENE_COORDINATES) {
         first = lanes_max(lanes_abs(a[2][i] - a[0][i]), first);
@@ -401,7 +404,7 @@ HOT mask standing_take(contact_set touching, const struct setting *set, const st
         end->approach[c] = u[0];
         end->gap[c] = scene_gap(&set->body, end->s, &end->trig, c);
     }
-    standing_torque(set, held, coupled, end->s, end->w, report->torque);
+    standing_torque(set, step->torque, coupled, end->s, end->w, report->torque);
     EACH (i, 0, SCENE_ACTUATORS)
         if (servos) /* as forces, of the last place */
             report->torque[i] = choose(decouples, e.torque[i], report->torque[i]);

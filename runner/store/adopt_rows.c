@@ -1,4 +1,5 @@
-/* store_copy.c - rows, trajectories and times of one results file into another. */
+/* adopt_rows.c - rows, trajectories and times of one results file into another. */
+#include "adopt.h"
 #include "store_private.h"
 
 #include "runner/base/message.h"
@@ -79,88 +80,88 @@ static bool copy_trajectory(struct store *from, uint64_t place, struct store *to
     return good;
 }
 
-/* Which of the rows read into both files' blocks are to be written. */
-static void choose_rows(struct store *from, struct store *to, const uint64_t *target, size_t count,
-                        const bool *whole, const bool *there, bool *wanted,
-                        struct store_copied *copied)
+/* Rows of one file on their way, and where they go in the other. */
+struct moving {
+    struct store *from, *to;
+    uint64_t row[STORE_ROWS], aim[STORE_ROWS];
+    struct adopted_rows *told;
+    stance_message *message;
+};
+
+/* Copies the first `count` rows, at least one, whose aims ascend. */
+static bool copy_some(struct moving *m, size_t count)
 {
-    const uint8_t *const status = from->checked->column[COLUMN_STATUS];
+    struct store_found found[STORE_ROWS], there[STORE_ROWS];
+    struct adopted_rows *const told = m->told;
+    uint64_t place, aim;
+    size_t kept = 0;
+
+    /* Both leave what they read in the files' own blocks. */
+    if (!store_verify(m->from, &(struct rows){.row = m->row, .count = count}, found, m->message) ||
+        !store_verify(m->to, &(struct rows){.row = m->aim, .count = count}, there, m->message))
+        return false;
+    translate(m->from->checked, m->to->no_count, count);
     for (size_t i = 0; i < count; i++) {
-        wanted[i] = whole[i] && !there[i];
-        if (!whole[i]) {
-            copied->damaged += status[i] == STANCE_DONE || status[i] == STANCE_FAILED;
-        } else if (!there[i]) {
-            copied->copied++;
-        } else if (same_row(from->checked, to->checked, i)) {
-            copied->same++;
-        } else {
-            copied->conflict = copied->conflicting == 0 ? target[i] : copied->conflict;
-            copied->conflicting++;
+        if (!found[i].whole) {
+            told->damaged++;
+        } else if (!there[i].whole) {
+            if (plan_recorded(m->from->plan, m->row[i], &place) &&
+                plan_recorded(m->to->plan, m->aim[i], &aim) &&
+                !copy_trajectory(m->from, place, m->to, aim, m->message))
+                return false;
+            m->aim[kept] = m->aim[i];
+            take_row(m->from->checked, i, m->to->checked, kept++); /* kept <= i: not looked at */
+        } else if (same_row(m->from->checked, m->to->checked, i)) {
+            told->same++;
+        } else if (told->conflicting++ == 0) {
+            told->conflict = m->aim[i];
         }
     }
+    told->copied += kept;
+    return kept == 0 || store_write(m->to, m->to->checked, 0,
+                                    &(struct rows){.row = m->aim, .count = kept}, m->message);
 }
 
-/* Copies 1 to STORE_ROWS rows to the rows target[rows->count] (ascending). */
-static bool copy_some(struct store *from, const struct rows *rows, struct store *to,
-                      const uint64_t *target, struct store_copied *copied, stance_message *message)
+/* Whether the new file lacks nothing of a row that the old one has. */
+static bool has_all(const struct moving *m, uint64_t row, uint64_t aim)
 {
-    bool whole[STORE_ROWS], there[STORE_ROWS], wanted[STORE_ROWS];
-    uint64_t kept[STORE_ROWS], place, to_place;
-    const struct rows aims = {.row = target, .count = rows->count};
-    stance_result *results = malloc(STORE_ROWS * sizeof *results);
+    const struct plan *const old = m->from->plan, *const new = m->to->plan;
+    uint64_t place;
+    return !plan_recorded(new, aim, &place) ||
+           (plan_recorded(old, row, &place) && old->record_rows == new->record_rows);
+}
+
+bool adopt_rows(const struct adopted *a, struct store *to, struct adopted_rows *told,
+                stance_message *message)
+{
+    enum { PIECE = 1 << 14 };
+    const struct plan *const plan = to->plan;
+    const uint64_t all = a->plan.rows;
+    struct moving m = {.from = a->store, .to = to, .told = told, .message = message};
+    uint8_t status[PIECE]; /* of a shard few are not pending */
     size_t count = 0;
-
-    bool good = results || no_memory(message);
-    /* Both leave what they read in the files' own blocks. */
-    good = good && store_verify(from, rows, results, whole, message) &&
-           store_verify(to, &aims, results, there, message);
-    free(results);
-    if (!good)
-        return false;
-    translate(from->checked, to->no_count, (size_t)rows->count);
-    choose_rows(from, to, target, (size_t)rows->count, whole, there, wanted, copied);
-    for (size_t i = 0; i < rows->count; i++) {
-        if (!wanted[i])
-            continue;
-        if (plan_recorded(from->plan, rows_at(rows, i), &place) &&
-            plan_recorded(to->plan, target[i], &to_place) &&
-            !copy_trajectory(from, place, to, to_place, message))
-            return false;
-        kept[count] = target[i];
-        take_row(from->checked, i, to->checked, count++); /* count <= i: a slot already looked at */
-    }
-    const struct rows written = {.row = kept, .count = count};
-    return count == 0 || store_write(to, to->checked, 0, &written, message);
-}
-
-bool store_copy(struct store *from, struct store *to,
-                uint64_t (*target)(void *context, uint64_t row), void *context,
-                struct store_copied *copied, stance_message *message)
-{
-    enum { PIECE = 1 << 16 };
-    const uint64_t all = from->plan->rows;
-    uint64_t row[STORE_ROWS], aim[STORE_ROWS];
-    struct rows rows = {.row = row};
-    uint8_t *const status = malloc(PIECE); /* of a shard few are not pending */
-    bool good = status || no_memory(message);
+    bool good = true;
     for (uint64_t r = 0; good && r < all; r++) {
         if (r % PIECE == 0)
-            good = hdf_move(from->column[COLUMN_STATUS], H5T_STD_U8LE, r,
+            good = hdf_move(m.from->column[COLUMN_STATUS], H5T_STD_U8LE, r,
                             all - r < PIECE ? all - r : PIECE, HDF_READ, status) ||
-                   store_failed(message, from->file, "read the results");
-        const uint64_t to_row = target(context, r);
-        if (!good || to_row == STORE_NOWHERE || status[r % PIECE] == STANCE_PENDING)
+                   store_failed(message, m.from->file, "read the results");
+        if (r % STORE_ROWS == 0 && plan->stop && plan->stop(plan->stop_context))
+            told->stopped = true;
+        if (told->stopped && told->may_stop)
+            break;
+        const uint64_t aim = adopt_row(a, r);
+        if (!good || status[r % PIECE] == STANCE_PENDING || !has_all(&m, r, aim))
             continue;
-        /* Targets ascend within a call: rows may come in another order than they go to. */
-        if (rows.count == STORE_ROWS || (rows.count > 0 && to_row <= aim[rows.count - 1])) {
-            good = copy_some(from, &rows, to, aim, copied, message);
-            rows.count = 0;
+        /* Rows may come in another order than they go to. */
+        if (count == STORE_ROWS || (count > 0 && aim <= m.aim[count - 1])) {
+            good = copy_some(&m, count);
+            count = 0;
         }
-        aim[rows.count] = to_row;
-        row[rows.count++] = r;
+        m.aim[count] = aim;
+        m.row[count++] = r;
     }
-    free(status);
-    return good && (rows.count == 0 || copy_some(from, &rows, to, aim, copied, message));
+    return good && (count == 0 || copy_some(&m, count));
 }
 
 /* The times of one file to as many places of the other, which has none yet, from `rank` on, as it
