@@ -10,14 +10,6 @@ GNUPLOT_SCRIPT(plot_animation_gp, "analysis/plot/plot_animation.gp");
 
 static const double frame_time = 0.04; /* s, at the least */
 
-static double end_of(const struct plot_case *c)
-{
-    double end = 0;
-    for (; c; c = c->other)
-        end = fmax(end, c->t->time[c->t->rows - 1]);
-    return end;
-}
-
 struct animation {
     struct gnuplot g;
     struct figure *figure[2]; /* [frames] of each case; NULL: there is no other */
@@ -42,14 +34,6 @@ static struct plot_range see(const struct animation *a, int i)
     return range;
 }
 
-/* The ground of frame f between places that move with the view. Returns how many points it has. */
-static size_t find_ground(const struct animation *a, const struct plot_case *c, int f,
-                          struct plot_range x, double (*point)[2])
-{
-    const double about = a->follows ? a->figure[0][f].centre : 0;
-    return plot_ground(c, f * a->step, about + x.low, about + x.high, point);
-}
-
 /* Plates, each frame an index of $ground; `z` is widened to where they go down to. */
 static void put_ground(struct animation *a, const struct plot_case *c, struct plot_range x,
                        struct plot_range *z)
@@ -62,7 +46,8 @@ static void put_ground(struct animation *a, const struct plot_case *c, struct pl
     if (!c->floor || !point)
         return;
     for (int f = 0; f < a->frames; f++) {
-        const size_t points = find_ground(a, c, f, x, point);
+        const double about = a->follows ? a->figure[0][f].centre : 0;
+        const size_t points = plot_ground(c, f * a->step, about + x.low, about + x.high, point);
         for (size_t k = 0; k < points; k++) {
             GNUPLOT_ROW(&a->g, point[k][0], point[k][1]);
             z->low = fmin(z->low, point[k][1] - (a->follows ? a->figure[0][f].base : 0));
@@ -93,19 +78,6 @@ static void put_view(struct animation *a, const struct plot_case *c)
     }
 }
 
-/* The frames of the cases, each an index of $segments<number> and $points<number>. */
-static void put_frames(struct animation *a, int contacts)
-{
-    for (int k = 0; k < 4 && a->figure[k / 2]; k++) {
-        gnuplot_block(&a->g, "%s%d", k % 2 == FIGURE_SEGMENTS ? "segments" : "points", k / 2 + 1);
-        for (int f = 0; f < a->frames; f++) {
-            figure_put(&a->g, &a->figure[k / 2][f], contacts, (enum figure_part)(k % 2), 0, 0);
-            gnuplot_gap(&a->g);
-            gnuplot_gap(&a->g);
-        }
-    }
-}
-
 bool plot_animation(const struct plot_case *c)
 {
     struct animation a = {.follows = false};
@@ -113,9 +85,12 @@ bool plot_animation(const struct plot_case *c)
         return complain(c->plot->message,
                         "%.150s: no stick figures: this version cannot read its scenario",
                         c->plot->r->file);
-    const double step = fmax(frame_time, ceil(100 * end_of(c) / LOOK_MOST_FRAMES) / 100);
+    double end = 0;
+    for (const struct plot_case *k = c; k; k = k->other)
+        end = fmax(end, k->t->time[k->t->rows - 1]);
+    const double step = fmax(frame_time, ceil(100 * end / LOOK_MOST_FRAMES) / 100);
     a.step = step;
-    a.frames = (int)(end_of(c) / step + 1e-9) + 1;
+    a.frames = (int)(end / step + 1e-9) + 1;
     c->plot->look->animated = step;
     if (!plot_case_begin(c, &a.g, "animation", plot_animation_gp, "Stick figures"))
         return false;
@@ -129,7 +104,15 @@ bool plot_animation(const struct plot_case *c)
     const int contacts = figure_names(&a.g, c->scenario->scene);
     if (a.figure[0]) {
         put_view(&a, c);
-        put_frames(&a, contacts);
+        for (int k = 0; k < 4 && a.figure[k / 2]; k++) { /* each frame an index */
+            gnuplot_block(&a.g, "%s%d", k % 2 == FIGURE_SEGMENTS ? "segments" : "points",
+                          k / 2 + 1);
+            for (int f = 0; f < a.frames; f++) {
+                figure_put(&a.g, &a.figure[k / 2][f], contacts, (enum figure_part)(k % 2), 0, 0);
+                gnuplot_gap(&a.g);
+                gnuplot_gap(&a.g);
+            }
+        }
     }
     gnuplot_set(&a.g, "frames = %d; step = %.10g; fall = %#.17g; follows = %d; cases = %d",
                 a.frames, step, figure_fall(c), a.follows, cases);

@@ -377,15 +377,6 @@ void plot_page_forces(struct case_page *page, double height)
     }
 }
 
-static bool draw_forces(const struct plot_case *c)
-{
-    struct case_page page = {.c = c};
-    if (!plot_page_begin(&page, "forces", "Forces of the ground on the contacts"))
-        return false;
-    plot_page_forces(&page, 220);
-    return gnuplot_end(&page.g);
-}
-
 /* ---- torques and gaps --------------------------------------------------------------------- */
 
 /* Of what actuator k gives: a force on what slides, a torque on what turns. */
@@ -468,30 +459,32 @@ void plot_page_torques(struct case_page *page, double height)
                      level[k].limit, level[k].unit, level[k].of);
 }
 
-static bool draw_torques(const struct plot_case *c)
+static void put_gaps(struct case_page *page)
 {
-    struct case_page page = {.c = c};
-    if (!plot_page_begin(&page, "torques", "What the actuators give"))
-        return false;
-    plot_page_torques(&page, 260);
-    return gnuplot_end(&page.g);
+    const size_t count = grounded(page->c);
+    struct range range = range_of(page, (struct columns){0, 1, count, false});
+    plot_widen(&range.of, 0);
+    put_panel(page, 260, "", range.of, "gap", "m");
+    put_ramp(page, &(struct ramp){0, 0, INFINITY}, "0x606060", false);
+    for (size_t k = 0; k < count; k++)
+        put_line(page, k, 1, k, false);
+    put_names(page, page->c->t->contact, count, 0);
 }
 
-static bool draw_gaps(const struct plot_case *c)
+/* A page of one quantity. */
+static bool draw_page(const struct plot_case *c, enum shown shown)
 {
-    const struct results_trajectory *t = c->t;
-    const size_t count = grounded(c);
-    struct case_page page = {.c = c, .shown = SHOWN_GAPS};
-
-    if (!plot_page_begin(&page, "gaps", "Heights of the contact points above the ground"))
+    struct case_page page = {.c = c, .shown = shown};
+    if (shown == SHOWN_FORCES &&
+        plot_page_begin(&page, "forces", "Forces of the ground on the contacts"))
+        plot_page_forces(&page, 220);
+    else if (shown == SHOWN_TORQUES && plot_page_begin(&page, "torques", "What the actuators give"))
+        plot_page_torques(&page, 260);
+    else if (shown == SHOWN_GAPS &&
+             plot_page_begin(&page, "gaps", "Heights of the contact points above the ground"))
+        put_gaps(&page);
+    else
         return false;
-    struct range range = range_of(&page, (struct columns){0, 1, count, false});
-    plot_widen(&range.of, 0);
-    put_panel(&page, 260, "", range.of, "gap", "m");
-    put_ramp(&page, &(struct ramp){0, 0, INFINITY}, "0x606060", false);
-    for (size_t k = 0; k < count; k++)
-        put_line(&page, k, 1, k, false);
-    put_names(&page, t->contact, count, 0);
     return gnuplot_end(&page.g);
 }
 
@@ -556,8 +549,9 @@ bool plot_case(const struct plot_case *c)
         return complain(c->plot->message, "%.100s: the two cases are of different robots",
                         c->plot->r->file);
     const bool lands = grounded(c) > 0;
-    const bool good = draw_coordinates(c) && (!t->force || !lands || draw_forces(c)) &&
-                      (!t->torque || draw_torques(c)) && (!t->gap || !lands || draw_gaps(c));
+    const bool good = draw_coordinates(c) && (!t->force || !lands || draw_page(c, SHOWN_FORCES)) &&
+                      (!t->torque || draw_page(c, SHOWN_TORQUES)) &&
+                      (!t->gap || !lands || draw_page(c, SHOWN_GAPS));
     if (good && !c->scenario)
         fprintf(stderr, "%s: no stick figures: this version cannot read the file's scenario\n",
                 c->plot->r->file);

@@ -26,17 +26,6 @@ double figure_fall(const struct plot_case *c)
     return tan(c->values.robot[STANCE_ROBOT_SLOPE]);
 }
 
-static bool is_outline(const struct plot_case *c)
-{
-    const stance_mechanism *const m = c->scenario->scene->mechanism;
-    stance_mechanism_numbers number;
-    bool round = m->carried && m->carried->outline;
-    stance_mechanism_expand(m, c->values.robot, &number);
-    for (int e = 0; e < m->elements; e++)
-        round = round || number.element[e].radius > 0;
-    return round;
-}
-
 /* Of a disc that a contact is; 0: it is none. */
 static double radius_of(const stance_mechanism *m, const stance_mechanism_numbers *number,
                         int contact)
@@ -102,10 +91,15 @@ void figure_make(struct figure *figure, const struct plot_case *c, size_t row)
     const struct results_trajectory *t = c->t;
     const double *position = t->position + row * t->coordinates;
     const double rest[STANCE_MAX_COORDINATES] = {0};
+    const stance_mechanism *const m = scene->mechanism;
+    stance_mechanism_numbers number;
     double speed[2];
 
     figure->time = t->time[row];
-    figure->outline = is_outline(c);
+    figure->outline = m->carried && m->carried->outline;
+    stance_mechanism_expand(m, c->values.robot, &number);
+    for (int e = 0; e < m->elements; e++)
+        figure->outline = figure->outline || number.element[e].radius > 0;
     figure->points = scene->figure(scene, c->values.robot, position, figure->point);
     for (int k = 0; k < plot_case_grounded(scene); k++)
         scene->contact_point(scene, c->values.robot, position, rest, k, figure->contact[k], speed);

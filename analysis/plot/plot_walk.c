@@ -51,12 +51,6 @@ double walk_end(const struct plot_case *c)
     return isfinite(end) ? end : c->t->time[c->t->rows - 1];
 }
 
-/* Whether the run ended just after a footfall. */
-static bool ends_at_footfall(const struct plot_case *c, size_t footfalls)
-{
-    return c->values.footfalls > 0 && footfalls + 1 == (size_t)c->values.footfalls;
-}
-
 /* When another foot came down than the one before, as the engine counts them, the last ones; a
  * start with both feet on the ground is one, too. Returns how many. */
 size_t walk_footfalls(const struct plot_case *c, double time[WALK_FOOTFALLS])
@@ -88,7 +82,8 @@ size_t walk_footfalls(const struct plot_case *c, double time[WALK_FOOTFALLS])
             }
             foot = own;
         }
-    if (count < WALK_FOOTFALLS && ends_at_footfall(c, made))
+    if (count < WALK_FOOTFALLS && c->values.footfalls > 0 &&
+        made + 1 == (size_t)c->values.footfalls)
         time[count++] = walk_end(c);
     return count;
 }
@@ -116,14 +111,6 @@ static const char metre[] = "metre(_) = panel_high[1]/(y1_high - y1_low)*(x_high
     "(int(($4 - figure_begin)/figure_time + 0.5)%%every ? NaN : $4 + metre(0)*$1):"                \
     "($2 - figure_fall*($4 - x_low)/metre(0))"
 #define FIGURE_PLACE FIGURE_PLACE_ALONE ":(" FIGURE_COLOUR ")"
-
-static void put_plane(struct case_page *page)
-{
-    gnuplot_series(&page->g,
-                   "using 1:(-figure_fall*($1 - x_low)/metre(0)) with lines lw 2 lc rgb 0xa0a0a0");
-    GNUPLOT_ROW(&page->g, page->time.low, 0);
-    GNUPLOT_ROW(&page->g, page->time.high, 0);
-}
 
 /* What is under the feet of each figure. */
 static void put_plates(struct case_page *page, const struct figure *figure)
@@ -180,10 +167,14 @@ static void put_figures(struct case_page *page)
         GNUPLOT_ROW(g, page->mark[k], 1);
         gnuplot_gap(g);
     }
-    if (c->floor)
+    if (c->floor) {
         put_plates(page, figure);
-    else
-        put_plane(page);
+    } else {
+        gnuplot_series(
+            g, "using 1:(-figure_fall*($1 - x_low)/metre(0)) with lines lw 2 lc rgb 0xa0a0a0");
+        GNUPLOT_ROW(g, page->time.low, 0);
+        GNUPLOT_ROW(g, page->time.high, 0);
+    }
     for (int part = FIGURE_SEGMENTS; part <= FIGURE_POINTS; part++) {
         gnuplot_series(g, "using " FIGURE_PLACE " with %s lc rgb variable",
                        part == FIGURE_SEGMENTS ? "lines lw 1.8" : "points pt 7 ps 0.45");
@@ -193,20 +184,17 @@ static void put_figures(struct case_page *page)
     }
 }
 
-/* Whether it still steps at its end, with instants enough in steps that take so long. */
-static bool still_walks(const struct plot_case *c, double last, double steps)
-{
-    const enum results_kind kind = c->plot->r->kind[c->plot->r->single ? 0 : c->t->index];
-    return (kind == RESULTS_WALKS || kind == RESULTS_UNDECIDED) && walk_end(c) - last < steps &&
-           steps > FIGURES * (c->t->time[1] - c->t->time[0]);
-}
-
 bool plot_steps(const struct plot_case *c, bool *drawn)
 {
     static double time[WALK_FOOTFALLS];
     const size_t count = c->other ? 0 : walk_footfalls(c, time);
     const double *const first = time + (count > STEPS ? count - STEPS - 1 : 0);
-    *drawn = count > STEPS && still_walks(c, first[STEPS], first[STEPS] - first[0]);
+    const double steps = count > STEPS ? first[STEPS] - first[0] : 0;
+    const enum results_kind kind = c->plot->r->kind[c->plot->r->single ? 0 : c->t->index];
+    /* It still steps at its end, with instants enough in steps that take so long. */
+    *drawn = count > STEPS && (kind == RESULTS_WALKS || kind == RESULTS_UNDECIDED) &&
+             walk_end(c) - first[STEPS] < steps &&
+             steps > FIGURES * (c->t->time[1] - c->t->time[0]);
     if (!*drawn)
         return true;
     struct case_page page = {.c = c, .mark = first, .marks = STEPS + 1};
