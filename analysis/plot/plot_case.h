@@ -79,10 +79,11 @@ size_t plot_ground(const struct plot_case *c, double time, double low, double hi
 double plot_ground_base(const struct plot_case *c, double time, double x);
 /* Once the rest of a case is known. */
 void plot_ground_learn(struct plot_case *c);
-/* Tells the script of the contacts: contacts, contact_name[], and of the colours of what figure_put
- * puts. Returns how many. */
+/* Tells the script of the colours of what figure_put puts. Returns how many contacts there are. */
 #define FIGURE_COLOUR "figure_colour($3)"
-int figure_names(struct gnuplot *g, const stance_scene *scene);
+int figure_colours(struct gnuplot *g, const stance_scene *scene);
+/* The entries of contacts, the body, perhaps the second case. */
+void figure_legend(struct gnuplot *g, const struct plot_case *c);
 /* Rows x, z, colour, time of its segments, each a line of its own, or of its joints and contacts;
  * the colour is a contact's number, the number of contacts: the body's. */
 enum figure_part { FIGURE_SEGMENTS, FIGURE_POINTS };

@@ -111,14 +111,21 @@ void figure_make(struct figure *figure, const struct plot_case *c, size_t row)
     figure->base = plot_ground_base(c, figure->time, figure->centre);
 }
 
-int figure_names(struct gnuplot *g, const stance_scene *scene)
+int figure_colours(struct gnuplot *g, const stance_scene *scene)
 {
     const int contacts = plot_case_grounded(scene);
-    gnuplot_set(g, "contacts = %d\narray contact_name[%d]", contacts, STANCE_MAX_CONTACTS);
-    gnuplot_set(g, "figure_colour(k) = k < contacts ? hue[int(k)%%|hue|+1] : 0x303030");
-    for (int k = 0; k < contacts; k++)
-        gnuplot_text(g, scene->contact_name[k], "contact_name[%d]", k + 1);
+    gnuplot_set(g, "figure_colour(k) = k < %d ? hue[int(k)%%|hue|+1] : 0x303030", contacts);
     return contacts;
+}
+
+void figure_legend(struct gnuplot *g, const struct plot_case *c)
+{
+    const stance_scene *const scene = c->scenario->scene;
+    for (int k = 0; k < plot_case_grounded(scene); k++)
+        gnuplot_legend(g, gnuplot_hue((size_t)k), 0, 0, scene->contact_name[k], "");
+    gnuplot_legend(g, "0x303030", 0, 0, "body", "");
+    if (c->other)
+        gnuplot_legend(g, "0xb8b8b8", 0, 0, "the second case", "");
 }
 
 /* Whether a point of the figure is a contact. */

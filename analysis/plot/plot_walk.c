@@ -160,7 +160,7 @@ static void put_figures(struct case_page *page)
     gnuplot_set(g, "%s", metre);
     gnuplot_panel(g, 200, "");
     gnuplot_axis(g, 'y', PLOT_LINEAR, height, "height", "m");
-    const int contacts = figure_names(g, c->scenario->scene);
+    const int contacts = figure_colours(g, c->scenario->scene);
     gnuplot_series(g, "using 1:($2 > 0 ? y1_high : y1_low) with lines dt 3 lw 1 lc rgb 0x606060");
     for (size_t k = 0; k < page->marks; k++) {
         GNUPLOT_ROW(g, page->mark[k], 0);
