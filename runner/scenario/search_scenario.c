@@ -243,8 +243,8 @@ static bool read_grow(struct reader *r)
         char name[32];
         double number = 0;
         snprintf(name, sizeof name, "optimise.grow[%zu]", i);
-        const bool fits = field_integer(&r->problems, schema_find(r->schema, "optimise.grow[]"),
-                                        name, grow->item[i], &number);
+        const bool fits = field_number(&r->problems, schema_find(r->schema, "optimise.grow[]"),
+                                       name, grow->item[i], &number);
         search->grow[i] = fits ? (uint64_t)number : 0;
         good &= fits;
         if (good && i > 0 && search->grow[i] <= search->grow[i - 1])
