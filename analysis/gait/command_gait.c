@@ -127,10 +127,9 @@ static bool spread(const struct scenario *s, const struct return_map *map, const
     X("iterations", "", as_whole((uint64_t)gait->iterations))
 
 static const struct say_key spread_keys[] = {SPREAD(TABLE_KEY){0}};
-static const struct say_key rows_keys[] = {{"rows", "", along_keys}, {0}};
 static const struct say_key gait_keys[] = {
     GAIT(TABLE_KEY){"sensitivity", "", spread_keys},
-    {NULL, "With --along title, path, stopped and", rows_keys},
+    {"rows", "with --along there are title, path, stopped and these alone", along_keys},
     {0},
 };
 
