@@ -197,21 +197,21 @@ static void find_extent(const struct basin_map *map, enum results_kind of, const
     uint64_t stride[SCENARIO_MAX_AXES];
     basin_strides(map, stride);
     const uint64_t index = basin_index(map, stride, origin);
-    for (int a = 0; a < map->axes; a++) {
-        const double *place = map->place[a];
-        size_t below = origin[a], above = origin[a];
-        distance->low[a] = distance->high[a] = NAN;
-        while (below > 0 && map->kind[index - (origin[a] - below) * stride[a]] == of)
-            below--;
-        while (above + 1 < map->count[a] &&
-               map->kind[index + (above - origin[a]) * stride[a]] == of)
-            above++;
-        const uint8_t low = map->kind[index - (origin[a] - below) * stride[a]],
-                      high = map->kind[index + (above - origin[a]) * stride[a]];
-        if (distance->inside && low != of && basin_is_known(low))
-            distance->low[a] = 0.5 * (place[below] + place[below + 1]);
-        if (distance->inside && high != of && basin_is_known(high))
-            distance->high[a] = 0.5 * (place[above - 1] + place[above]);
+    for (int side = 0; side < 2 * map->axes; side++) {
+        const int a = side / 2, up = side % 2;
+        const double *const place = map->place[a];
+        const size_t last = up ? map->count[a] - 1 : 0;
+        size_t at = origin[a];
+        uint64_t case_at = index;
+        while (at != last && map->kind[case_at] == of) {
+            at += up ? 1 : (size_t)-1;
+            case_at += up ? stride[a] : -stride[a];
+        }
+        const uint8_t kind = map->kind[case_at];
+        *(up ? &distance->high[a] : &distance->low[a]) =
+            distance->inside && kind != of && basin_is_known(kind)
+                ? 0.5 * (place[at] + place[up ? at - 1 : at + 1])
+                : NAN;
     }
 }
 

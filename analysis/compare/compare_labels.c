@@ -4,7 +4,7 @@
 #include "compare_labels.h"
 
 #include "runner/base/message.h"
-#include "runner/store/results_rows.h"
+#include "runner/store/results.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -178,11 +178,12 @@ static bool open_columns(struct store *store, stance_message *message)
         if (!there) /* all answers that the version knew which made the file */
             continue;
         length[dimensions] = width;
-        if (store->column[c] < 0 || hdf_shape(store->column[c], found) != rank ||
-            memcmp(found, length, (size_t)rank * sizeof *length) != 0) {
+        const int is = store->column[c] < 0 ? -1 : hdf_shape(store->column[c], found);
+        if (!store->plan->single && s->cases > 1 && is == 1 && found[0] == 1)
+            return complain(message, STORE_ONE_CASE, store->file);
+        if (is != rank || memcmp(found, length, (size_t)rank * sizeof *length) != 0)
             return complain(message, "%.100s: variable '%s' is not as this scenario needs it",
                             store->file, store_columns[c].name);
-        }
         if (store_columns[c].kind == KIND_int64_t)
             hdf_number(store->column[c], "_FillValue", H5T_NATIVE_INT64, &store->no_count);
     }

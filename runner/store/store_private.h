@@ -1,4 +1,4 @@
-/* store_private.h - shared by those who write results files: store.c (rows), store_copy.c (rows of
+/* store_private.h - shared by those who write results files: store.c (rows), adopt_rows.c (rows of
  * another file), store_make.c and store_layout.c (creation), store_space.c (room on the disk),
  * store_look.c (questions) and file_checksums.c (checksums). */
 #ifndef STANCE_STORE_STORE_PRIVATE_H
@@ -52,6 +52,8 @@ bool store_is_track(const char *path);
 /* Whether a scenario stores a column. */
 bool store_has_column(const struct scenario *scenario, int column);
 
+/* Why a file is not of the sweep that its scenario describes. */
+#define STORE_ONE_CASE "%.100s: holds one case of a sweep (run --only), not the sweep"
 /* "FILE: cannot ...: reason" of a system call. Returns false. */
 bool store_system_failed(stance_message *message, const char *file, const char *what, int error);
 /* Reserves the space of the whole file and brings it to the disk. */
