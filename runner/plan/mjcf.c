@@ -28,21 +28,11 @@ static FILE *line(const struct model *o)
 
 static void text(FILE *out, const char *of)
 {
-    for (; *of; of++) {
-        switch (*of) {
-        case '&':
-            fputs("&amp;", out);
-            break;
-        case '<':
-            fputs("&lt;", out);
-            break;
-        case '\'':
-            fputs("&apos;", out);
-            break;
-        default:
+    for (; *of; of++)
+        if (*of == '&' || *of == '<' || *of == '\'')
+            fputs(*of == '&' ? "&amp;" : *of == '<' ? "&lt;" : "&apos;", out);
+        else
             fputc(*of, out);
-        }
-    }
 }
 
 static void in_plane(FILE *out, const char *key, const double at[2])
@@ -217,23 +207,15 @@ static void keyframe(struct model *o)
 }
 
 static const char head[] =
-    "<!-- SI units; the plane is x, z, with x forward and z up. Bodies and joints are those of the "
-    "scenario:\n"
-    "     a body's frame begins at the joint to its parent, and qpos and qvel are its coordinates "
-    "and "
-    "their\n"
-    "     rates, by name. Hinges turn x towards z (about -y). A body that is fixed has no joint; "
-    "the\n"
-    "     inertia that counts is about y. Points, discs and both ends of a sole are spheres, "
-    "larger by "
-    "a\n"
-    "     skin of %g m than they are, and the plane lies as much lower. A slope tilts the plane, "
-    "not\n"
-    "     gravity. Named points are sites.\n"
-    "     Not here: control laws (ctrl of the keyframe are the torques at rest), pushes, "
-    "restitution, "
-    "what\n"
-    "     counts as a fall. Contacts and stops are soft in MuJoCo, in stance they are exact. -->\n";
+    "<!-- SI units; the plane is x, z, with x forward and z up. Bodies and joints are those of "
+    "the scenario:\n     a body's frame begins at the joint to its parent, and qpos and qvel are "
+    "its coordinates and their\n     rates, by name. Hinges turn x towards z (about -y). A body "
+    "that is fixed has no joint; the\n     inertia that counts is about y. Points, discs and both "
+    "ends of a sole are spheres, larger by a\n     skin of %g m than they are, and the plane lies "
+    "as much lower. A slope tilts the plane, not\n     gravity. Named points are sites.\n     Not "
+    "here: control laws (ctrl of the keyframe are the torques at rest), pushes, restitution, "
+    "what\n     counts as a fall. Contacts and stops are soft in MuJoCo, in stance they are exact. "
+    "-->\n";
 
 void mjcf_write(FILE *out, const stance_scene *scene, const stance_case *c, const char *title)
 {

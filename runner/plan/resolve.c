@@ -350,22 +350,18 @@ static bool beyond_stop(const stance_scene *scene, const struct scenario_values 
 {
     const stance_mechanism *const m = scene->mechanism;
     stance_mechanism_numbers number;
-    int body = 0, side = 0, i = 0;
-    for (int before = c; before >= 0 && scene->grip[before] < 0; before--)
-        side++; /* which of all stops, from 1 */
-    for (int k = 0; side > 0; k++) {
-        body = k / 2;
-        side -= stance_mechanism_stops(m, body, k % 2);
-        i = k % 2;
-    }
-    side = i;
-    i = stance_mechanism_coordinate(m, body);
+    int before = 0, end = 0; /* stops before it; ends of joints, with a stop or without */
+    while (before < c && scene->grip[c - before - 1] < 0)
+        before++;
+    while (!stance_mechanism_stops(m, end / 2, end % 2) || before-- > 0)
+        end++;
+    const int i = stance_mechanism_coordinate(m, end / 2);
     stance_mechanism_expand(m, out->robot, &number);
     const char *const unit = scene->coordinate[i].unit, *const name = scene->coordinate[i].name;
     return complain(message, "initial.%s.%s: %s would start at %.6g %s, %s limit of %.6g %s",
                     values->state_given ? "state" : "offset", name, name, out->position[i], unit,
-                    side ? "above its upper" : "below its lower", number.body[body].limits[side],
-                    unit);
+                    end % 2 ? "above its upper" : "below its lower",
+                    number.body[end / 2].limits[end % 2], unit);
 }
 
 static bool check_start(const stance_scene *scene, const struct scenario_values *values,
