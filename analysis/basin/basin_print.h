@@ -5,7 +5,6 @@
 
 #include "basin.h"
 #include "basin_rays.h"
-#include "basin_threshold.h"
 
 #include "analysis/table/table.h"
 
