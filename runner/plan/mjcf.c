@@ -128,13 +128,11 @@ static void sphere(struct model *o, int contact, int e, const double at[2])
 /* Contacts and points of a body. Both ends of a sole hold its friction here. */
 static void places(struct model *o, int b)
 {
-    for (int e = 0, contact = 0; e < o->m->elements; contact += o->m->element[e++].sole ? 2 : 1) {
-        const stance_element_numbers *const n = &o->number.element[e];
-        if (o->m->element[e].body != b)
-            continue;
-        sphere(o, contact, e, n->at);
-        if (o->m->element[e].sole)
-            sphere(o, contact + 1, e, n->to);
+    stance_contact_place place;
+    for (int c = 0; stance_mechanism_contact(o->m, c, &place) && place.element >= 0; c++) {
+        const stance_element_numbers *const n = &o->number.element[place.element];
+        if (place.body == b)
+            sphere(o, c, place.element, place.end ? n->to : n->at);
     }
     for (int p = 0; p < o->m->points; p++) {
         if (o->m->point[p].body != b)

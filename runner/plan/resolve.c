@@ -175,27 +175,6 @@ bool resolve_gains(const stance_scene *scene, const struct scenario_values *valu
     return error == STANCE_OK;
 }
 
-stance_error resolve_loop(const stance_plant *plant, const double *K, double interval, double *loop)
-{
-    const int n = plant->states, m = plant->inputs;
-    const double *const A = plant->A, *const B = plant->B;
-    double Ad[4 * STANCE_MAX_POSTURE * STANCE_MAX_POSTURE];
-    double Bd[2 * STANCE_MAX_POSTURE * STANCE_MAX_ACTUATORS];
-    if (interval > 0) {
-        const stance_error error = stance_discretise(plant, interval, Ad, Bd);
-        const stance_plant held = {n, m, Ad, Bd};
-        return error == STANCE_OK ? resolve_loop(&held, K, 0, loop) : error;
-    }
-    for (int i = 0; i < n; i++) {
-        for (int j = 0; j < n; j++) {
-            loop[i * n + j] = A[i * n + j];
-            for (int k = 0; k < m; k++)
-                loop[i * n + j] -= B[i * m + k] * K[k * n + j];
-        }
-    }
-    return STANCE_OK;
-}
-
 static bool design_state_feedback(const stance_scene *scene, const struct scenario_values *values,
                                   struct resolved_design *design, stance_message *message)
 {
