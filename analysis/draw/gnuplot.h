@@ -99,6 +99,8 @@ void gnuplot_row(struct gnuplot *g, const double *values, size_t count);
                 sizeof((const double[]){__VA_ARGS__}) / sizeof(double))
 /* What follows in the block is apart from what was before. */
 void gnuplot_gap(struct gnuplot *g);
+/* A straight line, apart from what follows. */
+void gnuplot_segment(struct gnuplot *g, double x, double y, double x_end, double y_end);
 /* The next binary file: cells1, cells2 ... */
 void gnuplot_cells(struct gnuplot *g, const void *cells, size_t size);
 
@@ -145,6 +147,12 @@ void gnuplot_about(struct gnuplot *g, const char *format, ...)
 void gnuplot_note(struct gnuplot *g, const char *format, ...) __attribute__((format(printf, 2, 3)));
 /* The colour of curve k = 0, 1 ... beside others. */
 const char *gnuplot_hue(size_t k);
+/* The type of its points, filled; one less is the open one. */
+int gnuplot_mark(size_t k);
+/* The size of points of which there are n. */
+double gnuplot_dot(size_t n);
+/* A cross over all that was drawn: where the equilibrium is. */
+void gnuplot_cross(struct gnuplot *g, double x, double y);
 /* The colour of a kind of case, as style.gp has it: "#rrggbb", or "" of one that it does not name.
  */
 void gnuplot_kind_colour(const char *kind, char colour[8]);
