@@ -107,6 +107,7 @@ typedef struct stance_workload {
 
 struct stance_mechanism;
 struct stance_tree;
+struct stance_rest;
 
 /* Two legs that are alike in structure: how the robot reads while the other one stands, q' = M q of
  * coordinates and rates, torque'[i] = sign[i] torque[actuator[i]]. */
@@ -177,6 +178,8 @@ struct stance_scene {
     stance_error (*contact_force)(const stance_scene *scene, const double *robot,
                                   const stance_equilibrium *equilibrium, double *force,
                                   double *by_state, double *by_torque);
+    /* Is there an equilibrium close by that holds? See rest.h: it is what kernels ask. */
+    bool (*rest)(struct stance_rest *rest);
     const stance_workload *workload; /* a list */
 };
 
@@ -466,7 +469,7 @@ typedef struct stance_case {
     double tolerance;
 
     /* Judge `stabilised` and `rested` on the way and stop there. Both ask for an equilibrium that
-     * holds, too, no further than settle_angle away: see core/loop/rest.h. */
+     * holds, too, no further than settle_angle away: see rest.h. */
     bool settle;
     int64_t footfalls; /* ends at so many of them, where they fall; 0: does not */
     /* `walks` ends the case, too, where walk_steps > 0: so many in a row are like the one 1 to 4

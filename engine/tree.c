@@ -28,9 +28,9 @@
  *   sqrt(I'_j / a_j) becomes max( sqrt(I'_j / a_j) + sum_l sqrt(m_l / a_l), sqrt(m_l / a_j) ).
  */
 #include "tree.h"
+#include "refuse.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 #define SLIDES_TO 10.0 /* m */
@@ -46,8 +46,11 @@ static double length(const double v[2])
 
 /* ---- frames ---------------------------------------------------------------------------------- */
 
-/* Which angle carries each body, and where in its frame the body's own is while nothing slides. */
+/* A mechanism with its numbers; which angle carries each body, and where in its frame the body's
+ * own is while nothing slides; and its lumps. */
 struct frames {
+    const stance_mechanism *m;
+    const stance_mechanism_numbers *v;
     int of[STANCE_MAX_BODIES];    /* -1: the base */
     int joint[STANCE_MAX_BODIES]; /* the same, or the joint that slides in that frame and carries it
                                    */
@@ -57,6 +60,10 @@ struct frames {
     double turned[STANCE_MAX_BODIES], sine[STANCE_MAX_BODIES], cosine[STANCE_MAX_BODIES];
     int body[STANCE_MAX_ANGLES]; /* that turns, or slides */
     int angles;
+    double mass, base; /* of all; of what slides along the rail without turning */
+    double own_mass[STANCE_MAX_ANGLES], own_centre[STANCE_MAX_ANGLES][2],
+        own_inertia[STANCE_MAX_ANGLES]; /* of a joint's bodies together, about their centre */
+    double moment[STANCE_MAX_ANGLES][2], inertia[STANCE_MAX_ANGLES], hinge[STANCE_MAX_ANGLES][2];
 };
 
 /* R(a) v, `out` may be v: a vector of the base's, upright, into the ground's axes. */
@@ -75,18 +82,18 @@ static void frames_turn(const struct frames *f, int b, const double own[2], doub
 static void frames_make(const stance_mechanism *m, const stance_mechanism_numbers *v,
                         struct frames *f)
 {
-    *f = (struct frames){0};
-    for (int b = 0; b < m->bodies; b++) {
-        const int parent = m->body[b].parent;
-        const stance_joint joint = m->body[b].joint;
+    *f = (struct frames){.m = m, .v = v};
+    for (int b = 0; b < f->m->bodies; b++) {
+        const int parent = f->m->body[b].parent;
+        const stance_joint joint = f->m->body[b].joint;
         const bool turns = joint == STANCE_FREE || joint == STANCE_HINGE;
         const bool keeps = !turns && parent >= 0; /* the angle of its parent */
         double at[2] = {0, 0};
         if (keeps)
-            frames_turn(f, parent, v->body[b].at, at);
+            frames_turn(f, parent, f->v->body[b].at, at);
         for (int k = 0; k < 2; k++)
             f->at[b][k] = keeps ? f->at[parent][k] + at[k] : 0;
-        f->turned[b] = v->body[b].angle + (parent >= 0 ? f->turned[parent] : 0);
+        f->turned[b] = f->v->body[b].angle + (parent >= 0 ? f->turned[parent] : 0);
         stance_sincos(f->turned[b], &f->sine[b], &f->cosine[b]);
         f->of[b] = turns ? f->angles : keeps ? f->of[parent] : -1;
         f->joint[b] = keeps ? f->joint[parent] : -1;
@@ -99,60 +106,51 @@ static void frames_make(const stance_mechanism *m, const stance_mechanism_number
     }
 }
 
-static bool slides(const stance_mechanism *m, const struct frames *f, int joint)
+static bool slides(const struct frames *f, int joint)
 {
-    return m->body[f->body[joint]].joint == STANCE_SLIDE;
+    return f->m->body[f->body[joint]].joint == STANCE_SLIDE;
 }
 
 /* Where a point of body b is in its frame, or (no angle carries it) in the base's. */
-static void frames_place(const stance_mechanism_numbers *v, const struct frames *f, int b,
-                         const double local[2], double place[2])
+static void frames_place(const struct frames *f, int b, const double local[2], double place[2])
 {
     frames_turn(f, b, local, place);
     for (int k = 0; k < 2; k++) {
         place[k] = f->at[b][k] + place[k];
         if (f->of[b] < 0)
-            place[k] += v->body[0].at[k]; /* the rail's origin */
+            place[k] += f->v->body[0].at[k]; /* the rail's origin */
     }
 }
 
 /* The joint of an angle in the frame above, or (no angle is above) in the base's; the direction of
  * one that slides. */
-static void frames_joint(const stance_mechanism *m, const stance_mechanism_numbers *v,
-                         const struct frames *f, int angle, double joint[2])
+static void frames_joint(const struct frames *f, int angle, double joint[2])
 {
-    const int b = f->body[angle], parent = m->body[b].parent;
-    const bool free = m->body[0].joint == STANCE_FREE;
-    if (slides(m, f, angle)) {
-        const double *const axis = v->body[b].axis, size = length(axis);
+    const int b = f->body[angle], parent = f->m->body[b].parent;
+    const bool free = f->m->body[0].joint == STANCE_FREE;
+    if (slides(f, angle)) {
+        const double *const axis = f->v->body[b].axis, size = length(axis);
         const double unit[2] = {axis[0] / size, axis[1] / size};
         frames_turn(f, parent, unit, joint);
         return;
     }
     if (parent >= 0)
-        frames_place(v, f, parent, v->body[b].at, joint);
+        frames_place(f, parent, f->v->body[b].at, joint);
     for (int k = 0; k < 2 && parent < 0; k++)
-        joint[k] = free ? 0 : v->body[b].at[k];
+        joint[k] = free ? 0 : f->v->body[b].at[k];
 }
 
 /* ---- lumps ----------------------------------------------------------------------------------- */
 
-struct lumps {
-    double mass, base; /* of all; of what slides along the rail without turning */
-    double own_mass[STANCE_MAX_ANGLES], own_centre[STANCE_MAX_ANGLES][2],
-        own_inertia[STANCE_MAX_ANGLES]; /* of a joint's bodies together, about their centre */
-    double moment[STANCE_MAX_ANGLES][2], inertia[STANCE_MAX_ANGLES], joint[STANCE_MAX_ANGLES][2];
-};
-
 /* The frame that a joint is in, and the joint that it hangs from. */
-static int above(const stance_mechanism *m, const struct frames *f, int joint)
+static int above(const struct frames *f, int joint)
 {
-    const int parent = m->body[f->body[joint]].parent;
+    const int parent = f->m->body[f->body[joint]].parent;
     return parent < 0 ? -1 : f->of[parent];
 }
-static int before(const stance_mechanism *m, const struct frames *f, int joint)
+static int before(const struct frames *f, int joint)
 {
-    const int parent = m->body[f->body[joint]].parent;
+    const int parent = f->m->body[f->body[joint]].parent;
     return parent < 0 ? -1 : f->joint[parent];
 }
 
@@ -161,96 +159,92 @@ static double squared(const double v[2])
     return v[0] * v[0] + v[1] * v[1];
 }
 
-static void lumps_make(const stance_mechanism *m, const stance_mechanism_numbers *v,
-                       const struct frames *f, struct lumps *l)
+static void lumps_make(struct frames *f)
 {
     double beyond[STANCE_MAX_ANGLES] = {0};
-    memset(l, 0, sizeof *l);
-    for (int b = 0; b < m->bodies; b++) {
-        const stance_body_numbers *const body = &v->body[b];
+    for (int b = 0; b < f->m->bodies; b++) {
+        const stance_body_numbers *const body = &f->v->body[b];
         const int i = f->joint[b];
-        l->mass += body->mass;
+        f->mass += body->mass;
         if (i < 0) {
-            l->base += body->mass;
+            f->base += body->mass;
             continue;
         }
         double c[2];
         frames_turn(f, b, body->centre, c);
         for (int k = 0; k < 2; k++)
             c[k] = f->at[b][k] + c[k];
-        l->own_mass[i] += body->mass;
-        l->own_inertia[i] += body->inertia + body->mass * squared(c); /* about the joint, so far */
+        f->own_mass[i] += body->mass;
+        f->own_inertia[i] += body->inertia + body->mass * squared(c); /* about the joint, so far */
         for (int k = 0; k < 2; k++)
-            l->moment[i][k] += body->mass * c[k];
+            f->moment[i][k] += body->mass * c[k];
     }
     for (int i = 0; i < f->angles; i++) {
-        beyond[i] = l->own_mass[i];
-        l->inertia[i] = l->own_inertia[i];
+        beyond[i] = f->own_mass[i];
+        f->inertia[i] = f->own_inertia[i];
         for (int k = 0; k < 2; k++)
-            l->own_centre[i][k] = l->own_mass[i] > 0 ? l->moment[i][k] / l->own_mass[i] : 0;
-        frames_joint(m, v, f, i, l->joint[i]);
+            f->own_centre[i][k] = f->own_mass[i] > 0 ? f->moment[i][k] / f->own_mass[i] : 0;
+        frames_joint(f, i, f->hinge[i]);
     }
     /* The parallel axes' theorem, without the rounding of a difference that is zero. */
     for (int i = 0; i < f->angles; i++) {
-        l->own_inertia[i] = 0;
-        for (int b = 0; b < m->bodies; b++) {
+        f->own_inertia[i] = 0;
+        for (int b = 0; b < f->m->bodies; b++) {
             if (f->joint[b] != i)
                 continue;
             double d[2];
-            frames_turn(f, b, v->body[b].centre, d);
+            frames_turn(f, b, f->v->body[b].centre, d);
             for (int k = 0; k < 2; k++)
-                d[k] = f->at[b][k] + d[k] - l->own_centre[i][k];
-            l->own_inertia[i] += v->body[b].inertia + v->body[b].mass * squared(d);
+                d[k] = f->at[b][k] + d[k] - f->own_centre[i][k];
+            f->own_inertia[i] += f->v->body[b].inertia + f->v->body[b].mass * squared(d);
         }
     }
     for (int i = f->angles - 1; i >= 0; i--) {
-        const int j = before(m, f, i);
-        const bool slid = slides(m, f, i);
-        const double second = l->inertia[i];
+        const int j = before(f, i);
+        const bool slid = slides(f, i);
+        const double second = f->inertia[i];
         if (slid)
-            l->inertia[i] = beyond[i];
+            f->inertia[i] = beyond[i];
         if (j < 0)
             continue;
         beyond[j] += beyond[i];
         for (int k = 0; k < 2; k++)
-            l->moment[j][k] += slid ? l->moment[i][k] : beyond[i] * l->joint[i][k];
-        l->inertia[j] += slid ? second : beyond[i] * squared(l->joint[i]);
+            f->moment[j][k] += slid ? f->moment[i][k] : beyond[i] * f->hinge[i][k];
+        f->inertia[j] += slid ? second : beyond[i] * squared(f->hinge[i]);
     }
-    for (int b = 0; b < m->bodies; b++) {
+    for (int b = 0; b < f->m->bodies; b++) {
         const int i = f->of[b];
-        if (m->body[b].joint == STANCE_FIXED || m->body[b].joint == STANCE_SLIDE)
+        if (f->m->body[b].joint == STANCE_FIXED || f->m->body[b].joint == STANCE_SLIDE)
             continue;
-        const int j = above(m, f, i);
-        l->inertia[i] += v->body[b].armature;
+        const int j = above(f, i);
+        f->inertia[i] += f->v->body[b].armature;
         if (j >= 0)
-            l->inertia[j] += v->body[b].armature;
+            f->inertia[j] += f->v->body[b].armature;
     }
 }
 
 /* How far a joint that slides may go, m. */
-static double goes(const stance_mechanism *m, const stance_mechanism_numbers *v,
-                   const struct frames *f, int joint)
+static double goes(const struct frames *f, int joint)
 {
-    const double *const limits = v->body[f->body[joint]].limits;
+    const double *const limits = f->v->body[f->body[joint]].limits;
     const double far = fmax(fabs(limits[0]), fabs(limits[1]));
-    return !slides(m, f, joint) ? 0 : far < SLIDES_TO ? far : SLIDES_TO;
+    return !slides(f, joint) ? 0 : far < SLIDES_TO ? far : SLIDES_TO;
 }
 
 /* What a joint that slides resists with. */
-static double slide_resists(const stance_mechanism *m, const struct frames *f,
-                            const struct lumps *l, int i)
+static double slide_resists(const struct frames *f, int i)
 {
-    const int j = before(m, f, i);
-    const double held = j < 0 ? l->base : l->own_mass[j], moves = l->own_mass[i];
+    const int j = before(f, i);
+    const double held = j < 0 ? f->base : f->own_mass[j], moves = f->own_mass[i];
     if (!(moves > 0 && held > 0))
         return 0;
     double yields = 1 / moves + 1 / held;
-    if (above(m, f, i) >= 0) {
-        const double *const t = l->joint[i];
-        const double d[2] = {l->own_centre[i][0] - l->own_centre[j][0],
-                             l->own_centre[i][1] - l->own_centre[j][1]};
+    if (above(f, i) >= 0) {
+        const double *const t = f->hinge[i];
+        const double d[2] = {f->own_centre[i][0] - f->own_centre[j][0],
+                             f->own_centre[i][1] - f->own_centre[j][1]};
         const double off = d[0] * t[1] - d[1] * t[0];
-        yields += off == 0 ? 0 : off * off / (l->own_inertia[i] + l->own_inertia[j]);
+        yields += off == 0 ? 0 : off * off / (f->own_inertia[i] + f->own_inertia[j]);
     }
     return 1 / yields;
 }
@@ -260,54 +254,52 @@ static double slide_resists(const stance_mechanism *m, const struct frames *f,
 struct slid {
     double inertia, own, drawn, mass, least;
 };
-static struct slid slid_in(const stance_mechanism *m, const stance_mechanism_numbers *v,
-                           const struct frames *f, const struct lumps *l, int frame)
+static struct slid slid_in(const struct frames *f, int frame)
 {
-    struct slid s = {.inertia = l->inertia[frame], .least = INFINITY};
+    struct slid s = {.inertia = f->inertia[frame], .least = INFINITY};
     double stretch = 0; /* sum of mass and way, less than the true square's */
     for (int i = frame + 1; i < f->angles; i++) {
-        if (!slides(m, f, i) || above(m, f, i) != frame)
+        if (!slides(f, i) || above(f, i) != frame)
             continue;
-        const double far = goes(m, v, f, i), resists = slide_resists(m, f, l, i);
-        s.inertia += 2 * far * length(l->moment[i]);
-        s.inertia += far * (l->inertia[i] * far + 2 * stretch);
-        stretch += l->inertia[i] * far;
-        s.own += l->own_inertia[i];
-        s.drawn += sqrt(l->inertia[i] / fmax(resists, 1e-6 * l->mass));
-        s.mass = fmax(s.mass, l->inertia[i]);
+        const double far = goes(f, i), resists = slide_resists(f, i);
+        s.inertia += 2 * far * length(f->moment[i]);
+        s.inertia += far * (f->inertia[i] * far + 2 * stretch);
+        stretch += f->inertia[i] * far;
+        s.own += f->own_inertia[i];
+        s.drawn += sqrt(f->inertia[i] / fmax(resists, 1e-6 * f->mass));
+        s.mass = fmax(s.mass, f->inertia[i]);
         s.least = fmin(s.least, resists);
     }
     return s;
 }
 
 /* The coefficients of theta^2 in K1, of 1 in K1, of theta^2 in K2. */
-static void lumps_curvature(const stance_mechanism *m, const stance_mechanism_numbers *v,
-                            const struct frames *f, const struct lumps *l, double arm,
-                            double out[3])
+static void lumps_curvature(const struct frames *f, double arm, double out[3])
 {
-    const bool free = m->body[0].joint == STANCE_FREE, rail = m->body[0].joint == STANCE_SLIDE;
-    double hub = rail ? l->base : 0, least = INFINITY, least_angle = INFINITY;
-    double most = l->mass, others = 0, share = 0;
+    const bool free = f->m->body[0].joint == STANCE_FREE,
+               rail = f->m->body[0].joint == STANCE_SLIDE;
+    double hub = rail ? f->base : 0, least = INFINITY, least_angle = INFINITY;
+    double most = f->mass, others = 0, share = 0;
     for (int i = 0; i < f->angles; i++) {
-        if (slides(m, f, i)) {
-            if (above(m, f, i) < 0) /* in no frame */
-                least_angle = fmin(least_angle, slide_resists(m, f, l, i));
+        if (slides(f, i)) {
+            if (above(f, i) < 0) /* in no frame */
+                least_angle = fmin(least_angle, slide_resists(f, i));
             continue;
         }
-        const int j = before(m, f, i);
-        const struct slid slid = slid_in(m, v, f, l, i);
-        const double mass = l->own_mass[i], inertia = l->own_inertia[i];
-        const double c2 = squared(l->own_centre[i]);
-        double held = j < 0 ? (free ? 0 : rail ? l->base : INFINITY) : 0;
-        if (j >= 0 && l->own_mass[j] > 0) {
-            const double d[2] = {l->joint[i][0] - l->own_centre[j][0],
-                                 l->joint[i][1] - l->own_centre[j][1]};
-            const bool pinned = before(m, f, j) < 0 && !free && !slides(m, f, j);
-            const double yields = (pinned ? 0 : 1 / l->own_mass[j]) +
-                                  (squared(d) > 0 ? squared(d) / l->own_inertia[j] : 0);
+        const int j = before(f, i);
+        const struct slid slid = slid_in(f, i);
+        const double mass = f->own_mass[i], inertia = f->own_inertia[i];
+        const double c2 = squared(f->own_centre[i]);
+        double held = j < 0 ? (free ? 0 : rail ? f->base : INFINITY) : 0;
+        if (j >= 0 && f->own_mass[j] > 0) {
+            const double d[2] = {f->hinge[i][0] - f->own_centre[j][0],
+                                 f->hinge[i][1] - f->own_centre[j][1]};
+            const bool pinned = before(f, j) < 0 && !free && !slides(f, j);
+            const double yields = (pinned ? 0 : 1 / f->own_mass[j]) +
+                                  (squared(d) > 0 ? squared(d) / f->own_inertia[j] : 0);
             held = 1 / yields;
         }
-        const bool at_base = free && (j < 0 || (before(m, f, j) < 0 && squared(l->joint[i]) == 0));
+        const bool at_base = free && (j < 0 || (before(f, j) < 0 && squared(f->hinge[i]) == 0));
         if (at_base && inertia + mass * c2 > 0)
             hub += mass * inertia / (inertia + mass * c2);
         const double with = isinf(held) ? mass : mass + held > 0 ? mass * held / (mass + held) : 0;
@@ -324,20 +316,20 @@ static void lumps_curvature(const stance_mechanism *m, const stance_mechanism_nu
     }
     int turning = 0;
     for (int i = 0; i < f->angles; i++)
-        turning += !slides(m, f, i);
+        turning += !slides(f, i);
     if (turning == 0) { /* then nothing bends */
         out[0] = out[1] = out[2] = 0;
         return;
     }
-    least = m->body[0].joint == STANCE_HINGE ? least_angle : fmin(hub, least_angle);
+    least = f->m->body[0].joint == STANCE_HINGE ? least_angle : fmin(hub, least_angle);
     /* Where nothing resists in some posture there is no bound; then one for what nearly nothing
      * resists. */
     least = fmax(least, 1e-6 * most);
     least_angle = fmax(least_angle, 1e-6 * most);
     share = fmin(share, 1e6);
     out[0] = (2 * sqrt(others) + sqrt(share) * sqrt(most)) / sqrt(least);
-    out[1] = sqrt(l->mass) * arm / sqrt(least);
-    out[2] = l->mass * arm / sqrt(least_angle) / sqrt(least);
+    out[1] = sqrt(f->mass) * arm / sqrt(least);
+    out[2] = f->mass * arm / sqrt(least_angle) / sqrt(least);
 }
 
 /* ---- tables ---------------------------------------------------------------------------------- */
@@ -358,20 +350,20 @@ static void typical(const stance_mechanism *m, stance_mechanism_numbers *v)
 
 /* The arms from the root to the point `own` in the frame of what `joint` carries; returns the first
  * frame, or STANCE_TREE_OWN where there is none. */
-static int path_make(const stance_mechanism *m, const struct frames *f, const stance_tree *tree,
-                     const struct lumps *l, int joint, const double own[2], int *path)
+static int path_make(const struct frames *f, const stance_tree *tree, int joint,
+                     const double own[2], int *path)
 {
     int next = STANCE_TREE_OWN;
     bool longer = false; /* by what slides */
     for (int j = 0; j < STANCE_MAX_ANGLES; j++)
         path[j] = -1;
-    for (int j = joint; j >= 0; j = before(m, f, j)) {
+    for (int j = joint; j >= 0; j = before(f, j)) {
         if (tree->slide[j]) {
             path[j] = 0;
             longer = true;
             continue;
         }
-        if (longer || squared(next == STANCE_TREE_OWN ? own : l->joint[next]) != 0)
+        if (longer || squared(next == STANCE_TREE_OWN ? own : f->hinge[next]) != 0)
             path[j] = next;
         next = j;
         longer = false;
@@ -381,27 +373,25 @@ static int path_make(const stance_mechanism *m, const struct frames *f, const st
 
 static stance_error refuse(stance_message *message, const char *what, int limit)
 {
-    if (message)
-        snprintf(message->text, sizeof message->text, "a mechanism has at most %d %s", limit, what);
-    return STANCE_BAD_ARGUMENT;
+    return stance_refuse(message, STANCE_BAD_ARGUMENT, "a mechanism has at most %d %s", limit,
+                         what);
 }
 
-static void tables_couple(const stance_mechanism *m, const struct frames *f, const struct lumps *l,
-                          stance_tree *tree)
+static void tables_couple(const struct frames *f, stance_tree *tree)
 {
     const int n = tree->angles;
     for (int i = 0; i < n; i++) {
         int from = i;
         bool longer = tree->slide[i]; /* the arm, by what slides */
-        for (int j = before(m, f, i); j >= 0; j = before(m, f, j)) {
+        for (int j = before(f, i); j >= 0; j = before(f, j)) {
             tree->through[i][j] = from;
             longer |= tree->slide[j];
-            tree->coupled[i][j] = longer || squared(l->joint[from]) != 0;
+            tree->coupled[i][j] = longer || squared(f->hinge[from]) != 0;
             tree->near[i][j] = tree->coupled[i][j];
             if (!tree->slide[j])
                 from = j, longer = false;
         }
-        if (tree->above[i] >= 0 && m->value.body[f->body[i]].armature != 0)
+        if (tree->above[i] >= 0 && f->m->value.body[f->body[i]].armature != 0)
             tree->near[i][tree->above[i]] = 1;
     }
     for (int k = 0; k < tree->springs + tree->rotors; k++) {
@@ -417,9 +407,8 @@ static void tables_couple(const stance_mechanism *m, const struct frames *f, con
 }
 
 /* Adds a contact at a point of its frame; false: there is no room. */
-static bool add_contact(const stance_mechanism *m, const struct frames *f, stance_tree *tree,
-                        const struct lumps *l, int kind, int body, const double own[2], int other,
-                        int grip)
+static bool add_contact(const struct frames *f, stance_tree *tree, int kind, int body,
+                        const double own[2], int other, int grip)
 {
     const bool stop = kind >= STANCE_TREE_LOW;
     const int c = tree->contacts, joint = stop ? -1 : f->joint[body], frame = f->of[body];
@@ -430,7 +419,7 @@ static bool add_contact(const stance_mechanism *m, const struct frames *f, stanc
     tree->straight_end[c] = own[0] == 0;
     tree->other[c] = other;
     tree->grip[c] = grip;
-    tree->top[c] = path_make(m, f, tree, l, joint, own, tree->path[c]);
+    tree->top[c] = path_make(f, tree, joint, own, tree->path[c]);
     if (stop)
         tree->top[c] = -1;
     if (frame >= 0 && (kind == STANCE_TREE_DISC || (kind == STANCE_TREE_SOLE && squared(own) == 0)))
@@ -441,34 +430,32 @@ static bool add_contact(const stance_mechanism *m, const struct frames *f, stanc
     return true;
 }
 
-static bool tables_contacts(const stance_mechanism *m, const stance_mechanism_numbers *v,
-                            const struct frames *f, const struct lumps *l, stance_tree *tree)
+static bool tables_contacts(const struct frames *f, stance_tree *tree)
 {
     static const double none[2] = {0, 0};
     bool fits = true, rough = false;
-    for (; tree->plates < m->plates; tree->plates++)
-        rough |= m->plate[tree->plates].rough;
-    for (int e = 0; e < m->elements; e++) {
-        const int b = m->element[e].body, c = tree->contacts;
-        const stance_element_numbers *const at = &v->element[e];
+    for (; tree->plates < f->m->plates; tree->plates++)
+        rough |= f->m->plate[tree->plates].rough;
+    for (int e = 0; e < f->m->elements; e++) {
+        const int b = f->m->element[e].body, c = tree->contacts;
+        const stance_element_numbers *const at = &f->v->element[e];
         double end[2][2];
-        frames_place(v, f, b, at->at, end[0]);
-        frames_place(v, f, b, at->to, end[1]);
-        const int kind = at->radius != 0      ? STANCE_TREE_DISC
-                         : m->element[e].sole ? STANCE_TREE_SOLE
-                                              : STANCE_TREE_POINT;
-        fits =
-            fits && add_contact(m, f, tree, l, kind, b, end[0], m->element[e].sole ? c + 1 : -1, c);
-        if (m->element[e].sole)
-            fits = fits && add_contact(m, f, tree, l, kind, b, end[1], c, m->plates ? c + 1 : c);
+        frames_place(f, b, at->at, end[0]);
+        frames_place(f, b, at->to, end[1]);
+        const int kind = at->radius != 0         ? STANCE_TREE_DISC
+                         : f->m->element[e].sole ? STANCE_TREE_SOLE
+                                                 : STANCE_TREE_POINT;
+        fits = fits && add_contact(f, tree, kind, b, end[0], f->m->element[e].sole ? c + 1 : -1, c);
+        if (f->m->element[e].sole)
+            fits = fits && add_contact(f, tree, kind, b, end[1], c, f->m->plates ? c + 1 : c);
         for (int k = c; k < tree->contacts; k++)
-            tree->rough[k] = rough || m->element[e].rough;
+            tree->rough[k] = rough || f->m->element[e].rough;
     }
-    for (int b = 0; b < m->bodies; b++) {
+    for (int b = 0; b < f->m->bodies; b++) {
         for (int side = 0; side < 2; side++)
-            if (stance_mechanism_stops(m, b, side))
-                fits = fits && add_contact(m, f, tree, l, side ? STANCE_TREE_HIGH : STANCE_TREE_LOW,
-                                           b, none, -1, -1);
+            if (stance_mechanism_stops(f->m, b, side))
+                fits = fits && add_contact(f, tree, side ? STANCE_TREE_HIGH : STANCE_TREE_LOW, b,
+                                           none, -1, -1);
     }
     return fits;
 }
@@ -497,7 +484,6 @@ stance_error stance_tree_make(const stance_mechanism *m, stance_tree *tree, stan
 {
     stance_mechanism_numbers v;
     struct frames f;
-    struct lumps l;
     memset(tree, 0, sizeof *tree);
     for (int c = 0; c < STANCE_MAX_CONTACTS; c++) { /* of none: a stop that never closes */
         tree->kind[c] = STANCE_TREE_LOW;
@@ -509,16 +495,16 @@ stance_error stance_tree_make(const stance_mechanism *m, stance_tree *tree, stan
     frames_make(m, &v, &f);
     if (f.angles > STANCE_MAX_ANGLES)
         return refuse(message, "bodies that turn or slide", STANCE_MAX_ANGLES);
-    lumps_make(m, &v, &f, &l);
+    lumps_make(&f);
     tree->base = m->body[0].joint == STANCE_FREE ? 2 : m->body[0].joint == STANCE_SLIDE;
     tree->angles = f.angles;
     for (int i = 0; i < f.angles; i++) {
-        tree->above[i] = above(m, &f, i);
-        tree->slide[i] = slides(m, &f, i);
+        tree->above[i] = above(&f, i);
+        tree->slide[i] = slides(&f, i);
         if (tree->slide[i])
             tree->sliding[tree->slides++] = i;
-        tree->straight[i] = l.moment[i][0] == 0;
-        tree->straight_joint[i] = l.joint[i][0] == 0;
+        tree->straight[i] = f.moment[i][0] == 0;
+        tree->straight_joint[i] = f.hinge[i][0] == 0;
         for (int j = 0; j < STANCE_MAX_ANGLES; j++)
             tree->through[i][j] = -1;
     }
@@ -535,16 +521,16 @@ stance_error stance_tree_make(const stance_mechanism *m, stance_tree *tree, stan
     }
     for (int i = 0; i < m->actuators; i++)
         tree->actuator[tree->actuators++] = f.joint[m->actuator[i].body];
-    if (!tables_contacts(m, &v, &f, &l, tree))
+    if (!tables_contacts(&f, tree))
         return refuse(message, "contacts (a sole has two, a limit of a joint is one)",
                       STANCE_MAX_CONTACTS);
     for (int p = 0; p < m->points; p++) {
         const int joint = f.joint[m->point[p].body], k = tree->pushes;
         double own[2];
-        frames_place(&v, &f, m->point[p].body, v.point[p].at, own);
+        frames_place(&f, m->point[p].body, v.point[p].at, own);
         if (m->point[p].falls) {
             tree->point_top[tree->points] =
-                path_make(m, &f, tree, &l, joint, own, tree->point_path[tree->points]);
+                path_make(&f, tree, joint, own, tree->point_path[tree->points]);
             tree->points++;
         }
         if (m->point[p].pushed == STANCE_NO_PUSH)
@@ -553,10 +539,10 @@ stance_error stance_tree_make(const stance_mechanism *m, stance_tree *tree, stan
             return refuse(message, "points that are pushed", STANCE_MAX_PUSHES);
         tree->push_impulse[k] = m->point[p].pushed == STANCE_IMPULSE;
         tree->push_swings[k] = m->point[p].swings;
-        path_make(m, &f, tree, &l, joint, own, tree->push_path[k]);
+        path_make(&f, tree, joint, own, tree->push_path[k]);
         tree->pushes++;
     }
-    tables_couple(m, &f, &l, tree);
+    tables_couple(&f, tree);
     tables_loads(tree);
     for (int i = 0; i < tree->angles; i++) { /* of what slides rotors are no part of the inertia */
         tree->alone[i] = !tree->slide[i];
@@ -570,9 +556,8 @@ stance_error stance_tree_make(const stance_mechanism *m, stance_tree *tree, stan
 /* ---- numbers --------------------------------------------------------------------------------- */
 
 /* Longest of the arms between a contact and the frames on its way. */
-static double longest_arm(const stance_tree *tree, const stance_mechanism *m,
-                          const stance_mechanism_numbers *v, const struct frames *f,
-                          const struct lumps *l, int c, const double end[2])
+static double longest_arm(const stance_tree *tree, const struct frames *f, int c,
+                          const double end[2])
 {
     double longest = 0;
     for (int j = 0; j < tree->angles; j++) {
@@ -582,8 +567,8 @@ static double longest_arm(const stance_tree *tree, const stance_mechanism *m,
         double more = 0;
         for (int i = j; i < tree->angles; i++)
             if (tree->above[i] == j && tree->path[c][i] >= 0)
-                more += goes(m, v, f, i);
-        longest = fmax(longest, more + length(next == STANCE_TREE_OWN ? end : l->joint[next]));
+                more += goes(f, i);
+        longest = fmax(longest, more + length(next == STANCE_TREE_OWN ? end : f->hinge[next]));
     }
     return longest;
 }
@@ -595,29 +580,28 @@ static bool is_upright(const stance_tree *tree, int joint)
 }
 
 /* Numbers of contacts, in the order of tables_contacts; returns the longest arm. */
-static double number_contacts(const stance_tree *tree, const stance_mechanism *m,
-                              const stance_mechanism_numbers *v, const struct frames *f,
-                              const struct lumps *l, stance_tree_numbers *number)
+static double number_contacts(const stance_tree *tree, const struct frames *f,
+                              stance_tree_numbers *number)
 {
     const double *const slope = number->slope;
     double(*const end)[3] = number->end, arm = 0;
     int c = 0;
-    for (int e = 0; e < m->elements; e++) {
-        const stance_element_numbers *const at = &v->element[e];
-        const int b = m->element[e].body;
-        for (int side = 0; side < 1 + m->element[e].sole; side++, c++) {
-            frames_place(v, f, b, side ? at->to : at->at, end[c]);
+    for (int e = 0; e < f->m->elements; e++) {
+        const stance_element_numbers *const at = &f->v->element[e];
+        const int b = f->m->element[e].body;
+        for (int side = 0; side < 1 + f->m->element[e].sole; side++, c++) {
+            frames_place(f, b, side ? at->to : at->at, end[c]);
             if (f->of[b] < 0)
                 lay(slope[1], slope[2], end[c], end[c]);
             end[c][2] = at->radius;
-            number->rough[c] = m->element[e].rough ? at->friction_factor : 1;
-            arm = fmax(arm, longest_arm(tree, m, v, f, l, c, end[c]) + end[c][2]);
+            number->rough[c] = f->m->element[e].rough ? at->friction_factor : 1;
+            arm = fmax(arm, longest_arm(tree, f, c, end[c]) + end[c][2]);
         }
     }
-    for (int b = 0; b < m->bodies; b++) {
+    for (int b = 0; b < f->m->bodies; b++) {
         for (int side = 0; side < 2; side++)
-            if (stance_mechanism_stops(m, b, side))
-                end[c++][0] = v->body[b].limits[side] + is_upright(tree, f->joint[b]) * slope[0];
+            if (stance_mechanism_stops(f->m, b, side))
+                end[c++][0] = f->v->body[b].limits[side] + is_upright(tree, f->joint[b]) * slope[0];
     }
     return arm;
 }
@@ -627,17 +611,16 @@ void stance_tree_numbers_make(const stance_tree *tree, const stance_mechanism *m
 {
     stance_mechanism_numbers v;
     struct frames f;
-    struct lumps l;
     const double g = robot[STANCE_ROBOT_GRAVITY], slope = robot[STANCE_ROBOT_SLOPE];
     double sine, cosine;
     *number = (stance_tree_numbers){0};
     stance_mechanism_expand(m, robot, &v);
     frames_make(m, &v, &f);
-    lumps_make(m, &v, &f, &l);
+    lumps_make(&f);
     stance_sincos(slope, &sine, &cosine);
     number->slope[0] = slope, number->slope[1] = sine, number->slope[2] = cosine;
     number->gravity[0] = -(g * sine), number->gravity[1] = g * cosine;
-    number->mass = l.mass;
+    number->mass = f.mass;
     if (tree->base == 1) {
         const double *const axis = v.body[0].axis, size = length(axis);
         number->rail[0] = (cosine * axis[0] - sine * axis[1]) / size;
@@ -645,15 +628,15 @@ void stance_tree_numbers_make(const stance_tree *tree, const stance_mechanism *m
         number->mass += v.body[0].armature;
     }
     for (int k = 0; k < 2; k++)
-        number->lift[k] = number->gravity[k] * (l.mass / number->mass);
+        number->lift[k] = number->gravity[k] * (f.mass / number->mass);
     frames_turn(&f, 0, v.reference, number->reference);
     for (int i = 0; i < tree->angles; i++) {
         const bool turned = tree->above[i] < 0 && tree->base < 2; /* into the ground's axes */
-        const double *const joint = l.joint[i];
-        number->inertia[i] = l.inertia[i];
-        number->inverse[i] = 1 / l.inertia[i];
-        memcpy(number->moment[i], l.moment[i], sizeof l.moment[i]);
-        memcpy(number->joint[i], joint, sizeof l.joint[i]);
+        const double *const joint = f.hinge[i];
+        number->inertia[i] = f.inertia[i];
+        number->inverse[i] = 1 / f.inertia[i];
+        memcpy(number->moment[i], f.moment[i], sizeof f.moment[i]);
+        memcpy(number->joint[i], joint, sizeof f.hinge[i]);
         if (turned)
             lay(sine, cosine, joint, number->joint[i]);
     }
@@ -681,7 +664,7 @@ void stance_tree_numbers_make(const stance_tree *tree, const stance_mechanism *m
     for (int p = 0, fall = 0, k = 0; p < m->points; p++) {
         const stance_point_numbers *const point = &v.point[p];
         double at[2];
-        frames_place(&v, &f, m->point[p].body, point->at, at);
+        frames_place(&f, m->point[p].body, point->at, at);
         if (m->point[p].falls) {
             memcpy(number->point[fall], at, sizeof at);
             if (f.of[m->point[p].body] < 0)
@@ -696,5 +679,5 @@ void stance_tree_numbers_make(const stance_tree *tree, const stance_mechanism *m
         number->push[k][5] = m->point[p].pushed == STANCE_IMPULSE ? point->from : point->to;
         number->push[k++][6] = point->frequency;
     }
-    lumps_curvature(m, &v, &f, &l, number_contacts(tree, m, &v, &f, &l, number), number->curvature);
+    lumps_curvature(&f, number_contacts(tree, &f, number), number->curvature);
 }

@@ -38,7 +38,8 @@ static inline void algebra_accelerate(struct algebra *at, const double *torque, 
                                       double *scene)
 {
     double force[SCENE_COORDINATES], more[SCENE_COORDINATES];
-    scene_forces(&at->body, 0, at->place, &at->trig, at->rate, torque, force);
+    scene_residual(&at->body, &(scene_guess){.s = at->place, .trig = &at->trig, .w = at->rate},
+                   torque, force);
     scene_solve(&at->matrix, false, force, own);
     scene_coordinate_rates(&at->body, &at->trig, own, scene);
     scene_coordinate_curvature(&at->body, &at->trig, at->rate, more);

@@ -120,8 +120,9 @@ static void say_step(const stance_scene *s, const double *robot, struct words *w
         change[k] = after[k] - before[k];
     }
     scene_trigonometry(at, &trig);
-    scene_factor(&body, h, theta, lever, lever, &trig, &trig, v, change, (const double(*)[2])r,
-                 false, none, &matrix);
+    scene_factor(&body, &(scene_guess){h, 0, at, &trig, v, change},
+                 &(scene_slopes){theta, lever, lever, &trig, (const double(*)[2])r, none}, false,
+                 &matrix);
     printf("begin step\ninverse");
     for (int k = 0; k < n; k++) {
         load_of(&number, k, load);

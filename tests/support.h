@@ -19,6 +19,23 @@
 
 #include "engine/control/design.h"
 
+/* Arguments of control design, as they come. */
+#define PLANT(...)                                                                                 \
+    &(stance_plant)                                                                                \
+    {                                                                                              \
+        __VA_ARGS__                                                                                \
+    }
+#define POLES(...)                                                                                 \
+    &(stance_poles)                                                                                \
+    {                                                                                              \
+        __VA_ARGS__                                                                                \
+    }
+#define SAMPLING(...)                                                                              \
+    &(stance_sampling)                                                                             \
+    {                                                                                              \
+        __VA_ARGS__                                                                                \
+    }
+
 static inline const stance_kernel *kernel_of(const char *method, const char *isa)
 {
     const stance_kernel *k =
@@ -39,7 +56,8 @@ static inline stance_case balance_case(double theta, double vtheta)
     stance_case c = plain_case();
     if (scene->equilibrium(scene, c.robot, &choice, &equilibrium, &message) != STANCE_OK ||
         scene->linearise(scene, c.robot, &equilibrium, A, B) != STANCE_OK ||
-        stance_place(6, 2, A, B, re, im, K, NULL, NULL, &message) != STANCE_OK)
+        stance_place(STANCE_ROBUST, PLANT(6, 2, A, B), 0, POLES(re, im), K, NULL, &message) !=
+            STANCE_OK)
         fail_msg("no balance controller");
     put_gain(&c, K);
     memcpy(c.position, equilibrium.position, sizeof c.position);

@@ -115,7 +115,7 @@ static struct plant plant_of(const stance_case *c)
     assert_int_equal(scene->linearise(scene, c->robot, &equilibrium, A, B), STANCE_OK);
     if (c->lag > 0) {
         p.n = 8;
-        stance_lagged(6, 2, A, B, K, c->lag, p.A, p.B, p.K);
+        stance_lagged(PLANT(6, 2, A, B), K, c->lag, p.A, p.B, p.K);
     } else {
         memcpy(p.A, A, sizeof A), memcpy(p.B, B, sizeof B), memcpy(p.K, K, sizeof K);
     }
@@ -137,8 +137,9 @@ static void late_loops_are_lost_where_theory_says(void **state)
         stance_case c = balance_case(1e-6, 0);
         c.delay = of[k].delay, c.lag = of[k].lag;
         const struct plant p = plant_of(&c);
-        assert_int_equal(stance_critical_sample_time(p.n, 2, p.A, p.B, p.K, c.delay, 1, &T),
-                         STANCE_OK);
+        assert_int_equal(
+            stance_critical_sample_time(PLANT(p.n, 2, p.A, p.B), SAMPLING(p.K, 0, c.delay), 1, &T),
+            STANCE_OK);
         for (int side = 0; side < 2; side++) {
             stance_result r;
             c.sample_every = 16;
@@ -182,7 +183,8 @@ static void noise_wanders_as_theory_says(void **state)
         const struct plant p = plant_of(&c);
         for (int i = 0; i < 6; i++)
             measured[i] = (i < 3 ? c.angle_noise * c.angle_noise : c.rate_noise * c.rate_noise) / 3;
-        assert_int_equal(stance_sampled_wander(p.n, 2, p.A, p.B, p.K, T, (int)c.delay, measured,
+        assert_int_equal(stance_sampled_wander(PLANT(p.n, 2, p.A, p.B),
+                                               SAMPLING(p.K, T, (int)c.delay), measured,
                                                c.noise * c.noise / 3, rms),
                          STANCE_OK);
         t = trajectory_new(ROWS, T);

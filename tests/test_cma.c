@@ -32,12 +32,16 @@ static int without_bounds(void **state)
     return 0;
 }
 
-static struct cma *made(int n, int lambda, const double *mean, double step, uint64_t seed)
+static struct cma *made_within(const struct cma_start *start)
 {
-    struct cma *s =
-        cma_make(&(struct cma_start){n, lambda, mean, free_low, free_high, step, seed, 0});
+    struct cma *s = cma_make(start);
     assert_non_null(s);
     return s;
+}
+
+static struct cma *made(int n, int lambda, const double *mean, double step, uint64_t seed)
+{
+    return made_within(&(struct cma_start){n, lambda, mean, free_low, free_high, step, seed, 0});
 }
 
 /* ---- objectives ------------------------------------------------------------------------------ */
@@ -100,15 +104,16 @@ static int64_t score_of(double f)
 }
 
 /* One generation; the best value of it. */
-static double generation(struct cma *s, int n, objective *f)
+static double generation(struct cma *s, objective *f)
 {
-    static double x[CMA_MAX_COORDINATES * 64];
-    static int64_t score[64];
+    enum { MOST_CANDIDATES = 30000, MOST_NUMBERS = 150000 };
+    static double x[MOST_NUMBERS];
+    static int64_t score[MOST_CANDIDATES];
     double best = INFINITY;
-    assert_true(s->lambda <= 64);
+    assert_true(s->lambda <= MOST_CANDIDATES && s->n * s->lambda <= MOST_NUMBERS);
     cma_ask(s, x);
     for (int i = 0; i < s->lambda; i++) {
-        const double value = f(n, x + i * n);
+        const double value = f(s->n, x + i * s->n);
         best = fmin(best, value);
         score[i] = score_of(value);
     }
@@ -146,7 +151,7 @@ static void evaluations(void **state)
             mean[j] = table[t].start * (j % 2 ? 1 : -1);
         for (int seed = 1; seed <= table[t].seeds; seed++) {
             struct cma *s = made(n, 0, mean, table[t].step, (uint64_t)seed);
-            while (generation(s, n, table[t].f) > 1e-9)
+            while (generation(s, table[t].f) > 1e-9)
                 assert_true(s->generation < 10000);
             sum += (double)(s->generation * (uint64_t)s->lambda);
             cma_free(s);
@@ -283,16 +288,11 @@ static void asked_points(void **state)
     enum { n = 5, count = 30000 };
     const double zero[n] = {0};
     double *x = malloc(sizeof(double[n]) * count), mean[n] = {0}, c[n * n] = {0};
-    int64_t *score = malloc(sizeof *score * count);
     int within[n][2] = {0};
     struct cma *s = made(n, count, zero, 0.5, 11);
-    assert_true(x && score);
-    for (int g = 0; g < 3; g++) {
-        cma_ask(s, x);
-        for (int i = 0; i < count; i++)
-            score[i] = score_of(rotated_ellipsoid(n, x + i * n));
-        assert_true(cma_tell(s, x, score));
-    }
+    assert_non_null(x);
+    for (int g = 0; g < 3; g++)
+        generation(s, rotated_ellipsoid);
     assert_true(s->axis[n - 1] > 3 * s->axis[0]);
     cma_ask(s, x);
     for (int i = 0; i < count * n; i++)
@@ -322,7 +322,6 @@ static void asked_points(void **state)
     }
     cma_free(s);
     free(x);
-    free(score);
 }
 
 /* No number twice, and none that goes with another: candidates, coordinates, generations, restarts
@@ -336,9 +335,8 @@ static void independent(void **state)
     int64_t score[lambda] = {0};
     for (int r = 0; r < runs; r++) {
         const uint64_t seed = (uint64_t)r / 4, restart = (uint64_t)r / 2 % 2;
-        struct cma *s =
-            cma_make(&(struct cma_start){n, lambda, zero, free_low, free_high, 1, seed, restart});
-        assert_non_null(s);
+        struct cma *s = made_within(
+            &(struct cma_start){n, lambda, zero, free_low, free_high, 1, seed, restart});
         cma_ask(s, z[r]);
         if (r % 2) { /* the second generation of what is still round */
             for (int i = 0; i < lambda * n; i++)
@@ -363,10 +361,10 @@ static void independent(void **state)
     }
 }
 
-static void hash_state(struct cma *s, int n, uint64_t *h)
+static void hash_state(const struct cma *s, uint64_t *h)
 {
-    const double step = s->step;
-    *h = hash(&step, sizeof step, *h);
+    const int n = s->n;
+    *h = hash(&s->step, sizeof s->step, *h);
     *h = hash(s->mean, (size_t)n * sizeof(double), *h);
     *h = hash(s->axis, (size_t)n * sizeof(double), *h);
     *h = hash(s->covariance, (size_t)(n * n) * sizeof(double), *h);
@@ -401,11 +399,11 @@ static void same_bits(void **state)
                 score[i] = 3 * score[i] - 7;
             assert_true(cma_tell(b, x, score));
             assert_true(cma_tell(retold, x, score));
-            generation(other, n, ellipsoid);
-            hash_state(a, n, &h[0]);
-            hash_state(b, n, &h[1]);
-            hash_state(retold, n, &h[2]);
-            hash_state(other, n, &h[3]);
+            generation(other, ellipsoid);
+            hash_state(a, &h[0]);
+            hash_state(b, &h[1]);
+            hash_state(retold, &h[2]);
+            hash_state(other, &h[3]);
         }
         assert_true(h[0] == h[1] && h[0] == h[2] && h[0] != h[3]);
         cma_free(a);
@@ -427,8 +425,8 @@ static void ties(void **state)
     uint64_t h[2] = {0};
     cma_ask(a, x);
     assert_true(cma_tell(a, x, tied) && cma_tell(b, x, strict));
-    hash_state(a, n, &h[0]);
-    hash_state(b, n, &h[1]);
+    hash_state(a, &h[0]);
+    hash_state(b, &h[1]);
     assert_true(h[0] == h[1]);
     cma_free(a);
     cma_free(b);
@@ -436,12 +434,17 @@ static void ties(void **state)
 
 /* ---- bounds ---------------------------------------------------------------------------------- */
 
+/* Within which candidates must be, and how near to the optimum that leaves. */
+static double within_low[MOST], within_high[MOST], nearest;
+
 static double shifted_sphere(int n, const double *x)
 {
-    double sum = 0;
-    for (int j = 0; j < n; j++)
+    double sum = -nearest;
+    for (int j = 0; j < n; j++) {
+        assert_true(within_low[j] <= x[j] && x[j] <= within_high[j]);
         sum += (x[j] - 1) * (x[j] - 1);
-    return sum;
+    }
+    return fmax(0, sum);
 }
 
 /* The first half of the coordinates may not be above 0.5, where the best is: found as fast as
@@ -451,30 +454,21 @@ static void optimum_on_bounds(void **state)
     (void)state;
     const int sizes[] = {1, 2, 12, 20};
     for (int t = 0; t < 4; t++) {
-        const int n = sizes[t], bound = (n + 1) / 2, lambda = cma_default_lambda(n);
-        double mean[MOST], low[MOST], high[MOST], x[MOST * 16];
-        int64_t score[16];
+        const int n = sizes[t], bound = (n + 1) / 2;
+        double mean[MOST];
         int candidates[2] = {0};
         for (int with = 0; with < 2; with++) {
+            nearest = with ? 0.25 * bound : 0;
             for (int j = 0; j < n; j++) {
                 mean[j] = j % 3 ? -1 : 0.5;
-                low[j] = with && j % 4 ? -1 : -INFINITY;
-                high[j] = with && j < bound ? 0.5 : INFINITY;
+                within_low[j] = with && j % 4 ? -1 : -INFINITY;
+                within_high[j] = with && j < bound ? 0.5 : INFINITY;
             }
-            struct cma *s = cma_make(&(struct cma_start){n, 0, mean, low, high, 0.5, 1, 0});
-            assert_non_null(s);
-            for (double best = INFINITY; best > 1e-6; candidates[with] += lambda) {
-                cma_ask(s, x);
-                for (int i = 0; i < lambda; i++) {
-                    for (int j = 0; j < n; j++)
-                        assert_true(low[j] <= x[i * n + j] && x[i * n + j] <= high[j]);
-                    const double value = shifted_sphere(n, x + i * n) - (with ? 0.25 * bound : 0);
-                    best = fmin(best, value);
-                    score[i] = score_of(fmax(0, value));
-                }
-                assert_true(cma_tell(s, x, score));
-                for (int j = 0; j < n; j++)
-                    assert_true(low[j] <= s->mean[j] && s->mean[j] <= high[j]);
+            struct cma *s =
+                made_within(&(struct cma_start){n, 0, mean, within_low, within_high, 0.5, 1, 0});
+            for (double best = INFINITY; best > 1e-6; candidates[with] += s->lambda) {
+                best = generation(s, shifted_sphere);
+                shifted_sphere(n, s->mean); /* is within bounds, too */
                 assert_true(candidates[with] < 400 * n);
             }
             cma_free(s);
@@ -485,26 +479,32 @@ static void optimum_on_bounds(void **state)
     }
 }
 
+static double nothing(int n, const double *x)
+{
+    (void)n;
+    (void)x;
+    return 0;
+}
+
+static double shell(int n, const double *x)
+{
+    return fabs(sphere(n, x) - 0.3);
+}
+
 /* A first step far beyond the range, and scores that say nothing for a while. */
 static void narrow_ranges(void **state)
 {
     (void)state;
-    enum { n = 5, lambda = 10 };
+    enum { n = 5 };
     const double mean[n] = {0, 1, 1, 0, 0.5}, low[n] = {0, 0, 0, 0, 0}, high[n] = {1, 1, 1, 1, 1};
-    double x[n * lambda];
-    int64_t score[lambda] = {0};
-    struct cma *s = cma_make(&(struct cma_start){n, lambda, mean, low, high, 30, 5, 0});
-    assert_non_null(s);
+    struct cma *s = made_within(&(struct cma_start){n, 10, mean, low, high, 30, 5, 0});
     for (int g = 0; cma_stop(s) != CMA_SMALL; g++) {
         assert_true(g < 500);
         for (int j = 0; j < n; j++)
             assert_true(s->step * sqrt(s->covariance[j * n + j]) < 0.334);
-        cma_ask(s, x);
-        for (int i = 0; i < lambda; i++)
-            score[i] = g < 150 ? 0 : -(int64_t)(1e12 * fabs(sphere(n, x + i * n) - 0.3));
-        assert_true(cma_tell(s, x, score));
+        generation(s, g < 150 ? nothing : shell);
     }
-    assert_true(fabs(sphere(n, s->mean) - 0.3) < 1e-3);
+    assert_true(shell(n, s->mean) < 1e-3);
     cma_free(s);
 }
 
@@ -555,11 +555,11 @@ static void image_of_a_range(void **state)
 
 /* ---- scores that are counts ------------------------------------------------------------------ */
 
-/* Of 512: nothing far away, all of them on a plateau around the optimum. */
-static int64_t count_of_512(int n, const double *x)
+/* Lost of 512: all of them far away, none on a plateau around the optimum. */
+static double lost_of_512(int n, const double *x)
 {
     const double wide = exp(-0.5 * (sqrt(sphere(n, x)) - 1));
-    return (int64_t)(512 * fmin(1, wide * (0.75 + 0.25 * exp(-x[0] * x[0]))));
+    return 512 - floor(512 * fmin(1, wide * (0.75 + 0.25 * exp(-x[0] * x[0]))));
 }
 
 static void plateaus(void **state)
@@ -568,23 +568,14 @@ static void plateaus(void **state)
     const int sizes[] = {1, 2, 12, 56};
     for (int t = 0; t < 4; t++) {
         const int n = sizes[t];
-        double mean[MOST], x[MOST * 16];
-        int64_t score[16], best = 0;
-        int candidates = 0;
+        double mean[MOST];
         for (int j = 0; j < n; j++)
             mean[j] = 8 / sqrt(n);
         struct cma *s = made(n, 0, mean, 0.3, 2);
-        assert_true(count_of_512(n, mean) < 25);
-        while (best < 512) {
-            cma_ask(s, x);
-            for (int i = 0; i < s->lambda; i++) {
-                score[i] = count_of_512(n, x + i * n);
-                best = score[i] > best ? score[i] : best;
-            }
-            assert_true(cma_tell(s, x, score));
-            candidates += s->lambda;
+        int candidates = s->lambda;
+        assert_true(lost_of_512(n, mean) > 512 - 25);
+        for (; generation(s, lost_of_512) > 0; candidates += s->lambda)
             assert_true(candidates < 200 + 100 * n);
-        }
         print_message("# counts, %d coordinates: %d candidates\n", n, candidates);
         cma_free(s);
     }
@@ -596,14 +587,11 @@ static void flat(void **state)
     (void)state;
     enum { n = 6, lambda = 9, seeds = 40 };
     const double zero[n] = {0};
-    double x[n * lambda], sum = 0, squares = 0;
-    const int64_t score[lambda] = {0};
+    double sum = 0, squares = 0;
     for (uint64_t seed = 0; seed < seeds; seed++) {
         struct cma *s = made(n, lambda, zero, 1, seed);
-        for (int g = 0; g < 200; g++) {
-            cma_ask(s, x);
-            assert_true(cma_tell(s, x, score));
-        }
+        for (int g = 0; g < 200; g++)
+            generation(s, nothing);
         const double far = log(s->step);
         sum += far;
         squares += far * far;
@@ -621,30 +609,25 @@ static void refused(void **state)
     (void)state;
     const double mean[2] = {0, 1}, low[2] = {-1, -1}, high[2] = {1, 1}, nan[2] = {0, NAN};
     const double infinite[2] = {INFINITY, 0}, outside[2] = {0, 1.5}, wrong[2] = {-1, 1};
-    const uint64_t seed = UINT64_MAX;
-    struct cma *s = cma_make(&(struct cma_start){2, 2, mean, low, high, 1, seed, seed});
-    assert_non_null(s);
-    cma_free(s);
+    const struct cma_start good = {2, 2, mean, low, high, 1, UINT64_MAX, UINT64_MAX};
+    const struct {
+        int n, lambda;
+    } sizes[] = {{0, 0}, {-1, 0}, {MOST + 1, 0}, {2, 1}, {2, -4}, {2, CMA_MAX_CANDIDATES + 1}};
+    const double steps[] = {0, -1, NAN, INFINITY};
+    const double *const ranges[][3] = {{nan, low, high},     {infinite, free_low, free_high},
+                                       {outside, low, high}, {mean, nan, high},
+                                       {mean, low, nan},     {mean, high, low},
+                                       {mean, wrong, high}};
+    cma_free(made_within(&good));
     cma_free(NULL);
-    const struct cma_start bad[] = {{0, 0, mean, low, high, 1, 1, 0},
-                                    {-1, 0, mean, low, high, 1, 1, 0},
-                                    {MOST + 1, 0, mean, low, high, 1, 1, 0},
-                                    {2, 1, mean, low, high, 1, 1, 0},
-                                    {2, -4, mean, low, high, 1, 1, 0},
-                                    {2, CMA_MAX_CANDIDATES + 1, mean, low, high, 1, 1, 0},
-                                    {2, 0, mean, low, high, 0, 1, 0},
-                                    {2, 0, mean, low, high, -1, 1, 0},
-                                    {2, 0, mean, low, high, NAN, 1, 0},
-                                    {2, 0, mean, low, high, INFINITY, 1, 0},
-                                    {2, 0, nan, low, high, 1, 1, 0},
-                                    {2, 0, infinite, free_low, free_high, 1, 1, 0},
-                                    {2, 0, outside, low, high, 1, 1, 0},
-                                    {2, 0, mean, nan, high, 1, 1, 0},
-                                    {2, 0, mean, low, nan, 1, 1, 0},
-                                    {2, 0, mean, high, low, 1, 1, 0},
-                                    {2, 0, mean, wrong, high, 1, 1, 0}};
-    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
-        assert_null(cma_make(&bad[i]));
+    for (int i = 0; i < 6; i++)
+        assert_null(
+            cma_make(&(struct cma_start){sizes[i].n, sizes[i].lambda, mean, low, high, 1, 1, 0}));
+    for (int i = 0; i < 4; i++)
+        assert_null(cma_make(&(struct cma_start){2, 0, mean, low, high, steps[i], 1, 0}));
+    for (int i = 0; i < 7; i++)
+        assert_null(
+            cma_make(&(struct cma_start){2, 0, ranges[i][0], ranges[i][1], ranges[i][2], 1, 1, 0}));
 }
 
 static void told_nonsense(void **state)
@@ -654,15 +637,14 @@ static void told_nonsense(void **state)
     const double zero[n] = {0}, low[n] = {-1, -INFINITY, -INFINITY},
                  high[n] = {1, INFINITY, INFINITY};
     const double nonsense[] = {NAN, INFINITY, -INFINITY, 1.5, 1e101};
-    struct cma *s = cma_make(&(struct cma_start){n, lambda, zero, low, high, 0.1, 1, 0});
+    struct cma *s = made_within(&(struct cma_start){n, lambda, zero, low, high, 0.1, 1, 0});
     double x[n * lambda];
     int64_t score[lambda] = {INT64_MIN, INT64_MAX, 0, -1, 1, INT64_MIN, INT64_MAX};
     uint64_t before = 0, after = 0;
-    assert_non_null(s);
     cma_ask(s, x);
     assert_true(cma_tell(s, x, score));
     cma_ask(s, x);
-    hash_state(s, n, &before);
+    hash_state(s, &before);
     for (int i = 0; i < 5; i++) {
         const int place = i == 3 ? n * (lambda - 1) : n * lambda - 1;
         const double kept = x[place];
@@ -670,14 +652,15 @@ static void told_nonsense(void **state)
         assert_false(cma_tell(s, x, score));
         x[place] = kept;
     }
-    hash_state(s, n, &after);
+    hash_state(s, &after);
     assert_true(before == after && s->generation == 1);
     assert_true(cma_tell(s, x, score) && s->generation == 2);
     cma_free(s);
 }
 
-static void check_finite(const struct cma *s, int n)
+static void check_finite(const struct cma *s)
 {
+    const int n = s->n;
     assert_true(isfinite(s->step) && s->step > 0);
     for (int j = 0; j < n; j++)
         assert_true(isfinite(s->mean[j]) && isfinite(s->axis[j]) && s->axis[j] > 0);
@@ -706,7 +689,7 @@ static void numbers_stay_finite(void **state)
             if (!cma_tell(s, x, score))
                 break;
         }
-        check_finite(s, n);
+        check_finite(s);
         assert_true(cma_stop(s) != CMA_GOES_ON);
         cma_free(s);
     }
@@ -725,11 +708,11 @@ static double away(int n, const double *x)
 }
 
 /* The largest standard deviation of a coordinate. */
-static double widest(const struct cma *s, int n)
+static double widest(const struct cma *s)
 {
     double most = 0;
-    for (int j = 0; j < n; j++)
-        most = fmax(most, s->step * sqrt(s->covariance[j * n + j]));
+    for (int j = 0; j < s->n; j++)
+        most = fmax(most, s->step * sqrt(s->covariance[j * s->n + j]));
     return most;
 }
 
@@ -748,14 +731,14 @@ static void stops(void **state)
         assert_int_equal(cma_stop(s), CMA_GOES_ON);
         double wide = INFINITY; /* before the last generation */
         while (cma_stop(s) == CMA_GOES_ON) {
-            wide = widest(s, n);
-            generation(s, n, table[t].f);
+            wide = widest(s);
+            generation(s, table[t].f);
             assert_true(s->generation < 5000);
         }
         print_message("# %s after %d generations\n", cma_stop_words[cma_stop(s)],
                       (int)s->generation);
         assert_int_equal(cma_stop(s), table[t].expected);
-        assert_true(wide >= 1e-3 && (widest(s, n) < 1e-3) == (cma_stop(s) == CMA_SMALL));
+        assert_true(wide >= 1e-3 && (widest(s) < 1e-3) == (cma_stop(s) == CMA_SMALL));
         cma_free(s);
     }
 }

@@ -17,8 +17,8 @@ static double eigenvalue_tolerance(const char *name)
 
 static void compare_design(const json_t *record, const char *name, const double *A, const double *B)
 {
-    double poles[12], K[12], wanted[12], loop[36], re[6], im[6], condition, critical;
-    int sweeps;
+    double poles[12], K[12], wanted[12], loop[36], re[6], im[6], critical;
+    stance_robustness got;
     stance_message message = {""};
 
     matrix_of(record, "poles", 6, 2, poles);
@@ -27,19 +27,23 @@ static void compare_design(const json_t *record, const char *name, const double 
         re[i] = poles[2 * i];
         im[i] = poles[2 * i + 1];
     }
-    if (stance_place(6, 2, A, B, re, im, K, &sweeps, &condition, &message) != STANCE_OK)
+    if (stance_place(STANCE_ROBUST, PLANT(6, 2, A, B), 0, POLES(re, im), K, &got, &message) !=
+        STANCE_OK)
         fail_msg("%s: %s", name, message.text);
     closed_loop(6, 2, A, B, K, loop);
     assert_eigenvalues(6, loop, re, im, 1e-7, name);
     const double reference = json_number_value(json_object_get(record, "condition"));
-    assert_near(condition, reference, 1e-5 * reference, "condition number");
+    assert_near(got.condition, reference, 1e-5 * reference, "condition number");
     if (!json_is_true(json_object_get(record, "compare_gain")))
         return;
     assert_matrix(12, K, wanted, 1e-5, name);
-    assert_int_equal(stance_critical_sample_time(6, 2, A, B, K, 0, 5, &critical), STANCE_OK);
+    assert_int_equal(
+        stance_critical_sample_time(PLANT(6, 2, A, B), SAMPLING(K, 0, 0), 5, &critical), STANCE_OK);
     const double T = json_number_value(json_object_get(record, "critical_sample_time"));
     assert_near(critical, T, 1e-6 * T, "critical sample time");
-    assert_int_equal(stance_critical_sample_time(6, 2, A, B, wanted, 0, 5, &critical), STANCE_OK);
+    assert_int_equal(
+        stance_critical_sample_time(PLANT(6, 2, A, B), SAMPLING(wanted, 0, 0), 5, &critical),
+        STANCE_OK);
     assert_near(critical, T, 1e-9 * T, "critical sample time of the reference's own gain");
 }
 
@@ -74,7 +78,7 @@ static void compare_case(const json_t *record)
         im[i] = w[2 * i + 1];
     }
     assert_eigenvalues(6, A, re, im, eigenvalue_tolerance(name), name);
-    assert_int_equal(stance_kalman(6, 2, A, B, sv, &rank), STANCE_OK);
+    assert_int_equal(stance_kalman(PLANT(6, 2, A, B), sv, &rank), STANCE_OK);
     assert_int_equal(rank, 6);
     assert_int_equal(rank, json_integer_value(json_object_get(record, "rank")));
     compare_design(record, name, A, B);
@@ -114,10 +118,13 @@ static void published_figures(void **state)
     assert_near(gaps[1], 0.0375, 5e-5, "gap of the free foot");
     assert_int_equal(biped()->linearise(biped(), DEFAULT_ROBOT, &e, A, B), STANCE_OK);
     assert_eigenvalues(6, A, open_re, open_im, 1e-6, "open loop");
-    assert_int_equal(stance_place(6, 2, A, B, PAPER_POLES, zero, K, NULL, NULL, NULL), STANCE_OK);
+    assert_int_equal(
+        stance_place(STANCE_ROBUST, PLANT(6, 2, A, B), 0, POLES(PAPER_POLES, zero), K, NULL, NULL),
+        STANCE_OK);
     for (int i = 0; i < 12; i++)
         assert_near(K[i], gain[i], 0.0051, "gain");
-    assert_int_equal(stance_critical_sample_time(6, 2, A, B, K, 0, 5, &T), STANCE_OK);
+    assert_int_equal(stance_critical_sample_time(PLANT(6, 2, A, B), SAMPLING(K, 0, 0), 5, &T),
+                     STANCE_OK);
     assert_near(T, 0.1363, 5e-5, "critical sample time");
     const stance_equilibrium right = equilibrium_of(DEFAULT_ROBOT, 0, M_PI / 2, NAN, 0, false);
     assert_near(right.position[3], -M_PI / 2, 1e-15, "q1 at right angles");
@@ -310,7 +317,8 @@ static void places_any_system(void **state)
     uint64_t seed = 11;
     for (int round = 0; round < 300; round++) {
         const int n = 1 + round % 8, m = 1 + round / 8 % (n + 1);
-        double A[64], B[72], K[72], loop[64], re[8], im[8] = {0}, condition;
+        double A[64], B[72], K[72], loop[64], re[8], im[8] = {0};
+        stance_robustness got;
         for (int i = 0; i < n * n; i++)
             A[i] = uniform(&seed, -2, 2);
         for (int i = 0; i < n * m; i++)
@@ -331,11 +339,12 @@ static void places_any_system(void **state)
             im[2] = 1.5;
         }
         stance_message message = {""};
-        if (stance_place(n, m, A, B, re, im, K, NULL, &condition, &message) != STANCE_OK)
+        if (stance_place(STANCE_ROBUST, PLANT(n, m, A, B), 0, POLES(re, im), K, &got, &message) !=
+            STANCE_OK)
             fail_msg("n = %d, m = %d: %s", n, m, message.text);
         closed_loop(n, m, A, B, K, loop);
-        assert_true(condition >= 1 - 1e-12);
-        assert_eigenvalues(n, loop, re, im, 1e-11 * condition * (1 + n), "random system");
+        assert_true(got.condition >= 1 - 1e-12);
+        assert_eigenvalues(n, loop, re, im, 1e-11 * got.condition * (1 + n), "random system");
     }
 }
 
@@ -347,7 +356,8 @@ static void single_input(void **state)
     const double re[3] = {-1, -2, -2}, im[3] = {0, 3, -3}; /* (s + 1)(s^2 + 4 s + 13) */
     const double wanted[3] = {(2 + 13) / 2.0, (-3 + 17) / 2.0, (4 + 5) / 2.0};
     double K[3];
-    assert_int_equal(stance_place(3, 1, A, B, re, im, K, NULL, NULL, NULL), STANCE_OK);
+    assert_int_equal(
+        stance_place(STANCE_ROBUST, PLANT(3, 1, A, B), 0, POLES(re, im), K, NULL, NULL), STANCE_OK);
     assert_matrix(3, K, wanted, 1e-12, "companion form");
 }
 
@@ -358,14 +368,18 @@ static void full_inputs(void **state)
     const double A[9] = {1, 2, 3, 4, 5, 6, 7, 8, 10}, B[9] = {1, 0, 1, 0, 2, 0, 0, 1, 1};
     const double re[3] = {-1, -1, -1}, pair_re[3] = {-1, -2, -1}, none[3] = {0},
                  pair_im[3] = {2, 0, -2};
-    double K[9], loop[9], condition;
-    assert_int_equal(stance_place(3, 3, A, B, re, none, K, NULL, &condition, NULL), STANCE_OK);
-    assert_near(condition, 1, 1e-9, "condition of orthonormal vectors");
+    double K[9], loop[9];
+    stance_robustness got;
+    assert_int_equal(
+        stance_place(STANCE_ROBUST, PLANT(3, 3, A, B), 0, POLES(re, none), K, &got, NULL),
+        STANCE_OK);
+    assert_near(got.condition, 1, 1e-9, "condition of orthonormal vectors");
     closed_loop(3, 3, A, B, K, loop);
     assert_eigenvalues(3, loop, re, none, 1e-12, "triple pole");
-    assert_int_equal(stance_place(3, 3, A, B, pair_re, pair_im, K, NULL, &condition, NULL),
-                     STANCE_OK);
-    assert_near(condition, 1, 1e-9, "condition of a normal matrix");
+    assert_int_equal(
+        stance_place(STANCE_ROBUST, PLANT(3, 3, A, B), 0, POLES(pair_re, pair_im), K, &got, NULL),
+        STANCE_OK);
+    assert_near(got.condition, 1, 1e-9, "condition of a normal matrix");
     closed_loop(3, 3, A, B, K, loop);
     assert_eigenvalues(3, loop, pair_re, pair_im, 1e-12, "pair");
 }
@@ -380,11 +394,17 @@ static void repeated_and_reordered(void **state)
     const double reversed[6] = {-3.9, -4.6, -3, -4.2, -3.3, -3.6};
     double A[36], B[12], K[12], other[12], loop[36];
     assert_int_equal(biped()->linearise(biped(), DEFAULT_ROBOT, &e, A, B), STANCE_OK);
-    assert_int_equal(stance_place(6, 2, A, B, twice, none, K, NULL, NULL, NULL), STANCE_OK);
+    assert_int_equal(
+        stance_place(STANCE_ROBUST, PLANT(6, 2, A, B), 0, POLES(twice, none), K, NULL, NULL),
+        STANCE_OK);
     closed_loop(6, 2, A, B, K, loop);
     assert_eigenvalues(6, loop, twice, none, 1e-4, "double poles");
-    assert_int_equal(stance_place(6, 2, A, B, PAPER_POLES, none, K, NULL, NULL, NULL), STANCE_OK);
-    assert_int_equal(stance_place(6, 2, A, B, reversed, none, other, NULL, NULL, NULL), STANCE_OK);
+    assert_int_equal(
+        stance_place(STANCE_ROBUST, PLANT(6, 2, A, B), 0, POLES(PAPER_POLES, none), K, NULL, NULL),
+        STANCE_OK);
+    assert_int_equal(
+        stance_place(STANCE_ROBUST, PLANT(6, 2, A, B), 0, POLES(reversed, none), other, NULL, NULL),
+        STANCE_OK);
     assert_matrix(12, other, K, 1e-7, "poles in another order");
 }
 
@@ -395,84 +415,55 @@ static void placement_messages(void **state)
     const double A[9] = {0, 1, 0, 0, 0, 0, 0, 0, 0}, B[6] = {0, 0, 1, 0, 0, 1};
     const double stuck[4] = {1, 0, 0, 2}, push[2] = {1, 0}, nothing[2] = {0, 0};
     const struct {
-        int n, m;
-        const double *A, *B;
+        stance_plant plant;
         double re[3], im[3];
         stance_error error;
         const char *text;
     } wrong[] = {
-        {3,
-         2,
-         A,
-         B,
+        {{3, 2, A, B},
          {-1, -2, -3},
          {0, 1, 0},
          STANCE_BAD_POLES,
          "the pole -2+1i has no conjugate -2-1i among the poles"},
-        {3,
-         2,
-         A,
-         B,
+        {{3, 2, A, B},
          {-1, -2, -2},
          {0, 1, 1},
          STANCE_BAD_POLES,
          "the pole -2+1i has no conjugate -2-1i among the poles"},
-        {3,
-         2,
-         A,
-         B,
+        {{3, 2, A, B},
          {-1, -1, -1},
          {0, 0, 0},
          STANCE_BAD_POLES,
          "the pole -1 is wanted 3 times, but the number of independent inputs, 2, is the most that "
          "one pole can be repeated"},
-        {2,
-         1,
-         stuck,
-         push,
+        {{2, 1, stuck, push},
          {-1, -1},
          {0, 0},
          STANCE_BAD_POLES,
          "the pole -1 is wanted 2 times, but the number of independent inputs, 1, is the most that "
          "one pole can be repeated"},
-        {2,
-         1,
-         stuck,
-         push,
+        {{2, 1, stuck, push},
          {-1, -2},
          {0, 0},
          STANCE_UNCONTROLLABLE,
          "the pair (A, B) is not controllable: no input reaches the mode with eigenvalue 2"},
-        {2,
-         1,
-         stuck,
-         nothing,
+        {{2, 1, stuck, nothing},
          {-1, -2},
          {0, 0},
          STANCE_UNCONTROLLABLE,
          "the inputs have no effect: the matrix B is zero"},
-        {3,
-         2,
-         A,
-         B,
+        {{3, 2, A, B},
          {-1, -2, NAN},
          {0, 0, 0},
          STANCE_BAD_POLES,
          "3 poles are needed, all of them finite"},
-        {0,
-         1,
-         A,
-         B,
-         {0},
-         {0},
-         STANCE_BAD_ARGUMENT,
-         "pole placement needs at least one state and one input"},
+        {{0, 1, A, B}, {0}, {0}, STANCE_BAD_ARGUMENT, "a design needs 1 to 32 states and inputs"},
     };
     for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
         double K[6];
         stance_message message = {""};
-        assert_int_equal(stance_place(wrong[i].n, wrong[i].m, wrong[i].A, wrong[i].B, wrong[i].re,
-                                      wrong[i].im, K, NULL, NULL, &message),
+        assert_int_equal(stance_place(STANCE_ROBUST, &wrong[i].plant, 0,
+                                      POLES(wrong[i].re, wrong[i].im), K, NULL, &message),
                          wrong[i].error);
         assert_text(message.text, wrong[i].text);
     }
@@ -480,8 +471,9 @@ static void placement_messages(void **state)
     const double re[3] = {-1, -2, -3}, im[3] = {0};
     double K[6];
     stance_message message = {""};
-    assert_int_equal(stance_place(3, 2, endless, B, re, im, K, NULL, NULL, &message),
-                     STANCE_BAD_ARGUMENT);
+    assert_int_equal(
+        stance_place(STANCE_ROBUST, PLANT(3, 2, endless, B), 0, POLES(re, im), K, NULL, &message),
+        STANCE_BAD_ARGUMENT);
     assert_text(message.text, "A and B must be finite");
 }
 
@@ -493,7 +485,9 @@ static void spread_too_thin(void **state)
     const double re[4] = {-1, -1, -2, -2}, im[4] = {0};
     double K[8];
     stance_message message = {""};
-    assert_int_equal(stance_place(4, 2, A, B, re, im, K, NULL, NULL, &message), STANCE_BAD_POLES);
+    assert_int_equal(
+        stance_place(STANCE_ROBUST, PLANT(4, 2, A, B), 0, POLES(re, im), K, NULL, &message),
+        STANCE_BAD_POLES);
     assert_true(strstr(message.text, "no independent eigenvectors") != NULL);
 }
 
@@ -524,18 +518,18 @@ static void kalman_rank(void **state)
     double A[36], B[12], sv[6], slow[6];
     int rank;
     assert_int_equal(biped()->linearise(biped(), DEFAULT_ROBOT, &e, A, B), STANCE_OK);
-    assert_int_equal(stance_kalman(6, 2, A, B, sv, &rank), STANCE_OK);
+    assert_int_equal(stance_kalman(PLANT(6, 2, A, B), sv, &rank), STANCE_OK);
     assert_int_equal(rank, 6);
     for (int i = 0; i < 36; i++) /* milliseconds */
         A[i] *= i / 6 >= 3 ? 1e-6 : 1;
     for (int i = 0; i < 12; i++)
         B[i] *= 1e-6;
-    assert_int_equal(stance_kalman(6, 2, A, B, slow, &rank), STANCE_OK);
+    assert_int_equal(stance_kalman(PLANT(6, 2, A, B), slow, &rank), STANCE_OK);
     assert_int_equal(rank, 6);
     assert_matrix(6, slow, sv, 1e-12, "singular values");
-    assert_int_equal(stance_kalman(3, 1, chain, last, sv, &rank), STANCE_OK);
+    assert_int_equal(stance_kalman(PLANT(3, 1, chain, last), sv, &rank), STANCE_OK);
     assert_int_equal(rank, 3);
-    assert_int_equal(stance_kalman(3, 1, chain, first, sv, &rank), STANCE_OK);
+    assert_int_equal(stance_kalman(PLANT(3, 1, chain, first), sv, &rank), STANCE_OK);
     assert_int_equal(rank, 1);
 }
 
@@ -548,16 +542,16 @@ static void discretisation(void **state)
     const double wanted_B[3] = {(1 - cos(w * T)) / (w * w), sin(w * T) / w,
                                 4 * (1 - exp(-0.5 * T))};
     double Ad[9], Bd[3], stiff_A[1] = {-2000}, stiff_B[1] = {3};
-    assert_int_equal(stance_discretise(3, 1, A, B, T, Ad, Bd), STANCE_OK);
+    assert_int_equal(stance_discretise(PLANT(3, 1, A, B), T, Ad, Bd), STANCE_OK);
     assert_matrix(9, Ad, wanted_A, 2e-15, "Ad");
     assert_matrix(3, Bd, wanted_B, 2e-15, "Bd");
-    assert_int_equal(stance_discretise(3, 1, A, B, 0, Ad, Bd), STANCE_OK);
+    assert_int_equal(stance_discretise(PLANT(3, 1, A, B), 0, Ad, Bd), STANCE_OK);
     assert_true(Ad[0] == 1 && Ad[1] == 0 && Bd[1] == 0);
-    assert_int_equal(stance_discretise(1, 1, stiff_A, stiff_B, 0.5, Ad, Bd), STANCE_OK);
+    assert_int_equal(stance_discretise(PLANT(1, 1, stiff_A, stiff_B), 0.5, Ad, Bd), STANCE_OK);
     assert_near(Ad[0], 0, 1e-15, "stiff Ad");
     assert_near(Bd[0], 0.0015, 1e-15, "stiff Bd");
-    assert_int_equal(stance_discretise(3, 1, A, B, -1, Ad, Bd), STANCE_BAD_ARGUMENT);
-    assert_int_equal(stance_discretise(3, 1, A, B, NAN, Ad, Bd), STANCE_BAD_ARGUMENT);
+    assert_int_equal(stance_discretise(PLANT(3, 1, A, B), -1, Ad, Bd), STANCE_BAD_ARGUMENT);
+    assert_int_equal(stance_discretise(PLANT(3, 1, A, B), NAN, Ad, Bd), STANCE_BAD_ARGUMENT);
 }
 
 static void critical_sample_times(void **state)
@@ -567,7 +561,8 @@ static void critical_sample_times(void **state)
     /* x' = a x + u, u = -k x: the sampled pole exp(a T) (1 - k / a) + k / a passes -1. */
     for (int i = 0; i < 20; i++) {
         const double a = 0.3 + 0.2 * i, k = a * (1.05 + 0.3 * i);
-        assert_int_equal(stance_critical_sample_time(1, 1, &a, (double[]){1}, &k, 0, 100, &T),
+        assert_int_equal(stance_critical_sample_time(PLANT(1, 1, &a, (double[]){1}),
+                                                     SAMPLING(&k, 0, 0), 100, &T),
                          STANCE_OK);
         assert_near(T, log((k / a + 1) / (k / a - 1)) / a, 1e-12 * T, "scalar");
     }
@@ -575,15 +570,20 @@ static void critical_sample_times(void **state)
     const double A[4] = {0, 1, 0, 0}, B[2] = {0, 1};
     for (int i = 0; i < 20; i++) {
         const double K[2] = {0.5 + 0.7 * i, 4.0 - 0.15 * i};
-        assert_int_equal(stance_critical_sample_time(2, 1, A, B, K, 0, 100, &T), STANCE_OK);
+        assert_int_equal(stance_critical_sample_time(PLANT(2, 1, A, B), SAMPLING(K, 0, 0), 100, &T),
+                         STANCE_OK);
         assert_near(T, fmin(2 * K[1] / K[0], 2 / K[1]), 1e-10 * T, "double integrator");
     }
     const double bad[2] = {-1, 1}, none[2] = {0}, stable[4] = {-1, 0, 0, -2};
-    assert_int_equal(stance_critical_sample_time(2, 1, A, B, bad, 0, 10, &T), STANCE_OK);
+    assert_int_equal(stance_critical_sample_time(PLANT(2, 1, A, B), SAMPLING(bad, 0, 0), 10, &T),
+                     STANCE_OK);
     assert_true(T == 0);
-    assert_int_equal(stance_critical_sample_time(2, 1, stable, B, none, 0, 10, &T), STANCE_OK);
+    assert_int_equal(
+        stance_critical_sample_time(PLANT(2, 1, stable, B), SAMPLING(none, 0, 0), 10, &T),
+        STANCE_OK);
     assert_true(isinf(T) && T > 0);
-    assert_int_equal(stance_critical_sample_time(2, 1, A, B, bad, 0, 0, &T), STANCE_BAD_ARGUMENT);
+    assert_int_equal(stance_critical_sample_time(PLANT(2, 1, A, B), SAMPLING(bad, 0, 0), 0, &T),
+                     STANCE_BAD_ARGUMENT);
 }
 
 /* A sampled oscillator under rate feedback becomes unstable and stable again as T passes half
@@ -598,9 +598,10 @@ static void first_crossing(void **state)
         const double A[4] = {0, 1, -w * w, -damping}, B[2] = {0, 1};
         const double K[2] = {0, uniform(&seed, 0.05, 1.5)};
         double T, first = INFINITY, Ad[4], Bd[2], loop[4], re[2], im[2];
-        assert_int_equal(stance_critical_sample_time(2, 1, A, B, K, 0, 4, &T), STANCE_OK);
+        assert_int_equal(stance_critical_sample_time(PLANT(2, 1, A, B), SAMPLING(K, 0, 0), 4, &T),
+                         STANCE_OK);
         for (int k = 1; k <= 40000 && isinf(first); k++) {
-            assert_int_equal(stance_discretise(2, 1, A, B, 1e-4 * k, Ad, Bd), STANCE_OK);
+            assert_int_equal(stance_discretise(PLANT(2, 1, A, B), 1e-4 * k, Ad, Bd), STANCE_OK);
             closed_loop(2, 1, Ad, Bd, K, loop);
             assert_int_equal(stance_eigenvalues(2, loop, re, im), STANCE_OK);
             if (hypot(re[0], im[0]) > 1 + 1e-12 || hypot(re[1], im[1]) > 1 + 1e-12)

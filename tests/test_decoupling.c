@@ -315,7 +315,7 @@ static void delay_shortens(void **state)
         const double T = 0.5 * (low + high);
         double radius = 0;
         memset(loop, 0, sizeof loop);
-        assert_int_equal(stance_discretise(6, 2, A, B, T, Ad, Bd), STANCE_OK);
+        assert_int_equal(stance_discretise(PLANT(6, 2, A, B), T, Ad, Bd), STANCE_OK);
         for (int i = 0; i < 6; i++) {
             for (int j = 0; j < 6; j++)
                 loop[8 * i + j] = Ad[6 * i + j];

@@ -40,7 +40,7 @@ static bool in_dented(const struct shape *s, const double *y)
     return r < 1 - 0.2 * exp(-first / 0.15) - 0.4 * exp(-last / 0.15);
 }
 
-static bool ask(void *context, size_t count, const double *z, bool *inside)
+static bool ask(void *context, size_t count, const double *z, uint8_t *inside)
 {
     struct shape *s = context;
     for (size_t i = 0; i < count; i++) {
@@ -94,7 +94,7 @@ static double shoot(struct shape *s, uint64_t *random, double start[][MOST], dou
             u[j] /= sqrt(square);
         while (high - low > 1e-6 * high) {
             double z[MOST];
-            bool in;
+            uint8_t in;
             for (int j = 0; j < s->n; j++)
                 z[j] = 0.5 * (low + high) * u[j];
             ask(s, 1, z, &in);
@@ -114,13 +114,13 @@ static struct descend_end run(struct shape *s, uint64_t *random, double *rays)
 {
     double start[STARTS][MOST], packed[STARTS * MOST], r[STARTS];
     struct descend_end end;
-    const struct descend_set set = {s->n, 50, ask, s};
+    const struct descend_set set = {s->n, 1 << true, ask, s};
     orient(s, random);
     *rays = shoot(s, random, start, r);
     for (int k = 0; k < STARTS; k++)
         memcpy(packed + k * s->n, start[k], (size_t)s->n * sizeof(double));
     s->asked = 0;
-    assert_true(basin_descend(&set, packed, r, STARTS, &end));
+    assert_true(basin_descend(&set, 50, packed, r, STARTS, &end));
     assert_int_equal(end.asked, s->asked);
     assert_true(end.high - end.low <= 1.001e-4 * end.high && end.starts == STARTS);
     return end;
@@ -221,14 +221,15 @@ static void dips_that_are_missed(void **state)
                 start[j] /= sqrt(square);
             for (r = 1; r > 0.01; r -= 0.01) {
                 double z[MOST];
-                bool in;
+                uint8_t in;
                 for (int j = 0; j < n; j++)
                     z[j] = r * start[j];
                 ask(&s, 1, z, &in);
                 if (in)
                     break;
             }
-            assert_true(basin_descend(&(struct descend_set){n, 50, ask, &s}, start, &r, 1, &end));
+            assert_true(basin_descend(&(struct descend_set){n, 1 << true, ask, &s}, 50, start, &r,
+                                      1, &end));
             found[k] = end.high < 0.62;
             leading += found[k];
         }
@@ -251,12 +252,12 @@ static void dips_that_are_missed(void **state)
 }
 
 /* On a line, and where the set cannot be asked any more, or does not end. */
-static bool refuse(void *context, size_t count, const double *z, bool *inside)
+static bool refuse(void *context, size_t count, const double *z, uint8_t *inside)
 {
     (void)context, (void)count, (void)z, (void)inside;
     return false;
 }
-static bool everywhere(void *context, size_t count, const double *z, bool *inside)
+static bool everywhere(void *context, size_t count, const double *z, uint8_t *inside)
 {
     (void)context, (void)z;
     memset(inside, 1, count);
@@ -269,10 +270,12 @@ static void edges(void **state)
     const double line[2] = {-1, 1}, r[2] = {0.1, 3}, plane[2] = {0.6, 0.8};
     struct descend_end end;
     (void)state;
-    assert_true(basin_descend(&(struct descend_set){1, 50, ask, &s}, line, r, 2, &end));
+    assert_true(basin_descend(&(struct descend_set){1, 1 << true, ask, &s}, 50, line, r, 2, &end));
     assert_true(fabs(end.high - 0.7) < 1e-4 && end.agree == 2);
-    assert_false(basin_descend(&(struct descend_set){2, 1, refuse, NULL}, plane, r, 1, &end));
-    assert_true(basin_descend(&(struct descend_set){2, 1, everywhere, NULL}, plane, r, 1, &end));
+    assert_false(
+        basin_descend(&(struct descend_set){2, 1 << true, refuse, NULL}, 1, plane, r, 1, &end));
+    assert_true(
+        basin_descend(&(struct descend_set){2, 1 << true, everywhere, NULL}, 1, plane, r, 1, &end));
     assert_false(isfinite(end.high));
 }
 

@@ -58,7 +58,7 @@ static void eigenvalues_of(const struct sample *s, const char *key, double *re, 
 static void sampled_closed_loop(const struct sample *s, const double *K, double *loop)
 {
     double Ad[N * N], Bd[N * M];
-    assert_int_equal(stance_discretise(N, M, s->A, s->B, s->T, Ad, Bd), STANCE_OK);
+    assert_int_equal(stance_discretise(PLANT(N, M, s->A, s->B), s->T, Ad, Bd), STANCE_OK);
     closed_loop(N, M, Ad, Bd, K, loop);
 }
 
@@ -75,14 +75,14 @@ static void check_regulator(const struct sample *s)
     double K[M * N], wanted[M * N], loop[N * N], re[N], im[N];
     stance_message message = {""};
 
-    TRY(stance_lqr(N, M, s->A, s->B, s->states, s->torques, K, &message), message);
+    TRY(stance_lqr(PLANT(N, M, s->A, s->B), 0, s->states, s->torques, K, &message), message);
     matrix_of(s->record, "gain", M, N, wanted);
     assert_matrix(M * N, K, wanted, 2e-10, s->name);
     closed_loop(N, M, s->A, s->B, K, loop);
     eigenvalues_of(s, "eigenvalues", re, im);
     assert_eigenvalues(N, loop, re, im, 1e-7, s->name);
 
-    TRY(stance_lqr_sampled(N, M, s->A, s->B, s->T, s->states, s->torques, K, &message), message);
+    TRY(stance_lqr(PLANT(N, M, s->A, s->B), s->T, s->states, s->torques, K, &message), message);
     matrix_of(s->record, "sampled_gain", M, N, wanted);
     assert_matrix(M * N, K, wanted, 2e-10, s->name);
     sampled_closed_loop(s, K, loop);
@@ -102,9 +102,9 @@ static void check_limit(const struct sample *s)
     double K[M * N], sampled[M * N], distance[2];
     const double T[2] = {2e-4, 1e-4};
     stance_message message = {""};
-    TRY(stance_lqr(N, M, s->A, s->B, s->states, s->torques, K, &message), message);
+    TRY(stance_lqr(PLANT(N, M, s->A, s->B), 0, s->states, s->torques, K, &message), message);
     for (int k = 0; k < 2; k++) {
-        TRY(stance_lqr_sampled(N, M, s->A, s->B, T[k], s->states, s->torques, sampled, &message),
+        TRY(stance_lqr(PLANT(N, M, s->A, s->B), T[k], s->states, s->torques, sampled, &message),
             message);
         distance[k] = 0;
         for (int i = 0; i < M * N; i++)
@@ -125,7 +125,7 @@ static void scalar_regulator(void **state)
     (void)state;
     const double a = 1.5, b = 1, q = 3, r = 0.5, T = 0.4, e = exp(a * T), bd = (e - 1) / a;
     double k;
-    assert_int_equal(stance_lqr(1, 1, &a, &b, &q, &r, &k, NULL), STANCE_OK);
+    assert_int_equal(stance_lqr(PLANT(1, 1, &a, &b), 0, &q, &r, &k, NULL), STANCE_OK);
     assert_near(k, a + sqrt(a * a + q / r), 1e-13, "continuous");
     /* x = e^(at) x0 + (e^(at) - 1)/a u */
     const double qd = q * (e * e - 1) / (2 * a), sd = q * ((e * e - 1) / (2 * a) - (e - 1) / a) / a,
@@ -135,7 +135,7 @@ static void scalar_regulator(void **state)
         const double cross = sd + e * x * bd;
         x = e * e * x - cross * cross / (rd + bd * bd * x) + qd;
     }
-    assert_int_equal(stance_lqr_sampled(1, 1, &a, &b, T, &q, &r, &k, NULL), STANCE_OK);
+    assert_int_equal(stance_lqr(PLANT(1, 1, &a, &b), T, &q, &r, &k, NULL), STANCE_OK);
     assert_near(k, (sd + e * x * bd) / (rd + bd * bd * x), 1e-12, "sampled");
 }
 
@@ -146,30 +146,32 @@ static void regulator_messages(void **state)
     const double escaping[4] = {2, 0, 0, -1};
     double K[2];
     stance_message message;
-    assert_int_equal(stance_lqr(2, 1, A, B, (double[]){1, -1}, &R, K, &message),
+    assert_int_equal(stance_lqr(PLANT(2, 1, A, B), 0, (double[]){1, -1}, &R, K, &message),
                      STANCE_BAD_ARGUMENT);
     assert_text(message.text, "weight 1 of the states is -1: it must be finite and not negative");
-    assert_int_equal(stance_lqr(2, 1, A, B, Q, (double[]){0}, K, &message), STANCE_BAD_ARGUMENT);
+    assert_int_equal(stance_lqr(PLANT(2, 1, A, B), 0, Q, (double[]){0}, K, &message),
+                     STANCE_BAD_ARGUMENT);
     assert_text(message.text, "weight 0 of the torques is 0: it must be finite and positive");
-    assert_int_equal(stance_lqr_sampled(2, 1, A, B, 0, Q, &R, K, &message), STANCE_BAD_ARGUMENT);
-    assert_text(message.text, "a sampled regulator needs a sample time above 0, not 0 s");
-    assert_int_equal(stance_lqr(2, 1, escaping, B, Q, &R, K, &message), STANCE_UNCONTROLLABLE);
+    assert_int_equal(stance_lqr(PLANT(2, 1, A, B), -1, Q, &R, K, &message), STANCE_BAD_ARGUMENT);
+    assert_text(message.text, "a design cannot sample every -1 s");
+    assert_int_equal(stance_lqr(PLANT(2, 1, escaping, B), 0, Q, &R, K, &message),
+                     STANCE_UNCONTROLLABLE);
     assert_text(message.text, "the system is not stabilisable: no input reaches the mode with "
                               "eigenvalue 2");
-    assert_int_equal(stance_lqr_sampled(2, 1, escaping, B, 0.5, Q, &R, K, &message),
+    assert_int_equal(stance_lqr(PLANT(2, 1, escaping, B), 0.5, Q, &R, K, &message),
                      STANCE_UNCONTROLLABLE);
     assert_text(message.text, "the sampled system is not stabilisable: no input reaches the mode "
                               "with eigenvalue 2.71828");
     /* Half a turn between samples: the oscillator's rate and angle look alike. */
     const double oscillator[4] = {0, 1, -4 * M_PI * M_PI, 0};
-    assert_int_equal(stance_lqr_sampled(2, 1, oscillator, B, 1, Q, &R, K, &message),
+    assert_int_equal(stance_lqr(PLANT(2, 1, oscillator, B), 1, Q, &R, K, &message),
                      STANCE_UNCONTROLLABLE);
     /* Nobody sees the position drift. */
-    assert_int_equal(stance_lqr(2, 1, A, B, (double[]){0, 1}, &R, K, &message),
+    assert_int_equal(stance_lqr(PLANT(2, 1, A, B), 0, (double[]){0, 1}, &R, K, &message),
                      STANCE_BAD_ARGUMENT);
     assert_text(message.text, "the weights of the states do not see the mode with eigenvalue 0, "
                               "which does not decay by itself");
-    assert_int_equal(stance_lqr(2, 1, A, (double[]){0, NAN}, Q, &R, K, &message),
+    assert_int_equal(stance_lqr(PLANT(2, 1, A, (double[]){0, NAN}), 0, Q, &R, K, &message),
                      STANCE_BAD_ARGUMENT);
 }
 
@@ -177,27 +179,27 @@ static void regulator_messages(void **state)
 
 static void check_placement(const struct sample *s)
 {
-    double K[M * N], loop[N * N], re[N], im[N], zre[N], zim[N], condition;
-    int sweeps;
+    double K[M * N], loop[N * N], re[N], im[N], zre[N], zim[N];
+    stance_robustness got;
     stance_message message = {""};
 
     eigenvalues_of(s, "poles", re, im);
     eigenvalues_of(s, "sampled_poles", zre, zim);
-    TRY(stance_place_schur(N, M, s->A, s->B, re, im, K, &message), message);
+    TRY(stance_place(STANCE_SCHUR, PLANT(N, M, s->A, s->B), 0, POLES(re, im), K, NULL, &message),
+        message);
     closed_loop(N, M, s->A, s->B, K, loop);
     assert_eigenvalues(N, loop, re, im, 1e-6, s->name);
-    TRY(stance_place_sampled(STANCE_SCHUR, N, M, s->A, s->B, s->T, re, im, K, &sweeps, &condition,
-                             &message),
+    TRY(stance_place(STANCE_SCHUR, PLANT(N, M, s->A, s->B), s->T, POLES(re, im), K, &got, &message),
         message);
     sampled_closed_loop(s, K, loop);
     assert_eigenvalues(N, loop, zre, zim, 1e-8, s->name);
-    assert_true(sweeps == 0 && isnan(condition));
-    TRY(stance_place_sampled(STANCE_ROBUST, N, M, s->A, s->B, s->T, re, im, K, &sweeps, &condition,
-                             &message),
+    assert_true(got.sweeps == 0 && isnan(got.condition));
+    TRY(stance_place(STANCE_ROBUST, PLANT(N, M, s->A, s->B), s->T, POLES(re, im), K, &got,
+                     &message),
         message);
     sampled_closed_loop(s, K, loop);
     assert_eigenvalues(N, loop, zre, zim, 1e-8, s->name);
-    assert_true(sweeps > 0 && condition >= 1);
+    assert_true(got.sweeps > 0 && got.condition >= 1);
 }
 
 static void placements(void **state)
@@ -217,10 +219,12 @@ static void check_placement_limit(const struct sample *s)
     for (int real = 0; real < 2; real++) {
         if (strstr(s->name, "right angle"))
             continue;
-        TRY(stance_place(N, M, s->A, s->B, re, im, K, NULL, NULL, &message), message);
+        TRY(stance_place(STANCE_ROBUST, PLANT(N, M, s->A, s->B), 0, POLES(re, im), K, NULL,
+                         &message),
+            message);
         for (int k = 0; k < 2; k++) {
-            TRY(stance_place_sampled(STANCE_ROBUST, N, M, s->A, s->B, T[k], re, im, sampled, NULL,
-                                     NULL, &message),
+            TRY(stance_place(STANCE_ROBUST, PLANT(N, M, s->A, s->B), T[k], POLES(re, im), sampled,
+                             NULL, &message),
                 message);
             distance[k] = 0;
             for (int i = 0; i < M * N; i++)
@@ -251,7 +255,7 @@ static void sampled_double_integrator(void **state)
         double K[2];
         for (int how = STANCE_ROBUST; how <= STANCE_SCHUR; how++) {
             assert_int_equal(
-                stance_place_sampled(how, 2, 1, A, B, T[k], re, im, K, NULL, NULL, NULL),
+                stance_place(how, PLANT(2, 1, A, B), T[k], POLES(re, im), K, NULL, NULL),
                 STANCE_OK);
             assert_near(K[0], a * b / (T[k] * T[k]), 1e-11 * fabs(K[0]), "position");
             assert_near(K[1], (a + b - a * b / 2) / T[k], 1e-11 * fabs(K[1]), "rate");
@@ -267,22 +271,26 @@ static void placement_messages(void **state)
     double K[2];
     stance_message message;
     assert_int_equal(
-        stance_place_sampled(STANCE_ROBUST, 2, 1, A, B, 0, re, im, K, NULL, NULL, &message),
+        stance_place(STANCE_ROBUST, PLANT(2, 1, A, B), -1, POLES(re, im), K, NULL, &message),
         STANCE_BAD_ARGUMENT);
-    assert_text(message.text, "a design for a sampled model needs a sample time above 0, not 0 s");
-    assert_int_equal(stance_place_sampled(STANCE_SCHUR, 2, 1, A, B, 0.5, (double[]){-1, -1}, turn,
-                                          K, NULL, NULL, &message),
+    assert_text(message.text, "a design cannot sample every -1 s");
+    assert_int_equal(stance_place(STANCE_SCHUR, PLANT(2, 1, A, B), 0.5,
+                                  POLES((double[]){-1, -1}, turn), K, NULL, &message),
                      STANCE_BAD_POLES);
     assert_text(message.text, "the pole -1+7i turns 0.557 times in a sample of 0.5 s: less than "
                               "half a turn can be told from its mirror image");
-    assert_int_equal(stance_place_schur(2, 1, A, B, re, odd, K, &message), STANCE_BAD_POLES);
+    assert_int_equal(
+        stance_place(STANCE_SCHUR, PLANT(2, 1, A, B), 0, POLES(re, odd), K, NULL, &message),
+        STANCE_BAD_POLES);
     assert_text(message.text, "the pole -1+1i has no conjugate -1-1i among the poles");
-    assert_int_equal(stance_place_schur(2, 1, escaping, B, re, im, K, &message),
-                     STANCE_UNCONTROLLABLE);
+    assert_int_equal(
+        stance_place(STANCE_SCHUR, PLANT(2, 1, escaping, B), 0, POLES(re, im), K, NULL, &message),
+        STANCE_UNCONTROLLABLE);
     assert_text(message.text, "the pair (A, B) is not controllable: no input reaches the mode with "
                               "eigenvalue 2");
     /* More often than inputs: the Schur method does not mind. */
-    assert_int_equal(stance_place_schur(2, 1, A, B, (double[]){-2, -2}, im, K, &message),
+    assert_int_equal(stance_place(STANCE_SCHUR, PLANT(2, 1, A, B), 0, POLES((double[]){-2, -2}, im),
+                                  K, NULL, &message),
                      STANCE_OK);
     assert_near(K[0], 4, 1e-12, "double pole");
     assert_near(K[1], 4, 1e-12, "double pole");
@@ -300,11 +308,15 @@ static void schur_is_steady(void **state)
     stance_robot_fallback(biped(), robot);
     const stance_equilibrium e = equilibrium_of(robot, 0, -0.41, NAN, 0.82, false);
     assert_int_equal(biped()->linearise(biped(), robot, &e, A, B), STANCE_OK);
-    assert_int_equal(stance_place_schur(N, M, A, B, re, im, K[0], &message), STANCE_OK);
+    assert_int_equal(
+        stance_place(STANCE_SCHUR, PLANT(N, M, A, B), 0, POLES(re, im), K[0], NULL, &message),
+        STANCE_OK);
     for (int round = 0; round < 50; round++) {
         for (int i = 0; i < N * N; i++)
             rounded[i] = A[i] * (1 + uniform(&seed, -1e-15, 1e-15));
-        assert_int_equal(stance_place_schur(N, M, rounded, B, re, im, K[1], &message), STANCE_OK);
+        assert_int_equal(stance_place(STANCE_SCHUR, PLANT(N, M, rounded, B), 0, POLES(re, im), K[1],
+                                      NULL, &message),
+                         STANCE_OK);
         for (int i = 0; i < N * M; i++)
             assert_near(K[1][i], K[0][i], 1e-9, "gain");
     }
@@ -326,23 +338,27 @@ static void uncontrollable_equilibrium(void **state)
     stance_message message;
     const stance_equilibrium e = equilibrium_of(robot, 0, NAN, level, level, false);
     assert_int_equal(biped()->linearise(biped(), robot, &e, A, B), STANCE_OK);
-    assert_int_equal(stance_kalman(N, M, A, B, sv, &rank), STANCE_OK);
+    assert_int_equal(stance_kalman(PLANT(N, M, A, B), sv, &rank), STANCE_OK);
     assert_int_equal(rank, 4);
     const double rate = sqrt(9.81 * cos(M_PI / 6) / 1.75);
     char wanted[64];
     snprintf(wanted, sizeof wanted, "eigenvalue %.6g", -rate);
-    assert_int_equal(stance_place(N, M, A, B, re, im, K, NULL, NULL, &message),
-                     STANCE_UNCONTROLLABLE);
-    assert_non_null(strstr(message.text, wanted));
-    assert_int_equal(stance_place_schur(N, M, A, B, re, im, K, &message), STANCE_UNCONTROLLABLE);
+    assert_int_equal(
+        stance_place(STANCE_ROBUST, PLANT(N, M, A, B), 0, POLES(re, im), K, NULL, &message),
+        STANCE_UNCONTROLLABLE);
     assert_non_null(strstr(message.text, wanted));
     assert_int_equal(
-        stance_place_sampled(STANCE_ROBUST, N, M, A, B, 1e-3, re, im, K, NULL, NULL, &message),
+        stance_place(STANCE_SCHUR, PLANT(N, M, A, B), 0, POLES(re, im), K, NULL, &message),
         STANCE_UNCONTROLLABLE);
-    assert_int_equal(stance_lqr(N, M, A, B, ones, ones, K, &message), STANCE_UNCONTROLLABLE);
+    assert_non_null(strstr(message.text, wanted));
+    assert_int_equal(
+        stance_place(STANCE_ROBUST, PLANT(N, M, A, B), 1e-3, POLES(re, im), K, NULL, &message),
+        STANCE_UNCONTROLLABLE);
+    assert_int_equal(stance_lqr(PLANT(N, M, A, B), 0, ones, ones, K, &message),
+                     STANCE_UNCONTROLLABLE);
     snprintf(wanted, sizeof wanted, "eigenvalue %.6g", rate);
     assert_non_null(strstr(message.text, wanted));
-    assert_int_equal(stance_lqr_sampled(N, M, A, B, 1e-3, ones, ones, K, &message),
+    assert_int_equal(stance_lqr(PLANT(N, M, A, B), 1e-3, ones, ones, K, &message),
                      STANCE_UNCONTROLLABLE);
 }
 
@@ -357,15 +373,17 @@ static void check_critical(const struct sample *s)
         matrix_of(s->record, gains[g], M, N, K);
         for (int delay = 0; delay < 2; delay++) {
             const double wanted = number_at(json_object_get(s->record, keys[g]), (size_t)delay);
-            assert_int_equal(stance_critical_sample_time(N, M, s->A, s->B, K, delay, 10, &T),
-                             STANCE_OK);
+            assert_int_equal(
+                stance_critical_sample_time(PLANT(N, M, s->A, s->B), SAMPLING(K, 0, delay), 10, &T),
+                STANCE_OK);
             if (isnan(wanted))
                 assert_true(T == 0 || isinf(T));
             else
                 assert_near(T, wanted, 1e-8 * wanted, s->name);
         }
     }
-    assert_int_equal(stance_sampled_loop(N, M, s->A, s->B, K, s->T, 1, re, im), STANCE_OK);
+    assert_int_equal(stance_sampled_loop(PLANT(N, M, s->A, s->B), SAMPLING(K, s->T, 1), re, im),
+                     STANCE_OK);
     for (int i = 0; i < N + M; i++)
         radius = fmax(radius, hypot(re[i], im[i]));
     assert_near(radius, number_of(s, "delayed_radius"), 1e-9, s->name);
@@ -385,16 +403,22 @@ static void delayed_integrator(void **state)
     (void)state;
     const double a = 0, b = 1, k = 4;
     double T, re[2], im[2];
-    assert_int_equal(stance_critical_sample_time(1, 1, &a, &b, &k, 0, 10, &T), STANCE_OK);
+    assert_int_equal(stance_critical_sample_time(PLANT(1, 1, &a, &b), SAMPLING(&k, 0, 0), 10, &T),
+                     STANCE_OK);
     assert_near(T, 0.5, 1e-14, "at once");
-    assert_int_equal(stance_critical_sample_time(1, 1, &a, &b, &k, 1, 10, &T), STANCE_OK);
+    assert_int_equal(stance_critical_sample_time(PLANT(1, 1, &a, &b), SAMPLING(&k, 0, 1), 10, &T),
+                     STANCE_OK);
     assert_near(T, 0.25, 1e-14, "a sample late");
-    assert_int_equal(stance_sampled_loop(1, 1, &a, &b, &k, 0.125, 1, re, im), STANCE_OK);
+    assert_int_equal(stance_sampled_loop(PLANT(1, 1, &a, &b), SAMPLING(&k, 0.125, 1), re, im),
+                     STANCE_OK);
     assert_near(re[0], 0.5, 1e-14, "real part");
     assert_near(im[0], -0.5, 1e-14, "imaginary part");
-    assert_int_equal(stance_sampled_loop(1, 1, &a, &b, &k, 0.125, -1, re, im), STANCE_BAD_ARGUMENT);
+    assert_int_equal(stance_sampled_loop(PLANT(1, 1, &a, &b), SAMPLING(&k, 0.125, -1), re, im),
+                     STANCE_BAD_ARGUMENT);
     for (int d = 0; d <= STANCE_MAX_DELAY; d++) {
-        assert_int_equal(stance_critical_sample_time(1, 1, &a, &b, &k, d, 10, &T), STANCE_OK);
+        assert_int_equal(
+            stance_critical_sample_time(PLANT(1, 1, &a, &b), SAMPLING(&k, 0, d), 10, &T),
+            STANCE_OK);
         assert_near(T, 2 * sin(M_PI / (4 * d + 2)) / k, 1e-10, "samples late");
     }
 }
@@ -409,7 +433,7 @@ static void integrator_with_actuator_and_noise(void **state)
     const double a = 0, b = 1, k = 4, T = 0.1, none = 0, v = 0.3, g = k * T;
     double A[4], B[2], K[2], loop[4], re[2], im[2], rms;
     for (double lag = 1e-3; lag < 1; lag *= 3) {
-        stance_lagged(1, 1, &a, &b, &k, lag, A, B, K);
+        stance_lagged(PLANT(1, 1, &a, &b), &k, lag, A, B, K);
         closed_loop(2, 1, A, B, K, loop);
         assert_int_equal(stance_eigenvalues(2, loop, re, im), STANCE_OK);
         for (int i = 0; i < 2; i++) {
@@ -417,15 +441,18 @@ static void integrator_with_actuator_and_noise(void **state)
             assert_near(im[i] * (2 * lag * re[i] + 1), 0, 1e-9, "imaginary");
         }
     }
-    assert_int_equal(stance_sampled_wander(1, 1, &a, &b, &k, T, 0, &v, 0, &rms), STANCE_OK);
+    assert_int_equal(stance_sampled_wander(PLANT(1, 1, &a, &b), SAMPLING(&k, T, 0), &v, 0, &rms),
+                     STANCE_OK);
     assert_near(rms * rms, v * g / (2 - g), 1e-14, "measured");
-    assert_int_equal(stance_sampled_wander(1, 1, &a, &b, &k, T, 0, &none, v, &rms), STANCE_OK);
+    assert_int_equal(stance_sampled_wander(PLANT(1, 1, &a, &b), SAMPLING(&k, T, 0), &none, v, &rms),
+                     STANCE_OK);
     assert_near(rms * rms, T * v / (k * (2 - g)), 1e-14, "commanded");
-    assert_int_equal(stance_sampled_wander(1, 1, &a, &b, &k, T, 1, &v, 0, &rms), STANCE_OK);
+    assert_int_equal(stance_sampled_wander(PLANT(1, 1, &a, &b), SAMPLING(&k, T, 1), &v, 0, &rms),
+                     STANCE_OK);
     assert_near(rms * rms, v * g * (1 + g) / ((1 - g) * (2 + g)), 1e-14, "a sample late");
-    assert_int_equal(stance_sampled_wander(1, 1, &a, &b, &k, 0.6, 0, &v, 0, &rms),
+    assert_int_equal(stance_sampled_wander(PLANT(1, 1, &a, &b), SAMPLING(&k, 0.6, 0), &v, 0, &rms),
                      STANCE_NUMERICAL);
-    assert_int_equal(stance_sampled_wander(1, 1, &a, &b, &k, 0.5, 0, &v, 0, &rms),
+    assert_int_equal(stance_sampled_wander(PLANT(1, 1, &a, &b), SAMPLING(&k, 0.5, 0), &v, 0, &rms),
                      STANCE_NUMERICAL);
 }
 
@@ -475,21 +502,19 @@ static void sublevel_sets(void **state)
 {
     (void)state;
     const double P[4] = {1, 0, 0, 4}, a[4] = {1, 1, -1, 0}, d[2] = {1, 3};
-    double level, alone[2], extent[2];
-    int binding;
-    assert_int_equal(stance_sublevel(2, P, 2, a, d, &level, &binding, alone, extent), STANCE_OK);
-    assert_int_equal(binding, 0);
-    assert_near(level, 0.8, 1e-15, "level");
-    assert_near(alone[0], sqrt(0.8), 1e-15, "x");
-    assert_near(extent[1], sqrt(0.2), 1e-15, "y");
-    assert_int_equal(
-        stance_sublevel(2, P, 2, a, (double[]){1, -3}, &level, &binding, alone, extent), STANCE_OK);
-    assert_true(level == 0 && binding == 1 && extent[0] == 0);
-    assert_int_equal(stance_sublevel(2, P, 0, a, d, &level, &binding, alone, extent), STANCE_OK);
-    assert_true(isinf(level) && binding == -1);
-    assert_int_equal(
-        stance_sublevel(2, (double[]){1, 2, 2, 1}, 1, a, d, &level, &binding, alone, extent),
-        STANCE_BAD_ARGUMENT);
+    stance_sublevel_set set;
+    assert_int_equal(stance_sublevel(2, P, &(stance_bounds){2, a, d}, &set), STANCE_OK);
+    assert_int_equal(set.binding, 0);
+    assert_near(set.level, 0.8, 1e-15, "level");
+    assert_near(set.alone[0], sqrt(0.8), 1e-15, "x");
+    assert_near(set.extent[1], sqrt(0.2), 1e-15, "y");
+    assert_int_equal(stance_sublevel(2, P, &(stance_bounds){2, a, (double[]){1, -3}}, &set),
+                     STANCE_OK);
+    assert_true(set.level == 0 && set.binding == 1 && set.extent[0] == 0);
+    assert_int_equal(stance_sublevel(2, P, &(stance_bounds){0, a, d}, &set), STANCE_OK);
+    assert_true(isinf(set.level) && set.binding == -1);
+    assert_int_equal(stance_sublevel(2, (double[]){1, 2, 2, 1}, &(stance_bounds){1, a, d}, &set),
+                     STANCE_BAD_ARGUMENT);
 }
 
 /* ---- the force on the foot ------------------------------------------------------------------- */
@@ -519,8 +544,7 @@ static void forces_on_the_foot(void **state)
 static void check_levels(const struct sample *s)
 {
     double K[M * N], P[N * N], force[2], by[2 * N], by_torque[2 * M], a[7 * N], d[7];
-    double level, alone[N], extent[N];
-    int binding;
+    stance_sublevel_set set;
     const double limit = number_of(s, "torque_limit"), friction = number_of(s, "friction");
     matrix_of(s->record, "gain", M, N, K);
     matrix_of(s->record, "lyapunov", N, N, P);
@@ -546,12 +570,12 @@ static void check_levels(const struct sample *s)
     const json_t *levels = json_object_get(s->record, "levels");
     for (int k = 0; k < 7; k++) {
         const double wanted = number_at(levels, (size_t)k);
-        assert_int_equal(
-            stance_sublevel(N, P, 1, a + k * N, d + k, &level, &binding, alone, extent), STANCE_OK);
+        assert_int_equal(stance_sublevel(N, P, &(stance_bounds){1, a + k * N, d + k}, &set),
+                         STANCE_OK);
         if (isnan(wanted))
-            assert_true(level > 1e6);
+            assert_true(set.level > 1e6);
         else
-            assert_near(level, wanted, 1e-8 * wanted, s->name);
+            assert_near(set.level, wanted, 1e-8 * wanted, s->name);
     }
 }
 

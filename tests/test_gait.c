@@ -20,8 +20,7 @@
 
 #include "linear.h"
 
-#include "analysis/gait/margins.h"
-#include "analysis/gait/sensitivity.h"
+#include "analysis/gait/gait.h"
 #include "runner/plan/instruction_set.h"
 #include "runner/plan/plan.h"
 
@@ -40,7 +39,7 @@ static void walk(struct walker *w, const char *file, int steps, int settle, cons
     const struct parallel alone = parallel_alone();
     struct plan_error error;
     stance_case *const c = malloc(sizeof *c);
-    double z[RETURN_MAP_MOST] = {0};
+    struct return_point from = {.time = 0};
     int method;
     assert_non_null(c);
     assert_true(scenario_read(&w->scenario, file, NULL, set, sets, stderr));
@@ -50,8 +49,8 @@ static void walk(struct walker *w, const char *file, int steps, int settle, cons
     const stance_kernel *const kernel =
         instruction_set_kernel(w->scenario.scene, stance_methods()[method]);
     w->message.text[0] = '\0';
-    w->found = return_map_begin(&w->map, c, kernel, steps, settle, z, &w->message) &&
-               gait_find(&w->map, z, &w->gait, &w->message);
+    w->found = return_map_begin(&w->map, c, kernel, steps, settle, &from, &w->message) &&
+               gait_find(&w->map, &from, &w->gait, &w->message);
     free(c);
 }
 static void leave(struct walker *w)
@@ -264,7 +263,7 @@ static void slopes_at_random_vary_a_gait_as_the_norm_says(void **state)
     struct walker *const w = calloc(3, sizeof *w);
     const struct along along = {.path = "ground.slope", .from = -0.0005, .to = 0.0005};
     struct gait_sensitivity is;
-    double z[RETURN_MAP_MOST], sum[2] = {0}, square[2] = {0};
+    double sum[2] = {0}, square[2] = {0};
     uint64_t random = 12345;
     (void)state;
     assert_non_null(w);
@@ -274,13 +273,11 @@ static void slopes_at_random_vary_a_gait_as_the_norm_says(void **state)
         gait_sensitivity_find(&w[2].scenario, &w[2].map, &w[2].gait, &along, &is, &w[2].message));
     for (int k = 0; k < 2; k++)
         walk(&w[k], "scenarios/gaits/walks.yaml", 1, 40, slope[k], 4);
-    memcpy(z, w[2].gait.z, sizeof z);
+    struct return_point p = w[2].gait.from;
     for (int k = 0; k < STEPS; k++) {
-        struct return_point p;
         random = random * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
-        assert_true(return_map_take(&w[random >> 63].map, 1, (const double(*)[RETURN_MAP_MOST])z,
-                                    &p, &w[2].message));
-        memcpy(z, p.z, sizeof z);
+        p.behind = 0;
+        assert_true(return_map_take(&w[random >> 63].map, 1, &p, &p, &w[2].message));
         const double g[2] = {p.time, p.length};
         for (int m = 0; m < 2; m++)
             sum[m] += g[m], square[m] += g[m] * g[m];
@@ -308,7 +305,7 @@ static const struct along step_of_ground = {
 static void step_over(const struct walker *w, const double *height, int steps, stance_case *cases)
 {
     cases[0] = w->map.base;
-    assert_true(return_map_state(&w->map, w->gait.z, cases[0].position, cases[0].velocity));
+    assert_true(return_map_state(&w->map, &w->gait.from, cases[0].position, cases[0].velocity));
     for (int n = 0; n < w->map.base.body.plates; n++)
         cases[0].body.plate[n].height = height[n];
     cases[1] = cases[0];

@@ -173,8 +173,11 @@ static stance_case sampled_case(const struct balance *b, double *critical)
     if (scene->equilibrium(scene, c.robot, &choice, &equilibrium, &message) != STANCE_OK)
         fail_msg("no equilibrium: %s", message.text);
     assert_int_equal(scene->linearise(scene, c.robot, &equilibrium, A, B), STANCE_OK);
-    assert_int_equal(stance_place(6, 2, A, B, re, im, K, NULL, NULL, &message), STANCE_OK);
-    assert_int_equal(stance_critical_sample_time(6, 2, A, B, K, 0, 2, critical), STANCE_OK);
+    assert_int_equal(
+        stance_place(STANCE_ROBUST, PLANT(6, 2, A, B), 0, POLES(re, im), K, NULL, &message),
+        STANCE_OK);
+    assert_int_equal(stance_critical_sample_time(PLANT(6, 2, A, B), SAMPLING(K, 0, 0), 2, critical),
+                     STANCE_OK);
     put_gain(&c, K);
     memcpy(c.position, equilibrium.position, sizeof c.position);
     memcpy(c.near.feedforward, equilibrium.torque, sizeof c.near.feedforward);

@@ -79,7 +79,7 @@ static stance_null_set *made(int n, int m, const double *A, const double *B, con
 {
     stance_null_set *set;
     stance_message message = {""};
-    if (stance_null_set_make(n, m, A, B, low, high, &set, &message) != STANCE_OK)
+    if (stance_null_set_make(PLANT(n, m, A, B), low, high, &set, &message) != STANCE_OK)
         fail_msg("%s", message.text);
     return set;
 }
@@ -654,10 +654,10 @@ static void refusals(void **state)
     const double A[4] = {1, 0, 0, 2}, B[2] = {0, 1}, low = -1, high = 1, none = -INFINITY, up = 0.1;
     stance_null_set *set;
     stance_message message;
-    assert_int_equal(stance_null_set_make(2, 1, A, B, &none, &high, &set, &message),
+    assert_int_equal(stance_null_set_make(PLANT(2, 1, A, B), &none, &high, &set, &message),
                      STANCE_BAD_ARGUMENT);
     assert_text(message.text, "a torque has no limit");
-    assert_int_equal(stance_null_set_make(2, 1, A, B, &up, &high, &set, &message),
+    assert_int_equal(stance_null_set_make(PLANT(2, 1, A, B), &up, &high, &set, &message),
                      STANCE_BAD_ARGUMENT);
     assert_text(message.text, "the equilibrium takes more torque than there is");
     const double calm[4] = {-1, 0, 0, -2}, x[2] = {1e9, 1e9};

@@ -68,7 +68,8 @@ static double critical_time(const stance_case *c, int delay)
     double A[36], B[12], K[12], T;
     get_gain(c, K);
     assert_int_equal(scene->linearise(scene, c->robot, &equilibrium, A, B), STANCE_OK);
-    assert_int_equal(stance_critical_sample_time(6, 2, A, B, K, delay, 1, &T), STANCE_OK);
+    assert_int_equal(stance_critical_sample_time(PLANT(6, 2, A, B), SAMPLING(K, 0, delay), 1, &T),
+                     STANCE_OK);
     return T;
 }
 

@@ -100,14 +100,17 @@ static void every_design_reaches_the_case(void **state)
         model(&s.base, A, B);
         for (int i = 0; i < 4; i++) {
             const double T = i < 2 ? 0.01 : 0.02;
-            stance_error error = k == 0   ? stance_place(N, M, A, B, RE, IM, K, NULL, NULL, NULL)
-                                 : k == 1 ? stance_place_schur(N, M, A, B, RE, IM, K, NULL)
-                                 : k == 2 ? stance_lqr(N, M, A, B, Q, R, K, NULL)
-                                 : k == 3 ? stance_place_sampled(STANCE_ROBUST, N, M, A, B, T, RE,
-                                                                 IM, K, NULL, NULL, NULL)
-                                 : k == 4 ? stance_place_sampled(STANCE_SCHUR, N, M, A, B, T, RE,
-                                                                 IM, K, NULL, NULL, NULL)
-                                          : stance_lqr_sampled(N, M, A, B, T, Q, R, K, NULL);
+            stance_error error =
+                k == 0 ? stance_place(STANCE_ROBUST, PLANT(N, M, A, B), 0, POLES(RE, IM), K, NULL,
+                                      NULL)
+                : k == 1
+                    ? stance_place(STANCE_SCHUR, PLANT(N, M, A, B), 0, POLES(RE, IM), K, NULL, NULL)
+                : k == 2 ? stance_lqr(PLANT(N, M, A, B), 0, Q, R, K, NULL)
+                : k == 3 ? stance_place(STANCE_ROBUST, PLANT(N, M, A, B), T, POLES(RE, IM), K, NULL,
+                                        NULL)
+                : k == 4
+                    ? stance_place(STANCE_SCHUR, PLANT(N, M, A, B), T, POLES(RE, IM), K, NULL, NULL)
+                    : stance_lqr(PLANT(N, M, A, B), T, Q, R, K, NULL);
             assert_int_equal(error, STANCE_OK);
             leads_to(&s, (uint64_t)i, K, i % 2);
         }
@@ -203,18 +206,18 @@ static void check_set(const struct design_report *r)
 {
     uint64_t random = 11;
     double most = 0, direction[N] = {0};
-    assert_true(r->set.exists && r->set.binding >= 0);
+    assert_true(r->set.exists && r->set.of.binding >= 0);
     for (int k = 0; k < 60000; k++) {
         /* Far around at first, then ever nearer to the worst point so far. */
         const double spread = exp(-k / 4000.0);
         double X[N], V = 0;
         for (int i = 0; i < N; i++)
-            X[i] = direction[i] + r->set.extent[i] * spread * uniform(&random, -1, 1);
+            X[i] = direction[i] + r->set.of.extent[i] * spread * uniform(&random, -1, 1);
         for (int i = 0; i < N; i++)
             for (int j = 0; j < N; j++)
                 V += X[i] * r->set.P[i * N + j] * X[j];
         for (int i = 0; i < N; i++)
-            X[i] *= sqrt(r->set.level / V);
+            X[i] *= sqrt(r->set.of.level / V);
         const double used = room_used(r, X);
         assert_true(used <= 1 + 1e-9);
         if (used > most) {
@@ -239,11 +242,11 @@ static void sets_keep_within_bounds(void **state)
     scenario_free(&s);
     r = report(&s, "design: lqr, torque_limit: 1000");
     check_set(r);
-    assert_string_equal(design_bound_name(r, r->set.binding, name),
+    assert_string_equal(design_bound_name(r, r->set.of.binding, name),
                         "friction cone, force backward");
     scenario_free(&s);
     /* Where the limit is below what the equilibrium takes there is no room. */
-    assert_true(report(&s, "design: lqr, torque_limit: 5")->set.level == 0);
+    assert_true(report(&s, "design: lqr, torque_limit: 5")->set.of.level == 0);
     scenario_free(&s);
 }
 
@@ -257,7 +260,7 @@ static void sampled_loop_grows_as_reported(void **state)
         double Ad[N * N], Bd[N * M], X[N] = {1, 0, 0, 0, 0, 0}, u[4][M] = {{0}}, size = 0;
         snprintf(keys, sizeof keys, "design: lqr, sample_time: 0.06, delay: %d", delay);
         const struct design_report *r = report(&s, keys);
-        assert_int_equal(stance_discretise(N, M, r->A, r->B, 0.06, Ad, Bd), STANCE_OK);
+        assert_int_equal(stance_discretise(PLANT(N, M, r->A, r->B), 0.06, Ad, Bd), STANCE_OK);
         double logarithm = 0;
         for (int k = 0; k < 4000; k++) {
             double next[N], late[M];

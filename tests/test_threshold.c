@@ -6,7 +6,7 @@
 
 #include "cases.h"
 
-#include "analysis/basin/basin_threshold.h"
+#include "analysis/basin/basin.h"
 
 #include <string.h>
 

@@ -188,7 +188,7 @@ static void inertia_times(const struct trial *t, const double *s, const double *
     static const double none[SCENE_COORDINATES];
     scene_trig trig;
     scene_trigonometry(s, &trig);
-    scene_residual(&t->body, 0, 0, s, &trig, none, x, none, out);
+    scene_residual(&t->body, &(scene_guess){0, 0, s, &trig, none, x}, none, out);
 }
 
 /* F = -dA/dt w + dT/ds - dV/ds + torques, by differences of the energies. */
@@ -205,7 +205,7 @@ static void compare_forces(const struct trial *t)
         tree_drive(tree_spring[k], -t->body.spring[k][1] * tree_joint(t->w, tree_spring[k]), load);
     for (int p = 0; p < tree_pushes; p++)
         tree_push_add(&t->body, &t->trig, p, t->body.pull[p], 1, load);
-    scene_forces(&t->body, 0, t->s, &t->trig, t->w, torque, force);
+    scene_residual(&t->body, &(scene_guess){.s = t->s, .trig = &t->trig, .w = t->w}, torque, force);
     for (int k = 0; k < SCENE_COORDINATES; k++) {
         s[0][k] = t->s[k] - e * t->w[k];
         s[1][k] = t->s[k] + e * t->w[k];
@@ -257,7 +257,7 @@ static void equation(const struct trial *t, const struct step *p, const double *
             torque[i] += p->gain[i][j] * rate[j];
     }
     scene_trigonometry(u, &trig);
-    scene_residual(&t->body, p->h, 0, u, &trig, v, change, torque, out);
+    scene_residual(&t->body, &(scene_guess){p->h, 0, u, &trig, v, change}, torque, out);
     for (int c = 0; c < t->scene->contacts; c++)
         for (int k = 0; k < SCENE_COORDINATES; k++) {
             double unit[SCENE_COORDINATES] = {0}, velocity[2];
@@ -269,6 +269,19 @@ static void equation(const struct trial *t, const struct step *p, const double *
             if (scene_grip[c] == c)
                 out[k] -= velocity[1] * p->r[c][1];
         }
+}
+
+static void factor(const struct trial *t, const struct step *p, const scene_guess *at, bool coupled,
+                   scene_matrix *J)
+{
+    const double lever = p->h * (p->theta * p->theta);
+    const scene_slopes by = {p->theta,
+                             lever,
+                             lever,
+                             at->trig,
+                             (const double(*)[2])p->r,
+                             (const double(*)[SCENE_POSTURE])p->gain};
+    scene_factor(&t->body, at, &by, coupled, J);
 }
 
 /* The factored matrix takes differences of the equation back to the direction. */
@@ -304,9 +317,7 @@ static void compare_matrix(const struct trial *t, double theta, bool coupled)
     scene_trig trig;
     scene_matrix J;
     scene_trigonometry(u, &trig);
-    const double lever = p.h * (theta * theta);
-    scene_factor(&t->body, p.h, theta, lever, lever, &trig, &trig, v, change,
-                 (const double(*)[2])p.r, coupled, (const double(*)[SCENE_POSTURE])p.gain, &J);
+    factor(t, &p, &(scene_guess){p.h, 0, u, &trig, v, change}, coupled, &J);
     scene_solve(&J, coupled, slope, x);
     for (int k = 0; k < SCENE_COORDINATES; k++)
         near(x[k], d[k], coupled ? 2e-5 : 2e-6, coupled ? "coupled step matrix" : "step matrix");
@@ -321,7 +332,7 @@ static void compare_curvature(const struct trial *t, double theta)
     double w[SCENE_COORDINATES], change[SCENE_COORDINATES], v[SCENE_COORDINATES],
         u[SCENE_COORDINATES], wanted[SCENE_COORDINATES], here[SCENE_COORDINATES],
         d[SCENE_COORDINATES], size = 0;
-    const double way = between(0.01, 1), lever = p.h * (theta * theta);
+    const double way = between(0.01, 1);
     for (int i = 0; i < tree_angles; i++) {
         const double *const limits = t->scene->mechanism->value.body[body_of(t, i)].limits;
         const double place = t->s[TREE_BASE + i];
@@ -343,8 +354,7 @@ static void compare_curvature(const struct trial *t, double theta)
     scene_trig trig;
     scene_matrix J;
     scene_trigonometry(u, &trig);
-    scene_factor(&t->body, p.h, theta, lever, lever, &trig, &trig, v, change,
-                 (const double(*)[2])p.r, false, (const double(*)[SCENE_POSTURE])p.gain, &J);
+    factor(t, &p, &(scene_guess){p.h, 0, u, &trig, v, change}, false, &J);
     scene_solve(&J, false, wanted, d);
     for (int k = 0; k < SCENE_COORDINATES; k++)
         size += fabs(d[k]);

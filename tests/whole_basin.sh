@@ -108,7 +108,7 @@ says "... are refused, too" 'piece0.h5: differs from f0.1.h5 in .*: parts may di
 expect "a file twice" 2 "$stance" merge bad.h5 f0.1.h5 f0.1.h5
 expect "a file that is none" 3 "$stance" merge bad.h5 f0.1.h5 map.yaml
 expect "one file" 2 "$stance" merge bad.h5 f0.1.h5
-[ ! -e bad.h5 ] && [ ! -e bad.h5.merging ]
+[ ! -e bad.h5 ] && [ ! -e bad.h5.next ]
 result $? "nothing is left of what was refused"
 
 # Another version may have drawn other points for the same scenario.

@@ -378,7 +378,7 @@ done
 expect "shards with cases" 0 "$stance" merge whole.h5 shard1.h5 shard2.h5
 expect "shards without" 2 "$stance" merge none.h5 empty1.h5 empty2.h5
 says "... are told" "none of the 2 files has a case that is computed"
-[ ! -e none.h5 ] && [ ! -e none.h5.merging ]
+[ ! -e none.h5 ] && [ ! -e none.h5.next ]
 result $? "... and leave nothing"
 # What check says of what is asked for.
 expect "a study without a controller" 0 "$stance" check ball_bounce.yaml

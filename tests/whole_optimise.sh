@@ -33,18 +33,22 @@ search() { # name, code, arguments
     shift 2
     expect "$name" "$code" "$stance" optimise "$@"
 }
+holds() { # name, task of search.py, files
+    "$python" "$tests/search.py" "${@:2}" >log 2>&1
+    result $? "$1"
+}
+few() { # name, file, candidates, settings: of box.yaml, from few starts
+    search "$1" 0 box.yaml -o "$2" --set optimise.candidates="$3" --set optimise.grow=[32] --set optimise.confirm=64 "${@:4}"
+}
 search "a search" 0 box.yaml -o one.h5
 says "... tells what came out" '^one.h5: 77 candidates in 7 generations, .* of 512 fresh starts, the first'
 expect "... and leaves an ordinary scenario" 0 "$stance" check one-best.yaml
 for n in 2 3; do
     expect "the same on $n ranks" 0 mpirun -n $n "$stance" optimise box.yaml -o "ranks$n.h5" --quiet
-    "$python" "$tests/search.py" same one.h5 "ranks$n.h5" >log 2>&1
-    result $? "... to the bit"
+    holds "... to the bit" same one.h5 "ranks$n.h5"
 done
-"$python" "$tests/search.py" consistent one.h5 >log 2>&1
-result $? "counts, objectives, the best and the chosen follow from each other"
-"$python" "$tests/search.py" reads one.h5 >log 2>&1
-result $? "xarray reads the file"
+holds "counts, objectives, the best and the chosen follow from each other" consistent one.h5
+holds "xarray reads the file" reads one.h5
 
 # What was counted is what stance run counts.
 seed=$((7 + 1))
@@ -52,15 +56,13 @@ expect "stance run computes the best from the fresh starts" 0 "$stance" run one-
     --set seed=$seed --set sweep.sample.count=512
 expect "... and the first" 0 "$stance" run box.yaml -o first.h5 --set seed=$seed \
     --set sweep.sample.count=512
-"$python" "$tests/search.py" confirmed one.h5 best.h5 first.h5 >log 2>&1
-result $? "... each start ends as the search found"
+holds "... each start ends as the search found" confirmed one.h5 best.h5 first.h5
 
 # Stops and kills.
 search "a time limit stops it" 4 box.yaml -o stopped.h5 --time-limit 0.3s
 says "... with the command that goes on" 'go on with:.* optimise box.yaml -o stopped.h5 --time-limit 0.3s --resume$'
 search "... which does" 0 box.yaml -o stopped.h5 --resume
-"$python" "$tests/search.py" same one.h5 stopped.h5 >log 2>&1
-result $? "... to the same end, to the bit"
+holds "... to the same end, to the bit" same one.h5 stopped.h5
 # Some moment after a generation more than what there was is in the file: it comes to its end.
 generations() { "$stance" status killed.h5 --json 2>/dev/null | sed -n 's/.*"generations": *\([0-9]*\).*/\1/p'; }
 further() { (($(generations) + 0 > before)); }
@@ -93,48 +95,35 @@ result $? "killed $kills times over, to the same end, to the bit"
     echo '  require: {critical_sample_time: 0.01}, price: {peak_torque: 0.02, gain: 0.01}}'
 } >worst.yaml
 search "the worst of several circumstances" 0 worst.yaml -o worst.h5
-"$python" "$tests/search.py" refused worst.h5 >log 2>&1
-result $? "loops that are unstable, or too slow, recover nothing"
+holds "loops that are unstable, or too slow, recover nothing" refused worst.h5
 search "their mean" 0 worst.yaml -o mean.h5 --set optimise.over=mean
-"$python" "$tests/search.py" mean worst.h5 mean.h5 >log 2>&1
-result $? "... is another objective"
+holds "... is another objective" mean worst.h5 mean.h5
 sed 's/sobol/sphere/; s/  sample:/  grid:\n    - {path: initial.offset.scale, from: 0.1, to: 1, count: 10}\n&/; s/vary: gains/&, maximise: nearest/' \
     box.yaml >nearest.yaml
 search "the nearest fall" 0 nearest.yaml -o nearest.h5 --set optimise.candidates=33 --set optimise.grow=[16,32] \
     --set optimise.confirm=64
-"$python" "$tests/search.py" nearest nearest.h5 >log 2>&1
-result $? "... is where the first direction falls"
-search "posture, sample time and gains together" 0 box.yaml -o posture.h5 --set optimise.candidates=24 \
-    --set optimise.grow=[32] --set optimise.confirm=64 \
+holds "... is where the first direction falls" nearest nearest.h5
+few "posture, sample time and gains together" posture.h5 24 \
     --set 'optimise.vary=[gains, {path: initial.equilibrium.theta, from: -0.6, to: 0.6}, {path: controller.sample_time, from: 0.001, to: 0.01, spacing: log}]'
-"$python" "$tests/search.py" bounds posture.h5 >log 2>&1
-result $? "... within their bounds"
-search "poles instead of gains" 0 box.yaml -o poles.h5 --set optimise.vary=poles \
-    --set optimise.candidates=24 --set optimise.grow=[32] --set optimise.confirm=64
+holds "... within their bounds" bounds posture.h5
+few "poles instead of gains" poles.h5 24 --set optimise.vary=poles
 
 # What counts, and what is said of it.
-search "an answer instead of a share" 0 box.yaml -o steps.h5 --set optimise.maximise=steps \
-    --set optimise.candidates=11 --set method.step=0.0005 --set optimise.grow=[32] --set optimise.confirm=64
+few "an answer instead of a share" steps.h5 11 --set optimise.maximise=steps --set method.step=0.0005
 says "... is not told as one" '^steps.h5: 11 candidates in 1 generation, .*; objective [0-9.]* of 64 fresh starts, the first [0-9.]*; '
 ! grep -q 'twice the sample time' log
 result $? "... nor compared with one"
 expect "its scenario runs" 0 "$stance" run steps-best.yaml -o steps-run.h5 --set seed=$seed --set sweep.sample.count=64
-"$python" "$tests/search.py" answer steps.h5 steps-run.h5 >log 2>&1
-result $? "... and has the same mean, of answers above 1000, too"
+holds "... and has the same mean, of answers above 1000, too" answer steps.h5 steps-run.h5
 sed 's/method: sobol/method: random/; s/  *- {path: initial.offset.vtheta.*/&\n      - {path: initial.offset.vq1, from: -1, to: 1}\n      - {path: initial.offset.vq2, from: -1, to: 1}\n      - {path: initial.offset.q2, from: -0.2, to: 0.2}\n      - {path: ground.friction, from: 0.7, to: 0.9}\n      - {path: robot.hip_mass, from: 5.3, to: 5.5}\n      - {path: robot.foot_mass, from: 1.7, to: 1.9}\n      - {path: robot.trunk_mass, from: 1.7, to: 1.9}\n      - {path: robot.leg_length, from: 0.5, to: 0.55}/' \
     box.yaml >many.yaml
 search "starts of eleven numbers, the middle counting more" 0 many.yaml -o many.h5 --set optimise.weight=normal \
     --set optimise.candidates=11 --set optimise.grow=[8] --set optimise.confirm=32
-"$python" "$tests/search.py" weighted many.h5 >log 2>&1
-result $? "... have weights, however far from the middle they are"
-search "a price beyond all worth" 0 box.yaml -o dear.h5 --set optimise.price.gain=1e9 --set optimise.candidates=22 \
-    --set optimise.grow=[32] --set optimise.confirm=64
-"$python" "$tests/search.py" dear dear.h5 >log 2>&1
-result $? "... makes no loop that was not tried the best"
-search "equal ratios without bounds" 0 box.yaml -o ratios.h5 --set optimise.candidates=24 --set optimise.grow=[32] \
-    --set optimise.confirm=64 --set 'optimise.vary=[{path: initial.equilibrium.q2, unit: 0.1, spacing: log}]'
-"$python" "$tests/search.py" ratios ratios.h5 >log 2>&1
-result $? "... go both ways"
+holds "... have weights, however far from the middle they are" weighted many.h5
+few "a price beyond all worth" dear.h5 22 --set optimise.price.gain=1e9
+holds "... makes no loop that was not tried the best" dear dear.h5
+few "equal ratios without bounds" ratios.h5 24 --set 'optimise.vary=[{path: initial.equilibrium.q2, unit: 0.1, spacing: log}]'
+holds "... go both ways" ratios ratios.h5
 
 # A robot on a flat foot, whose angle follows while the sole holds: gains of it are 0.
 sed -n '/^    # own.yaml/,/^$/s/^    //p' "$tests/../README.md" >own.yaml
@@ -152,8 +141,7 @@ expect "... as does its summary" 0 "$stance" summary own.h5
 says "... beside the bound" '^  (contacts as if glued: '
 expect "... to programs" 0 "$stance" summary own.h5 --json
 says "... too" '"linear_limit_glued": true'
-"$python" "$tests/search.py" flat own.h5 >log 2>&1
-result $? "... tries them"
+holds "... tries them" flat own.h5
 
 # What ships.
 for scenario in "$shipped"/optimise/*.yaml; do

@@ -1,5 +1,5 @@
 /* basin.c - cuts a results file into maps over the starts and sums up what these say. */
-#include "basin.h"
+#include "basin_print.h"
 
 #include "analysis/statistics/intervals.h"
 #include "analysis/statistics/statistics.h"
@@ -10,6 +10,72 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* ---- sampled starts ----------------------------------------------------------------------- */
+
+/* The range of a path, where a factor moves it alone and evenly. */
+static void find_range(const struct scenario *s, int path, struct basin_factor *factor)
+{
+    for (size_t j = 0; j < s->sample.design.factors; j++) {
+        const struct scenario_factor *f = &s->sample.factor[j];
+        if (f->first == path && f->paths == 1 && !f->listed && !f->log) {
+            factor->from = f->value[0];
+            factor->to = f->value[1];
+        }
+    }
+}
+
+static void take_factors(struct basin_sample *sample, const struct results *r,
+                         const struct scenario *s)
+{
+    sample->box = 1;
+    for (int k = 0; k < r->varied; k++) {
+        struct basin_factor *factor = &sample->factor[sample->factors];
+        if (!scenario_is_start(r->vary[k].of.name)) {
+            sample->others = true;
+            continue;
+        }
+        *factor = (struct basin_factor){&r->vary[k].of, NAN, NAN};
+        find_range(s, k, factor);
+        sample->box *= fabs(factor->to - factor->from);
+        sample->factors++;
+    }
+    sample->axis = sample->factors > 0 ? r->sample : -1;
+}
+
+bool basin_sample_make(struct basin_sample *sample, const struct results *r,
+                       stance_message *message)
+{
+    *sample = (struct basin_sample){.axis = -1, .box = NAN};
+    if (r->sample < 0)
+        return true;
+    const struct scenario *const s = r->read;
+    sample->factor = calloc((size_t)r->varied + 1, sizeof *sample->factor);
+    sample->points = r->axis[r->sample].count;
+    const bool good = s && sample->factor;
+    if (good && s->sample.given) {
+        sample->method = s->sample.design.method;
+        sample->block = (size_t)doe_block(&s->sample.design);
+        take_factors(sample, r, s);
+    }
+    if (good)
+        return true;
+    basin_sample_free(sample);
+    return complain(message, "%.100s: its scenario cannot be read, or memory does not suffice",
+                    r->file);
+}
+
+void basin_sample_free(struct basin_sample *sample)
+{
+    free(sample->factor);
+    *sample = (struct basin_sample){.axis = -1};
+}
+
+bool basin_sample_counts(const struct basin_sample *sample, size_t point)
+{
+    return sample->method != DOE_SALTELLI || point % sample->block == 0 ||
+           point % sample->block == sample->block - 1;
+}
 
 /* ---- which axis is what ------------------------------------------------------------------- */
 
@@ -291,16 +357,18 @@ static double longer_side(double estimate, struct interval interval)
     return fmax(interval.high - estimate, estimate - interval.low);
 }
 
-/* What the slices of one block of a sample of parameters add up to. The points of a block share
- * coordinates (saltelli, morris): independent of each other are blocks. */
-struct block {
+/* What is drawn in a sample, for each row. Of parameters: the blocks, whose points share
+ * coordinates (saltelli, morris) and whose slices add up; of starts: a point, and what became of
+ * its cases. */
+struct draw {
     double volume;
     uint64_t slices;
+    uint32_t cases, inside, unknown;
 };
 
-static size_t blocks_of(const struct basin *b)
+static struct draw *draws_of(const struct basin *b, const struct basin_row *row, struct draw *all)
 {
-    return b->averaged >= 0 ? b->sample.points / b->sample.block : 0;
+    return all + (size_t)(row - b->row) * b->draws;
 }
 
 /* The map's faces as those of the box. */
@@ -333,9 +401,9 @@ static bool add_part(const struct basin *b, const struct lattice *lattice, struc
     return true;
 }
 
-/* blocks[rows][blocks_of] */
+/* draws[rows][draws] */
 static bool add_slice(struct basin *b, const struct lattice *lattice, const size_t *point,
-                      struct block *blocks)
+                      struct draw *draws)
 {
     struct basin_row *row = begin_slice(b, point);
     struct basin_volume volume;
@@ -357,8 +425,7 @@ static bool add_slice(struct basin *b, const struct lattice *lattice, const size
         row->reach += basin_volume_reach(&volume, deviations);
         row->resolution += deviations * sqrt(volume.variance);
         if (b->averaged >= 0) {
-            struct block *block = &blocks[(size_t)(row - b->row) * blocks_of(b) +
-                                          point[b->averaged] / b->sample.block];
+            struct draw *block = draws_of(b, row, draws) + point[b->averaged] / b->sample.block;
             block->volume += volume.estimate;
             block->slices++;
         }
@@ -377,10 +444,10 @@ static bool add_slice(struct basin *b, const struct lattice *lattice, const size
 
 /* How far the mean over blocks may be off, as far as they scatter: the longer side of its interval,
  * which where few blocks differ from the others has two that do. NAN: fewer than two blocks. */
-static double scatter(const struct basin *b, const struct block *blocks)
+static double scatter(const struct basin *b, const struct draw *blocks)
 {
     struct interval_draws draws = {0};
-    for (size_t k = 0; k < blocks_of(b); k++)
+    for (size_t k = 0; k < b->draws; k++)
         interval_add(&draws, blocks[k].volume / b->box, (double)blocks[k].slices);
     const double mean = draws.k / draws.m;
     const struct interval found = interval_of(&draws, b->choice.level);
@@ -390,7 +457,7 @@ static double scatter(const struct basin *b, const struct block *blocks)
 /* From sums over slices to means. The boundaries of slices next to each other lie alike, and so may
  * their errors: the mean's is the mean of theirs. Over a sample of parameters slices scatter, too.
  */
-static void finish_row(const struct basin *b, struct basin_row *row, const struct block *blocks)
+static void finish_row(const struct basin *b, struct basin_row *row, struct draw *draws)
 {
     const double n = (double)row->slices, known = row->known > 0 ? (double)row->known : NAN;
     row->low /= n;
@@ -403,20 +470,15 @@ static void finish_row(const struct basin *b, struct basin_row *row, const struc
     row->part.volume /= (double)row->part.known;
     row->part.reach /= (double)row->part.known;
     if (b->averaged >= 0)
-        row->reach = hypot(row->reach, scatter(b, blocks + (size_t)(row - b->row) * blocks_of(b)));
+        row->reach = hypot(row->reach, scatter(b, draws_of(b, row, draws)));
 }
 
-/* What became of a sampled point in the slices of a row. */
-struct point {
-    uint32_t cases, inside, unknown;
-};
-
-/* Counts cases alone: a sample is no map. points[rows][points] */
+/* Counts cases alone: a sample is no map. */
 static void add_sampled(struct basin *b, const struct lattice *lattice, const size_t *point,
-                        struct point *points)
+                        struct draw *draws)
 {
     struct basin_row *row = begin_slice(b, point);
-    struct point *own = points + (size_t)(row - b->row) * b->sample.points;
+    struct draw *own = draws_of(b, row, draws);
     for (size_t i = 0; i < lattice->map.cases; i++) {
         if (basin_sample_counts(&b->sample, i)) {
             const uint8_t kind = lattice->kind[i];
@@ -432,7 +494,7 @@ static void add_sampled(struct basin *b, const struct lattice *lattice, const si
 }
 
 /* The nearest point of a sample that is lost in the only slice. */
-static void find_nearest(const struct basin *b, struct basin_row *row, const struct point *own)
+static void find_nearest(const struct basin *b, struct basin_row *row, const struct draw *own)
 {
     row->has_distance = b->around && row->slices == 1;
     row->distance = (struct basin_distance){
@@ -450,9 +512,9 @@ static void find_nearest(const struct basin *b, struct basin_row *row, const str
 }
 
 /* A point that counts in several slices, averaged over, is one draw. */
-static void finish_sampled(const struct basin *b, struct basin_row *row, const struct point *points)
+static void finish_sampled(const struct basin *b, struct basin_row *row, struct draw *draws)
 {
-    const struct point *own = points + (size_t)(row - b->row) * b->sample.points;
+    const struct draw *own = draws_of(b, row, draws);
     const uint64_t known = row->cases - row->failed - row->pending;
     struct interval_draws least = {0}, most = {0};
     for (size_t i = 0; i < b->sample.points; i++) {
@@ -468,69 +530,49 @@ static void finish_sampled(const struct basin *b, struct basin_row *row, const s
     find_nearest(b, row, own);
 }
 
-/* The volumes of the draws of a sample, one by one. */
-static bool keep_draws(struct basin *b, const struct block *blocks, const struct point *points)
-{
-    const bool sampled = b->starts == BASIN_SAMPLE;
-    b->draws = sampled ? b->sample.points : blocks_of(b);
-    b->drawn = malloc((b->rows * b->draws + 1) * sizeof *b->drawn);
-    for (size_t k = 0; b->drawn && k < b->rows * b->draws; k++)
-        if (sampled)
-            b->drawn[k] = points[k].cases > points[k].unknown
-                              ? b->box * points[k].inside / (points[k].cases - points[k].unknown)
-                              : NAN;
-        else
-            b->drawn[k] = blocks[k].slices > 0 ? blocks[k].volume / (double)blocks[k].slices : NAN;
-    return b->drawn != NULL;
-}
-
-/* Every case with the outcome tells on which faces it lies. */
-static void find_cuts(struct basin *b)
-{
-    for (uint64_t i = 0; b->faces.starts > 0 && i < b->r->cases; i++) {
-        if (b->r->kind[i] == b->choice.of) {
-            size_t point[SCENARIO_MAX_AXES];
-            results_point(b->r, i, point);
-            b->row[basin_row_of(b, point)].cut |= faces_at(&b->faces, point);
-        }
-    }
-}
-
 static bool make_rows(struct basin *b, stance_message *message)
 {
+    const bool sampled = b->starts == BASIN_SAMPLE;
     struct lattice lattice;
     size_t point[SCENARIO_MAX_AXES] = {0};
 
     b->rows = 1;
     for (int k = 0; k < b->by_axes; k++)
         b->rows *= b->r->axis[b->by[k]].count;
+    b->draws = sampled            ? b->sample.points
+               : b->averaged >= 0 ? b->sample.points / b->sample.block
+                                  : 0;
     b->row = calloc(b->rows, sizeof *b->row);
-    struct block *blocks = calloc(b->rows * blocks_of(b) + 1, sizeof *blocks);
-    const bool sampled = b->starts == BASIN_SAMPLE;
-    struct point *points = calloc(sampled ? b->rows * b->sample.points : 1, sizeof *points);
-    if (!b->row || !blocks || !points || !make_lattice(&lattice, b)) {
-        free(blocks);
-        free(points);
+    b->drawn = malloc((b->rows * b->draws + 1) * sizeof *b->drawn);
+    struct draw *draws = calloc(b->rows * b->draws + 1, sizeof *draws);
+    bool good = b->row && b->drawn && draws && make_lattice(&lattice, b);
+    if (!good) {
+        free(draws);
         return statistics_no_memory(b->r, message);
     }
-    bool good = true;
     do {
         take_slice(&lattice, b, point);
-        if (b->starts == BASIN_GRID)
-            good = add_slice(b, &lattice, point, blocks);
+        if (sampled)
+            add_sampled(b, &lattice, point, draws);
         else
-            add_sampled(b, &lattice, point, points);
+            good = add_slice(b, &lattice, point, draws);
     } while (good && next_slice(b, point));
     for (size_t k = 0; k < b->rows; k++)
-        if (b->starts == BASIN_GRID)
-            finish_row(b, &b->row[k], blocks);
-        else
-            finish_sampled(b, &b->row[k], points);
-    find_cuts(b);
-    good = good && keep_draws(b, blocks, points);
+        (sampled ? finish_sampled : finish_row)(b, &b->row[k], draws);
+    for (size_t k = 0; k < b->rows * b->draws; k++) {
+        const struct draw *const d = &draws[k];
+        b->drawn[k] =
+            sampled ? b->box * d->inside / (d->cases - d->unknown) : d->volume / (double)d->slices;
+    }
+    /* Every case with the outcome tells on which faces it lies. */
+    for (uint64_t i = 0; b->faces.starts > 0 && i < b->r->cases; i++) {
+        if (b->r->kind[i] == b->choice.of) {
+            results_point(b->r, i, point);
+            b->row[basin_row_of(b, point)].cut |= faces_at(&b->faces, point);
+        }
+    }
     free_lattice(&lattice);
-    free(blocks);
-    free(points);
+    free(draws);
     return good || statistics_no_memory(b->r, message);
 }
 
@@ -589,34 +631,45 @@ void basin_free(struct basin *basin)
 
 /* ---- the boundary ------------------------------------------------------------------------- */
 
-struct visitor {
-    struct basin_slice slice;
-    bool (*visit)(void *context, const struct basin_slice *slice,
-                  const struct basin_crossing *crossing);
-    void *context;
-};
-
-static bool visit_crossing(void *context, const struct basin_crossing *crossing)
+static void put_crossing(struct table *t, const struct basin *b, const struct basin_map *map,
+                         const size_t *point, const struct basin_crossing *crossing)
 {
-    const struct visitor *visitor = context;
-    return visitor->visit(visitor->context, &visitor->slice, crossing);
+    for (int a = 0, d = 0; a < b->r->axes; a++) {
+        const bool start = d < b->start_axes && b->start[d] == a;
+        if (!start)
+            TABLE_VALUES(t, as_place(&b->r->axis[a], point[a]));
+        else
+            TABLE_VALUES(t, as_number(d == crossing->axis ? crossing->middle
+                                                          : map->place[d][crossing->point[d]]));
+        d += start;
+    }
+    TABLE_VALUES(t, as_text(b->r->axis[b->start[crossing->axis]].name),
+                 as_number(crossing->half_width), as_text(results_kind_names[crossing->from]),
+                 as_text(results_kind_names[crossing->to]));
 }
 
-bool basin_boundary(const struct basin *basin,
-                    bool (*visit)(void *context, const struct basin_slice *slice,
-                                  const struct basin_crossing *crossing),
-                    void *context)
+bool basin_print_boundary(const struct basin *b)
 {
-    struct visitor visitor = {.slice = {.basin = basin}, .visit = visit, .context = context};
+    struct table t = {0};
     struct lattice lattice;
-    if (basin->starts != BASIN_GRID || !make_lattice(&lattice, basin))
-        return basin->starts != BASIN_GRID;
-    visitor.slice.map = lattice.map;
-    bool good = true;
+    size_t point[SCENARIO_MAX_AXES] = {0};
+    if (!make_lattice(&lattice, b))
+        return false;
+    for (int a = 0; a < b->r->axes; a++)
+        TABLE_COLUMNS(&t, {.name = b->r->axis[a].name});
+    TABLE_COLUMNS(&t, {.name = "along"}, {.name = "half_width"}, {.name = "from"}, {.name = "to"});
+    bool good = table_write_csv(&t, stdout); /* the head */
+    table_clear(&t);
     do {
-        take_slice(&lattice, basin, visitor.slice.point);
-        good = basin_map_boundary(&lattice.map, visit_crossing, &visitor);
-    } while (good && next_slice(basin, visitor.slice.point));
+        struct basin_crossing crossing = {.axis = -1};
+        take_slice(&lattice, b, point);
+        while (good && basin_next_crossing(&lattice.map, &crossing)) {
+            put_crossing(&t, b, &lattice.map, point, &crossing);
+            good = table_write_csv(&t, stdout);
+            table_clear(&t);
+        }
+    } while (good && next_slice(b, point));
     free_lattice(&lattice);
+    table_free(&t);
     return good;
 }

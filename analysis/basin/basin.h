@@ -9,9 +9,38 @@
 #define STANCE_BASIN_BASIN_H
 
 #include "basin_map.h"
-#include "basin_sample.h"
 
 #include "analysis/statistics/faces.h"
+
+/* ---- starts that were sampled (sweep.sample) rather than laid out on a grid ----------------- */
+
+/* One varied number of the starts. */
+struct basin_factor {
+    const struct results_axis *of; /* name, unit, value[points] */
+    double from, to;               /* of its range; NAN where it has none of its own */
+};
+
+struct basin_sample {
+    int axis; /* of the file; -1: it has no sample of starts */
+    enum doe_method method;
+    size_t points, block;
+    size_t factors;              /* of the starts: initial.offset.*, initial.state.* */
+    struct basin_factor *factor; /* [factors] */
+    double box;                  /* volume of the ranges; NAN where there is none */
+    bool others;                 /* the sample varies more than starts */
+};
+
+/* What the file's sample says of starts; points into *r. False: its scenario cannot be read, or
+ * there is no memory. */
+bool basin_sample_make(struct basin_sample *sample, const struct results *r,
+                       stance_message *message);
+void basin_sample_free(struct basin_sample *sample);
+
+/* Whether a point counts towards shares: of Saltelli's blocks only the first and the last points,
+ * which are evenly distributed over the box; the others repeat their coordinates. */
+bool basin_sample_counts(const struct basin_sample *sample, size_t point);
+
+/* ---- the study ------------------------------------------------------------------------------ */
 
 enum basin_starts {
     BASIN_GRID,   /* start axes of numbers: volumes as basin_map.h has them */
@@ -103,17 +132,46 @@ size_t basin_row_of(const struct basin *basin, const size_t *point);
 /* The paths of parameters that rows are averaged over, in paths[most]; how many there are. */
 size_t basin_averaged(const struct basin *basin, const char **paths, size_t most);
 
-/* Calls visit for every pair of neighbouring starts whose outcomes differ, in every slice; `first`
- * is the slice's point of all axes of the file, 0 along those of the starts. Stops, and returns
- * false, when visit does or memory fails. Grids only. */
-struct basin_slice {
-    const struct basin *basin;
-    size_t point[SCENARIO_MAX_AXES];
-    struct basin_map map;
+/* ---- where along a parameter a basin has lost some share of what it was ----------------------
+ *
+ * Along the parameter, from its first value to its last, the volume V is taken as linear between
+ * neighbouring values, and the threshold is crossed where D = V - T V_first changes its sign first.
+ * The interval holds all values at which D is not known to differ from zero (Fieller's way: E. C.
+ * Fieller, J. R. Stat. Soc. B 16, 1954). D is linear in the volumes of at most three rows, whose
+ * errors count as independent on a grid of starts; of a sample, all of whose points are in every
+ * row, its error is that of the mean of D over the points, by Student's distribution. Between two
+ * values nothing is known of how V runs: the interval is one of the crossing of the straight line,
+ * `before` and `after` are the values between which it is.
+ */
+struct basin_threshold {
+    double first, last; /* volumes */
+    bool crossed;
+    size_t before, after; /* points of the axis; after = before where it is not crossed */
+    double at;            /* of the parameter; NAN: not crossed */
+    double low, high;     /* in the order in which the parameter runs; NAN: beyond its last value */
 };
-bool basin_boundary(const struct basin *basin,
-                    bool (*visit)(void *context, const struct basin_slice *slice,
-                                  const struct basin_crossing *crossing),
-                    void *context);
+
+/* Of the row `row`, whose point of by[along] is the first one, and of those that follow it along
+ * this axis, whose values rise or fall. threshold > 0, not 1; below 1 the volume falls below it,
+ * above 1 it rises above it. */
+struct basin_threshold basin_threshold(const struct basin *basin, size_t row, int along,
+                                       double threshold);
+
+/* How starts are lost along an axis of parameters: those that have the outcome at the one end of
+ * the axis where more have it. */
+struct basin_loss {
+    bool down;        /* from the axis's last point to its first */
+    uint64_t starts;  /* that have it there */
+    uint64_t *lost;   /* [count], in the order of the walk: first seen without it there */
+    size_t at;        /* place in the walk where the first ones are lost; count: none are */
+    uint64_t first;   /* flat index of one of them, as it is there */
+    uint64_t unknown; /* starts that come to a failed or pending case before */
+};
+/* From the last point of the axis (down) or its first; lost[] is freed by the caller. False: no
+ * memory. */
+bool basin_lose(const struct results *r, int axis, bool down, enum results_kind of,
+                struct basin_loss *loss);
+/* Whether more cases have the outcome at the last point of the axis than at its first. */
+bool basin_more_at_last(const struct results *r, int axis, enum results_kind of);
 
 #endif

@@ -107,26 +107,23 @@ static bool glued(const struct row *row)
     return row->of.set && allowed_glued(&row->of.equilibrium);
 }
 
-static void add_row(struct table *t, const struct basin *b, size_t k, const struct row *row)
-{
-    const double starts = (double)row->starts, allowed = (double)row->allowed;
-    const bool known = row->of.set != NULL;
-    table_axes(t, b->r, b->by, b->by_axes, b->row[k].point);
-    TABLE_FACTS(
-        t, {{"starts", "starts", .width = 10}, known ? as_whole(row->starts) : as_nothing(NULL)},
-        {{"allowed", "allowed", "%.3f %%", .width = 10, .percent = true},
-         as_number(known ? allowed / starts : NAN)},
-        {{"used", "of that", "%.3f %%", .width = 10, .percent = true},
-         as_number(known ? (double)row->inside / allowed : NAN)},
-        {{"outside", "outside", "%.3f %%", .width = 10, .percent = true},
-         as_number(known ? (double)row->outside / starts : NAN)},
-        {{"why", "", .width = 2, .left = true, .before = "  "},
-         known ? as_nothing("") : as_text(row->of.why.text)},
-        {{"unreached", .heading = NULL},
-         known ? as_whole((uint64_t)stance_null_set_unreached(row->of.set, NULL, NULL))
-               : as_nothing(NULL)},
-        {{"glued", .hidden = TABLE_NO_CSV}, known ? as_truth(glued(row)) : as_nothing(NULL)});
-#define FACTS(NAME, name, heading)                                                                 \
+/* Of a row; `known`: there is a set. */
+#define ROW(X)                                                                                     \
+    X("starts", "", known ? as_whole(row->starts) : as_nothing(NULL), "starts", .width = 10)       \
+    X("allowed", "", as_number(known ? allowed / starts : NAN), "allowed", "%.3f %%", 10,          \
+      .percent = true)                                                                             \
+    X("used", "", as_number(known ? (double)row->inside / allowed : NAN), "of that", "%.3f %%",    \
+      10, .percent = true)                                                                         \
+    X("outside", "shares", as_number(known ? (double)row->outside / starts : NAN), "outside",      \
+      "%.3f %%", 10, .percent = true)                                                              \
+    X("why", "there is no such set", known ? as_nothing("") : as_text(row->of.why.text), "",       \
+      .width = 2, .left = true, .before = "  ")                                                    \
+    X("unreached", "modes that no torque moves and that do not decay",                             \
+      known ? as_whole((uint64_t)stance_null_set_unreached(row->of.set, NULL, NULL))               \
+            : as_nothing(NULL))                                                                    \
+    X("glued", "several contacts carry", known ? as_truth(glued(row)) : as_nothing(NULL),          \
+      .hidden = TABLE_NO_CSV)
+#define EXCUSED(NAME, name, heading)                                                               \
     {{#name "_starts", heading, .width = 9, .group = #name, .key = "starts"},                      \
      known ? as_whole(row->excuse[NAME].starts) : as_nothing(NULL)},                               \
         {{#name "_farthest", "farthest", "%.4f", .width = 9, .group = #name, .key = "farthest"},   \
@@ -135,8 +132,17 @@ static void add_row(struct table *t, const struct basin *b, size_t k, const stru
                        : NAN)},                                                                    \
         {{#name "_case", "case", .width = 9, .group = #name, .key = "case"},                       \
          row->excuse[NAME].starts ? as_whole(row->excuse[NAME].index) : as_nothing(NULL)},
-    TABLE_FACTS(t, EXCUSES(FACTS));
-#undef FACTS
+#define EXCUSE_KEY(NAME, name, heading)                                                            \
+    {#name, "{starts, farthest (null: no growth suffices), case}", NULL},
+static const struct say_key row_keys[] = {TABLE_KEY_AT ROW(TABLE_KEY) EXCUSES(EXCUSE_KEY){0}};
+const struct say_key basin_allowed_keys[] = {{"outcome", "", NULL}, {"rows", "", row_keys}, {0}};
+
+static void add_row(struct table *t, const struct basin *b, size_t k, const struct row *row)
+{
+    const double starts = (double)row->starts, allowed = (double)row->allowed;
+    const bool known = row->of.set != NULL;
+    table_axes(t, b->r, b->by, b->by_axes, b->row[k].point);
+    TABLE_FACTS(t, ROW(TABLE_FACT) EXCUSES(EXCUSED));
     table_end_row(t);
 }
 
@@ -178,10 +184,9 @@ static bool print_rows(const struct basin *b, const struct row *rows, enum table
     json_t *const facts = TABLE_OBJECT(
         {"outcome", as_text(results_kind_names[b->choice.of])}, {".asked", as_text(basin_asked(b))},
         {".glued", as_truth(any_glued)}, {".unreached", as_truth(unreached)});
-    json_t *const shown = table_show(basin_titled(b->r, facts), "rows", &t,
-                                     "at/ starts allowed used outside why", BASIN_SHOWN);
-    return table_say(form, excused ? table_show(shown, ".excuses", &t, view, BASIN_SHOWN) : shown,
-                     text, &t);
+    if (excused)
+        table_show(facts, ".excuses", &t, view, BASIN_SHOWN);
+    return basin_say(b->r, form, facts, &t, "at/ starts allowed used outside why", text);
 }
 
 bool basin_print_allowed(const struct basin *b, enum table_form form, bool *usage,

@@ -12,85 +12,98 @@
 
 enum { ROUNDS = 60, HALVES = 4, RAYS = 2 * DESCEND_DIMENSIONS, PROBES = 32, RESTARTS = 8 };
 
-/* The set ends along u between low, inside, and high, which is not. */
-struct ray {
-    double u[DESCEND_DIMENSIONS], low, high;
-};
-
 struct descent {
-    const struct descend_set *set;
+    const struct descend_set *of;
+    struct descend_set set; /* the same, whose points are counted */
+    double most;
     uint64_t random, asked;
     bool broken;
-    double *z;    /* [most][n] of the points that are asked for together */
-    bool *inside; /* [most] */
+    double *z;    /* [PROBES n][n] of the points that are asked for together */
+    uint8_t *end; /* [PROBES n] */
 };
 
-static double middle(const struct ray *ray)
+static double middle(const struct descend_ray *ray)
 {
     return isfinite(ray->high) ? 0.5 * (ray->low + ray->high) : INFINITY;
 }
 
-static bool ask(struct descent *d, size_t count)
+static bool is_inside(const struct descend_set *set, uint8_t end)
 {
-    d->asked += count;
-    d->broken = d->broken || !d->set->ask(d->set->context, count, d->z, d->inside);
-    return !d->broken;
+    return set->inside >> end & 1;
 }
 
 /* ---- where rays end ----------------------------------------------------------------------- */
 
-/* The next distance to ask for: first the guess, from there with growing steps to a bracket, which
- * is halved. */
-static double next_place(const struct ray *ray, double guess, double *step)
+static double next_place(const struct descend_ray *ray, const struct descend_way *way, double *step)
 {
+    const double most = way->hastens ? INFINITY : ray->most;
     double place = 0.5 * (ray->low + ray->high);
     if (ray->low == 0 && !isfinite(ray->high))
-        return guess;
+        return fmin(most, way->first);
     if (!isfinite(ray->high))
-        place = ray->low * (1 + *step);
-    else if (ray->low == 0 && *step < 0.7)
+        place = fmin(most, fmax(way->first, ray->low * (1 + *step)));
+    else if (ray->low == 0 && way->hastens && *step < 0.7)
         place = ray->high * (1 - *step);
-    *step *= 2;
+    *step *= way->hastens ? 2 : 1;
     return place;
 }
 
-static bool is_settled(const struct descent *d, const struct ray *ray, double width)
+static bool is_settled(const struct descend_ray *ray, const struct descend_way *way)
 {
-    return isfinite(ray->high) ? ray->high - ray->low <= width * ray->high || ray->high < 1e-12
-                               : ray->low >= d->set->most;
+    return isfinite(ray->high)
+               ? ray->high - ray->low <= way->width * ray->high || ray->high < way->least
+               : ray->low >= ray->most;
 }
 
-/* Finds the ends of rays near a distance to a relative width, all of them in step. An end beyond
- * set->most is infinite. */
-static bool end_rays(struct descent *d, struct ray *ray, size_t count, double guess, double width)
+bool descend_rays(const struct descend_set *set, const struct descend_way *way,
+                  struct descend_ray *ray, size_t count)
 {
-    const int n = d->set->n;
-    double step[RAYS], place[RAYS];
-    size_t which[RAYS], open;
-    guess = guess > 0 && guess < d->set->most ? guess : 0.5 * d->set->most;
-    for (size_t k = 0; k < count; k++) {
+    const size_t n = (size_t)set->n;
+    double *const z = malloc((count * (n + 2) + 1) * sizeof *z), *const place = z + count * n,
+                  *const step = place + count;
+    size_t *const which = malloc((count + 1) * sizeof *which), open;
+    uint8_t *const end = malloc(count + 1);
+    bool good = z && which && end;
+    for (size_t k = 0; good && k < count; k++) {
         ray[k].low = 0;
         ray[k].high = INFINITY;
-        step[k] = 2 * width;
+        step[k] = way->step;
     }
     do {
         open = 0;
-        for (size_t k = 0; k < count; k++) {
-            if (is_settled(d, &ray[k], width))
+        for (size_t k = 0; good && k < count; k++) {
+            if (is_settled(&ray[k], way))
                 continue;
-            place[k] = next_place(&ray[k], guess, &step[k]);
-            for (int i = 0; i < n; i++)
-                d->z[open * (size_t)n + (size_t)i] = place[k] * ray[k].u[i];
+            place[open] = next_place(&ray[k], way, &step[k]);
+            for (size_t i = 0; i < n; i++)
+                z[open * n + i] = place[open] * ray[k].v[i];
             which[open++] = k;
         }
-        if (open > 0 && !ask(d, open))
-            return false;
-        for (size_t j = 0; j < open; j++) {
-            const size_t k = which[j];
-            *(d->inside[j] ? &ray[k].low : &ray[k].high) = place[k];
+        good = good && (open == 0 || set->ask(set->context, open, z, end));
+        for (size_t j = 0; good && j < open; j++) {
+            struct descend_ray *const own = &ray[which[j]];
+            *(is_inside(set, end[j]) ? &own->low : &own->high) = place[j];
+            if (!is_inside(set, end[j]))
+                own->beyond = end[j];
         }
-    } while (open > 0);
-    return true;
+    } while (good && open > 0);
+    free(z);
+    free(which);
+    free(end);
+    return good;
+}
+
+/* Near a guess, to a relative width. */
+static bool end_rays(struct descent *d, struct descend_ray *ray, size_t count, double guess,
+                     double width)
+{
+    const double first = guess > 0 && guess < d->most ? guess : 0.5 * d->most;
+    for (size_t k = 0; k < count; k++)
+        ray[k].most = d->most;
+    d->broken = d->broken ||
+                !descend_rays(&d->set, &(struct descend_way){first, 2 * width, true, width, 1e-12},
+                              ray, count);
+    return !d->broken;
 }
 
 /* ---- directions --------------------------------------------------------------------------- */
@@ -155,7 +168,8 @@ static void turn(int n, const double *u, const double *t, double angle, double *
 /* ---- downhill ----------------------------------------------------------------------------- */
 
 /* How the distance changes by an angle, relative to it; with one end only from that side. */
-static double slope(const struct ray *ahead, const struct ray *behind, double r, double angle)
+static double slope(const struct descend_ray *ahead, const struct descend_ray *behind, double r,
+                    double angle)
 {
     const double a = middle(ahead), b = middle(behind);
     return isfinite(a) && isfinite(b) ? (a - b) / (2 * angle * r)
@@ -166,22 +180,22 @@ static double slope(const struct ray *ahead, const struct ray *behind, double r,
 
 /* From the best ray to a shorter one, by the normal of the surface; the angle it has turned, 0:
  * there is none. */
-static double step_down(struct descent *d, struct ray *best, double angle)
+static double step_down(struct descent *d, struct descend_ray *best, double angle)
 {
-    const int n = d->set->n;
+    const int n = d->set.n;
     double t[DESCEND_DIMENSIONS][DESCEND_DIMENSIONS], aim[DESCEND_DIMENSIONS];
-    struct ray ray[RAYS] = {{{0}, 0, 0}};
+    struct descend_ray ray[RAYS] = {{.low = 0}};
     const double r = middle(best);
 
-    find_tangents(n, best->u, t);
+    find_tangents(n, best->v, t);
     for (int j = 0; j + 1 < n; j++) {
-        turn(n, best->u, t[j], angle, ray[2 * j].u);
-        turn(n, best->u, t[j], -angle, ray[2 * j + 1].u);
+        turn(n, best->v, t[j], angle, ray[2 * j].v);
+        turn(n, best->v, t[j], -angle, ray[2 * j + 1].v);
     }
     if (!end_rays(d, ray, 2 * (size_t)(n - 1), r, fmax(0.1 * angle * angle, SHARP)))
         return 0;
-    memcpy(aim, best->u, sizeof aim);
-    struct ray shortest = *best;
+    memcpy(aim, best->v, sizeof aim);
+    struct descend_ray shortest = *best;
     for (int j = 0; j + 1 < n; j++) {
         const double g = slope(&ray[2 * j], &ray[2 * j + 1], r, angle);
         for (int i = 0; i < n; i++)
@@ -191,17 +205,17 @@ static double step_down(struct descent *d, struct ray *best, double angle)
                 middle(&ray[2 * j + side]) < middle(&shortest) ? ray[2 * j + side] : shortest;
     }
     for (int half = 0; half < HALVES && normalise(n, aim); half++) {
-        struct ray next;
-        memcpy(next.u, aim, sizeof next.u);
+        struct descend_ray next;
+        memcpy(next.v, aim, sizeof next.v);
         if (!end_rays(d, &next, 1, r, SHARP))
             return 0;
         if (middle(&next) < fmin(middle(&shortest), r * (1 - 1e-9))) {
-            const double turned = acos(fmin(1, dot(n, best->u, next.u)));
+            const double turned = acos(fmin(1, dot(n, best->v, next.v)));
             *best = next;
             return turned;
         }
         for (int i = 0; i < n; i++)
-            aim[i] = aim[i] + best->u[i];
+            aim[i] = aim[i] + best->v[i];
     }
     if (middle(&shortest) >= r * (1 - LESS) ||
         !end_rays(d, &shortest, 1, middle(&shortest), SHARP) || middle(&shortest) >= r)
@@ -211,30 +225,31 @@ static double step_down(struct descent *d, struct ray *best, double angle)
 }
 
 /* Whether some point that is shorter by LESS is outside; *best is the first such ray then. */
-static bool probe(struct descent *d, struct ray *best)
+static bool probe(struct descent *d, struct descend_ray *best)
 {
-    const int n = d->set->n;
+    const int n = d->set.n;
     const size_t probes = PROBES * (size_t)n;
     const double r = best->low * (1 - LESS);
     for (size_t k = 0; k < probes; k++) {
         double t[DESCEND_DIMENSIONS], *z = d->z + k * (size_t)n;
         for (int i = 0; i < n; i++)
             t[i] = normal(d);
-        const double along = dot(n, t, best->u);
+        const double along = dot(n, t, best->v);
         for (int i = 0; i < n; i++)
-            t[i] -= along * best->u[i];
+            t[i] -= along * best->v[i];
         normalise(n, t);
-        turn(n, best->u, t, exp(log(FINEST) + uniform(d) * log(1 / FINEST)), z);
+        turn(n, best->v, t, exp(log(FINEST) + uniform(d) * log(1 / FINEST)), z);
         for (int i = 0; i < n; i++)
             z[i] *= r;
     }
-    if (!ask(d, probes))
+    d->broken = !d->set.ask(d->set.context, probes, d->z, d->end);
+    if (d->broken)
         return false;
     for (size_t k = 0; k < probes; k++) {
-        if (!d->inside[k]) {
-            struct ray next = {.low = 0};
+        if (!is_inside(d->of, d->end[k])) {
+            struct descend_ray next = {.low = 0};
             for (int i = 0; i < n; i++)
-                next.u[i] = d->z[k * (size_t)n + (size_t)i] / r;
+                next.v[i] = d->z[k * (size_t)n + (size_t)i] / r;
             if (!end_rays(d, &next, 1, r * (1 - LESS), SHARP) || middle(&next) >= r)
                 return false;
             *best = next;
@@ -244,9 +259,9 @@ static bool probe(struct descent *d, struct ray *best)
     return false;
 }
 
-static void descend(struct descent *d, struct ray *best)
+static void descend(struct descent *d, struct descend_ray *best)
 {
-    for (int restart = 0; d->set->n > 1 && restart < RESTARTS; restart++) {
+    for (int restart = 0; d->set.n > 1 && restart < RESTARTS; restart++) {
         double angle = WIDEST;
         for (int round = 0; round < ROUNDS && angle >= FINEST && !d->broken; round++) {
             const double turned = step_down(d, best, angle);
@@ -257,21 +272,30 @@ static void descend(struct descent *d, struct ray *best)
     }
 }
 
-bool basin_descend(const struct descend_set *set, const double *start, const double *r,
+static bool count_and_ask(void *context, size_t count, const double *z, uint8_t *end)
+{
+    struct descent *const d = context;
+    d->asked += count;
+    return d->of->ask(d->of->context, count, z, end);
+}
+
+bool basin_descend(const struct descend_set *set, double most, const double *start, const double *r,
                    size_t starts, struct descend_end *end)
 {
-    const size_t n = (size_t)set->n, most = PROBES * n > RAYS ? PROBES * n : RAYS;
-    struct descent d = {.set = set,
+    const size_t n = (size_t)set->n;
+    struct descent d = {.of = set,
+                        .set = {set->n, set->inside, count_and_ask, &d},
+                        .most = most,
                         .random = 0x9e3779b97f4a7c15u,
-                        .z = malloc(most * n * sizeof *d.z),
-                        .inside = malloc(most * sizeof *d.inside)};
+                        .z = malloc(PROBES * n * n * sizeof *d.z),
+                        .end = malloc(PROBES * n)};
     double found[DESCEND_STARTS] = {0};
-    struct ray best = {.high = INFINITY};
-    bool good = d.z && d.inside;
+    struct descend_ray best = {.high = INFINITY};
+    bool good = d.z && d.end;
 
     for (size_t k = 0; good && k < starts; k++) {
-        struct ray own = {.low = 0};
-        memcpy(own.u, start + k * n, n * sizeof *start);
+        struct descend_ray own = {.low = 0};
+        memcpy(own.v, start + k * n, n * sizeof *start);
         good = end_rays(&d, &own, 1, r[k], SHARP);
         if (good && isfinite(own.high))
             descend(&d, &own);
@@ -281,11 +305,11 @@ bool basin_descend(const struct descend_set *set, const double *start, const dou
     }
     *end = (struct descend_end){
         .low = best.low, .high = best.high, .starts = starts, .asked = d.asked};
-    memcpy(end->u, best.u, sizeof end->u);
+    memcpy(end->u, best.v, sizeof end->u);
     for (size_t k = 0; good && k < starts; k++)
         end->agree += found[k] <= 1.01 * middle(&best);
     free(d.z);
-    free(d.inside);
+    free(d.end);
     return good;
 }
 

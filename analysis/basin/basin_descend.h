@@ -21,13 +21,33 @@
 
 enum { DESCEND_DIMENSIONS = 18, DESCEND_STARTS = 64 }; /* most */
 
-/* What is measured: inside[count] of the points z[count][n]; false: it cannot go on. */
+/* What is asked: end[count], a number below 64 for what becomes of each of the points z[count][n];
+ * those in the mask `inside` are. False: it cannot go on. */
 struct descend_set {
-    int n;       /* 1 ... DESCEND_DIMENSIONS */
-    double most; /* distance beyond which nothing is asked */
-    bool (*ask)(void *context, size_t count, const double *z, bool *inside);
+    int n; /* 1 ... DESCEND_DIMENSIONS */
+    uint64_t inside;
+    bool (*ask)(void *context, size_t count, const double *z, uint8_t *end);
     void *context;
 };
+
+/* From the origin along v: inside at `low` v, out of the set at `high` v, where a point becomes
+ * `beyond`. High is infinite where it is not found up to `most` v. */
+struct descend_ray {
+    double v[DESCEND_DIMENSIONS], most, low, high;
+    uint8_t beyond;
+};
+/* Where an end is looked for: first there, then farther out by this part of the distance, which is
+ * doubled each time, beyond `most`, too, where it `hastens`, and from a lost first place back in by
+ * it; then by halves, to a bracket of a relative width, or where it is nearer than `least`. */
+struct descend_way {
+    double first, step;
+    bool hastens;
+    double width, least;
+};
+/* Finds the ends of rays, all of them in step, whose v and `most` are given. False: no memory, or
+ * the set cannot go on. */
+bool descend_rays(const struct descend_set *set, const struct descend_way *way,
+                  struct descend_ray *ray, size_t count);
 
 struct descend_end {
     double low, high;             /* between these the set ends, along */
@@ -36,9 +56,9 @@ struct descend_end {
     uint64_t asked;               /* points */
 };
 
-/* The shortest end of descents from start[starts][n], unit vectors, at which the set ends at about
- * the distances r[starts]. False: no memory, or the set cannot go on. */
-bool basin_descend(const struct descend_set *set, const double *start, const double *r,
+/* The shortest end, not beyond `most`, of descents from start[starts][n], unit vectors, at which
+ * the set ends at about the distances r[starts]. False: no memory, or the set cannot go on. */
+bool basin_descend(const struct descend_set *set, double most, const double *start, const double *r,
                    size_t starts, struct descend_end *end);
 
 /* Descents from directions drawn evenly miss a dip into which at least this share of all directions

@@ -74,30 +74,23 @@ bool basin_map_part(const struct basin_map *map, enum results_kind of, const siz
 
 /* ---- the nearest point of the boundary ---------------------------------------------------- */
 
-struct search {
-    const struct basin_map *map;
-    enum results_kind of;
-    const double *weight;
-    struct basin_distance *distance;
-};
-
-static bool look_nearer(void *context, const struct basin_crossing *crossing)
+static void find_nearest(const struct basin_map *map, enum results_kind of, const double *weight,
+                         struct basin_distance *distance)
 {
-    const struct search *search = context;
-    const struct basin_map *map = search->map;
-    double at[SCENARIO_MAX_AXES], sum = 0;
-
-    if ((crossing->from == search->of) == (crossing->to == search->of))
-        return true; /* between two others */
-    for (int a = 0; a < map->axes; a++) {
-        at[a] = a == crossing->axis ? crossing->middle : map->place[a][crossing->point[a]];
-        sum += pow(at[a] / search->weight[a], 2);
+    struct basin_crossing crossing = {.axis = -1};
+    while (basin_next_crossing(map, &crossing)) {
+        double at[SCENARIO_MAX_AXES], sum = 0;
+        if ((crossing.from == of) == (crossing.to == of))
+            continue; /* between two others */
+        for (int a = 0; a < map->axes; a++) {
+            at[a] = a == crossing.axis ? crossing.middle : map->place[a][crossing.point[a]];
+            sum += pow(at[a] / weight[a], 2);
+        }
+        if (!(sqrt(sum) >= distance->nearest)) { /* true for the first, against NAN */
+            distance->nearest = sqrt(sum);
+            memcpy(distance->at, at, sizeof at);
+        }
     }
-    if (!(sqrt(sum) >= search->distance->nearest)) { /* true for the first, against NAN */
-        search->distance->nearest = sqrt(sum);
-        memcpy(search->distance->at, at, sizeof at);
-    }
-    return true;
 }
 
 /* Distance of the nearest face or unknown case. */
@@ -204,21 +197,21 @@ static void find_extent(const struct basin_map *map, enum results_kind of, const
     uint64_t stride[SCENARIO_MAX_AXES];
     basin_strides(map, stride);
     const uint64_t index = basin_index(map, stride, origin);
-    for (int a = 0; a < map->axes; a++) {
-        const double *place = map->place[a];
-        size_t below = origin[a], above = origin[a];
-        distance->low[a] = distance->high[a] = NAN;
-        while (below > 0 && map->kind[index - (origin[a] - below) * stride[a]] == of)
-            below--;
-        while (above + 1 < map->count[a] &&
-               map->kind[index + (above - origin[a]) * stride[a]] == of)
-            above++;
-        const uint8_t low = map->kind[index - (origin[a] - below) * stride[a]],
-                      high = map->kind[index + (above - origin[a]) * stride[a]];
-        if (distance->inside && low != of && basin_is_known(low))
-            distance->low[a] = 0.5 * (place[below] + place[below + 1]);
-        if (distance->inside && high != of && basin_is_known(high))
-            distance->high[a] = 0.5 * (place[above - 1] + place[above]);
+    for (int side = 0; side < 2 * map->axes; side++) {
+        const int a = side / 2, up = side % 2;
+        const double *const place = map->place[a];
+        const size_t last = up ? map->count[a] - 1 : 0;
+        size_t at = origin[a];
+        uint64_t case_at = index;
+        while (at != last && map->kind[case_at] == of) {
+            at += up ? 1 : (size_t)-1;
+            case_at += up ? stride[a] : -stride[a];
+        }
+        const uint8_t kind = map->kind[case_at];
+        *(up ? &distance->high[a] : &distance->low[a]) =
+            distance->inside && kind != of && basin_is_known(kind)
+                ? 0.5 * (place[at] + place[up ? at - 1 : at + 1])
+                : NAN;
     }
 }
 
@@ -235,8 +228,7 @@ bool basin_map_distance(const struct basin_map *map, enum results_kind of, const
     find_extent(map, of, origin, distance);
     if (!distance->inside)
         return true;
-    struct search search = {map, of, weight, distance};
-    basin_map_boundary(map, look_nearer, &search);
+    find_nearest(map, of, weight, distance);
     distance->clear = find_clear(map, weight);
     return follow_all(map, of, origin, weight, distance);
 }

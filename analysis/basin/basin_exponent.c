@@ -83,19 +83,27 @@ static double drift_of(const struct line *line)
     return (line->y[half] - line->y[0] - line->y[last] + line->y[last - half]) / half;
 }
 
-/* Standard error by the jackknife over tiles; NAN: one of them has all of the boundary. */
-static double tiles_error(const struct basin_uncertainty *u, int n)
+/* Standard error by the jackknife over tiles, of what there is without each; NAN: one of them has
+ * all of the boundary. */
+static double jackknife_error(const double without[BASIN_TILES])
 {
     double mean = 0, squares = 0;
     for (int tile = 0; tile < BASIN_TILES; tile++) {
-        struct line without;
-        if (!take_points(u, n, tile, &without))
-            return NAN;
-        const double step = slope_of(&without) - mean;
+        const double step = without[tile] - mean;
         mean += step / (tile + 1); /* Welford's recurrence */
         squares += step * step * tile / (tile + 1);
     }
     return sqrt(squares * (BASIN_TILES - 1) / BASIN_TILES);
+}
+
+static double tiles_error(const struct basin_uncertainty *u, int n)
+{
+    double slope[BASIN_TILES];
+    for (int tile = 0; tile < BASIN_TILES; tile++) {
+        struct line without;
+        slope[tile] = take_points(u, n, tile, &without) ? slope_of(&without) : NAN;
+    }
+    return jackknife_error(slope);
 }
 
 struct basin_exponent basin_exponent(const struct basin_uncertainty *u)
@@ -130,14 +138,11 @@ bool basin_is_fractal(const struct basin_entropy *entropy,
 {
     const struct basin_exponent exponent = basin_exponent(uncertainty);
     const double student = gsl_cdf_tdist_Pinv(0.975, BASIN_TILES - 1);
-    double mean = 0, squares = 0;
-    for (int tile = 0; tile < BASIN_TILES; tile++) {
-        const double mixed = (double)(entropy->mixed - entropy->tile_mixed[tile]);
-        const double step = (entropy->sum - entropy->tile_sum[tile]) / mixed - mean;
-        mean += step / (tile + 1);
-        squares += step * step * tile / (tile + 1);
-    }
-    const double error = sqrt(squares * (BASIN_TILES - 1) / BASIN_TILES);
+    double without[BASIN_TILES];
+    for (int tile = 0; tile < BASIN_TILES; tile++)
+        without[tile] = (entropy->sum - entropy->tile_sum[tile]) /
+                        (double)(entropy->mixed - entropy->tile_mixed[tile]);
+    const double error = jackknife_error(without);
     return basin_boundary_entropy(entropy) - student * error > log(2) &&
            exponent.alpha + student * exponent.error < 1; /* false for NAN */
 }

@@ -191,31 +191,29 @@ void basin_map_uncertainty(const struct basin_map *map, struct basin_uncertainty
 
 /* ---- the boundary ------------------------------------------------------------------------- */
 
-bool basin_map_boundary(const struct basin_map *map,
-                        bool (*visit)(void *context, const struct basin_crossing *crossing),
-                        void *context)
+bool basin_next_crossing(const struct basin_map *map, struct basin_crossing *crossing)
 {
-    struct basin_crossing crossing = {.index = 0};
     uint64_t stride[SCENARIO_MAX_AXES];
     basin_strides(map, stride);
-    do {
-        const uint8_t kind = map->kind[crossing.index];
-        for (int a = 0; basin_is_known(kind) && a < map->axes; a++) {
-            const size_t i = crossing.point[a];
-            if (i + 1 == map->count[a])
-                continue;
-            const uint8_t next = map->kind[crossing.index + stride[a]];
-            if (next == kind || !basin_is_known(next))
-                continue;
-            crossing.axis = a;
-            crossing.from = (enum results_kind)kind;
-            crossing.to = (enum results_kind)next;
-            crossing.middle = 0.5 * (map->place[a][i] + map->place[a][i + 1]);
-            crossing.half_width = 0.5 * (map->place[a][i + 1] - map->place[a][i]);
-            if (!visit(context, &crossing))
+    for (;;) {
+        if (++crossing->axis == map->axes) {
+            crossing->axis = 0;
+            crossing->index++;
+            if (!basin_next_point(map->axes, map->count, crossing->point))
                 return false;
         }
-        crossing.index++;
-    } while (basin_next_point(map->axes, map->count, crossing.point));
-    return true;
+        const int a = crossing->axis;
+        const size_t i = crossing->point[a];
+        const uint8_t kind = map->kind[crossing->index];
+        if (i + 1 == map->count[a] || !basin_is_known(kind))
+            continue;
+        const uint8_t next = map->kind[crossing->index + stride[a]];
+        if (next == kind || !basin_is_known(next))
+            continue;
+        crossing->from = (enum results_kind)kind;
+        crossing->to = (enum results_kind)next;
+        crossing->middle = 0.5 * (map->place[a][i] + map->place[a][i + 1]);
+        crossing->half_width = 0.5 * (map->place[a][i + 1] - map->place[a][i]);
+        return true;
+    }
 }

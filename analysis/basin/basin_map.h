@@ -174,14 +174,12 @@ bool basin_is_fractal(const struct basin_entropy *entropy,
 struct basin_crossing {
     uint64_t index;
     size_t point[SCENARIO_MAX_AXES];
-    int axis;
+    int axis;                  /* -1: the search begins */
     double middle, half_width; /* along the axis */
     enum results_kind from, to;
 };
-/* Calls visit for each until it returns false, which is passed on. */
-bool basin_map_boundary(const struct basin_map *map,
-                        bool (*visit)(void *context, const struct basin_crossing *crossing),
-                        void *context);
+/* Goes on to the next one; false: there is none. */
+bool basin_next_crossing(const struct basin_map *map, struct basin_crossing *crossing);
 
 /* ---- the domain of the equilibrium -------------------------------------------------------- */
 

@@ -5,12 +5,14 @@
 
 #include "basin.h"
 #include "basin_rays.h"
-#include "basin_threshold.h"
 
 #include "analysis/table/table.h"
 
 enum { BASIN_SHOWN = 40 }; /* rows that people see */
 
+/* Of JSON. */
+extern const struct say_key basin_keys[], basin_threshold_keys[], basin_loss_keys[],
+    basin_allowed_keys[], basin_answer_keys[], basin_rays_keys[];
 bool basin_print(const struct basin *basin, enum table_form form);
 bool basin_rays_print(const struct basin_rays *rays, enum table_form form);
 /* The points of the boundary, every ray, as CSV. */
@@ -57,6 +59,9 @@ const char *basin_asked(const struct basin *basin);
 /* Adds to facts of any of these what the file is, with which the texts of most begin. */
 #define BASIN_TITLE "{.name}\n{.file}: {.cases} cases\n\n"
 json_t *basin_titled(const struct results *r, json_t *facts);
+/* Says these facts with the rows of a table, of which a view is shown (table_say); frees both. */
+bool basin_say(const struct results *r, enum table_form form, json_t *facts, struct table *t,
+               const char *view, const char *text);
 /* Adds to a text among them a line without its end; a line, `otherwise` without a range. */
 void basin_add_axis(json_t *facts, const char *key, const struct results_axis *axis);
 void basin_add_factors(json_t *facts, const char *key, const struct basin_sample *sample,

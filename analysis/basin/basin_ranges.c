@@ -21,12 +21,6 @@
 /* Directions that are drawn in a round: so many for each dimension, and at most. */
 enum { ROUNDS = 3, DRAWN = 16, MOST_DRAWN = 64, RAYS = MOST_DRAWN + 2 * STARTS_MOST, HALVES = 40 };
 
-/* From the equilibrium along v, in units of t. */
-struct ray {
-    double v[STARTS_MOST], most, low, high;
-    uint8_t beyond;
-};
-
 /* ---- axes --------------------------------------------------------------------------------- */
 
 /* Which coordinate of the start stands there: places, then rates; -1: another number. */
@@ -45,11 +39,12 @@ static bool add_field(struct ranges *r, struct ranges_axis *axis, const char *pa
     const struct scenario_values *base = &r->s->base;
     if (i < 0 || r->fields == STARTS_MOST || !isfinite(along))
         return false;
-    struct ranges_field *field = &r->field[r->fields++];
+    struct starts_field *const field = &r->field[r->fields++];
+    *field = (struct starts_field){.offset = offset,
+                                   .axis = r->axes,
+                                   .centre = base->state_given ? base->state[i] : 0,
+                                   .along = along};
     snprintf(field->path, sizeof field->path, "%s", path);
-    field->offset = offset;
-    field->centre = base->state_given ? base->state[i] : 0;
-    field->along = along;
     const double size = fmax(fabs(along), 1e-300);
     const char *const unit = r->s->scene->coordinate[i % n].unit;
     const double most = i >= n                     ? RANGES_RATE
@@ -146,106 +141,58 @@ static void add_postures(struct ranges *r, const struct scenario_values *values)
 
 /* ---- rays --------------------------------------------------------------------------------- */
 
-/* The fields of a start at x[axes]: value[fields], which stand at offset[fields]. */
-static void place_at(const struct ranges *r, const double *x, size_t *offset, double *value)
+static bool simulate(void *context, size_t count, const double *x, uint8_t *end)
 {
-    for (int a = 0; a < r->axes; a++) {
-        for (int f = r->axis[a].first; f < r->axis[a].first + r->axis[a].fields; f++) {
-            offset[f] = r->field[f].offset;
-            value[f] = r->field[f].centre + r->field[f].along * x[a];
-        }
-    }
+    return starts_run(context, count, x, end);
 }
 
-/* What becomes of x[count][axes]. */
-static bool ask(struct ranges *r, struct starts *starts, size_t count, const double *x,
-                uint8_t *end)
+/* The axes that starts are asked for along. */
+static void take_axes(const struct ranges *r, struct starts *starts)
 {
-    const size_t fields = (size_t)r->fields;
-    double *value = malloc((count * fields + 1) * sizeof *value);
-    size_t offset[STARTS_MOST];
-    for (size_t i = 0; i < count && value; i++)
-        place_at(r, x + i * (size_t)r->axes, offset, value + i * fields);
-    const bool good = value && starts_run(starts, fields, offset, count, value, end);
-    free(value);
-    return good;
+    memcpy(starts->field, r->field, sizeof starts->field);
+    starts->fields = r->fields;
+    starts->axes = r->axes;
 }
 
 /* How far there are starts along axis a alone, up or down: the ranges end there. */
 static void limit_ranges(struct ranges *r, struct starts *starts, int a, int up)
 {
     struct ranges_axis *axis = &r->axis[a];
-    double x[STARTS_MOST] = {0}, value[STARTS_MOST], low = 0, high = axis->possible[up];
-    size_t offset[STARTS_MOST];
+    double x[STARTS_MOST] = {0}, low = 0, high = axis->possible[up];
     for (int halves = 0; halves <= HALVES; halves++) {
         const double size = halves ? 0.5 * (low + high) : high;
         x[a] = up ? size : -size;
-        place_at(r, x, offset, value);
-        if (starts_possible(starts, (size_t)r->fields, offset, value))
-            low = size;
-        else
-            high = size;
+        *(starts_possible(starts, x) ? &low : &high) = size;
         if (low == high)
             break;
     }
     axis->possible[up] = low;
 }
 
-static bool is_settled(const struct ray *ray, double first)
-{
-    return isfinite(ray->high)
-               ? ray->high - ray->low <= WIDTH * ray->high || ray->high < NOTHING * first
-               : ray->low >= ray->most;
-}
-
-/* Finds their ends, all in step: from `first` on by that factor until lost, then by halves. */
-static bool end_rays(struct ranges *r, struct starts *starts, struct ray *ray, size_t count,
+/* Finds their ends: from `first` on by that factor until lost, then by halves. */
+static bool end_rays(struct ranges *r, struct starts *starts, struct descend_ray *ray, size_t count,
                      double first, double growth)
 {
-    double x[RAYS * STARTS_MOST], place[RAYS];
-    uint8_t end[RAYS];
-    size_t which[RAYS], open;
-    const size_t n = (size_t)r->axes;
+    const struct descend_set set = {r->axes, UINT64_C(1) << r->of, simulate, starts};
+    const struct descend_way way = {first, growth - 1, false, WIDTH, NOTHING * first};
     for (size_t k = 0; k < count; k++) {
         ray[k].most = INFINITY;
-        for (size_t a = 0; a < n; a++)
+        for (int a = 0; a < r->axes; a++)
             if (ray[k].v[a] != 0)
                 ray[k].most = fmin(ray[k].most, r->axis[a].limit / fabs(ray[k].v[a]));
-        ray[k].low = 0;
-        ray[k].high = INFINITY;
         ray[k].beyond = RANGES_OPEN;
     }
-    do {
-        open = 0;
-        for (size_t k = 0; k < count; k++) {
-            if (is_settled(&ray[k], first))
-                continue;
-            place[open] = isfinite(ray[k].high)
-                              ? 0.5 * (ray[k].low + ray[k].high)
-                              : fmin(ray[k].most, fmax(first, growth * ray[k].low));
-            for (size_t a = 0; a < n; a++)
-                x[open * n + a] = place[open] * ray[k].v[a];
-            which[open++] = k;
-        }
-        if (open > 0 && !ask(r, starts, open, x, end))
-            return false;
-        for (size_t j = 0; j < open; j++) {
-            struct ray *own = &ray[which[j]];
-            *(end[j] == r->of ? &own->low : &own->high) = place[j];
-            own->beyond = end[j] == r->of ? own->beyond : end[j];
-        }
-    } while (open > 0);
     r->rays += count;
-    return true;
+    return descend_rays(&set, &way, ray, count);
 }
 
-static double middle(const struct ray *ray)
+static double middle(const struct descend_ray *ray)
 {
     return isfinite(ray->high) ? 0.5 * (ray->low + ray->high) : ray->low;
 }
 
 /* Down and up along every axis. ray[2 axes]. */
-static bool along_axes(struct ranges *r, struct starts *starts, struct ray *ray)
+static bool along_axes(struct ranges *r, struct starts *starts, struct descend_ray *ray)
 {
     memset(ray, 0, 2 * (size_t)r->axes * sizeof *ray);
     for (int k = 0; k < 2 * r->axes; k++)
@@ -258,7 +205,7 @@ static bool along_axes(struct ranges *r, struct starts *starts, struct ray *ray)
     return good;
 }
 
-static void take_reach(struct ranges *r, const struct ray *ray, size_t count)
+static void take_reach(struct ranges *r, const struct descend_ray *ray, size_t count)
 {
     for (size_t k = 0; k < count; k++) {
         const bool open = !isfinite(ray[k].high);
@@ -296,7 +243,7 @@ static void factorise(int n, double *C)
 static bool shoot(struct ranges *r, struct starts *starts)
 {
     const int n = r->axes;
-    struct ray ray[RAYS];
+    struct descend_ray ray[RAYS];
     double C[STARTS_MOST * STARTS_MOST] = {0}, L[STARTS_MOST * STARTS_MOST], u[STARTS_MOST];
     const uint64_t drawn = n * DRAWN < MOST_DRAWN ? (uint64_t)(n * DRAWN) : MOST_DRAWN;
     struct doe directions = {
@@ -411,7 +358,7 @@ static bool measure_share(struct ranges *r, struct starts *starts)
             x[i * n + a] =
                 r->axis[a].whole.from + u[a] * (r->axis[a].whole.to - r->axis[a].whole.from);
     }
-    good = good && ask(r, starts, RANGES_STARTS, x, end);
+    good = good && starts_run(starts, RANGES_STARTS, x, end);
     for (size_t i = 0; good && i < RANGES_STARTS; i++) {
         inside += end[i] == r->of;
         r->impossible += end[i] == STARTS_IMPOSSIBLE;
@@ -488,11 +435,12 @@ static bool begin(struct ranges *r, struct starts *starts, size_t k, uint8_t *en
         return false;
     if (r->chosen)
         memset(starts->values.offset, 0, sizeof starts->values.offset);
-    return ask(r, starts, 1, nowhere, end) || no_memory(message);
+    take_axes(r, starts);
+    return starts_run(starts, 1, nowhere, end) || no_memory(message);
 }
 
 /* How soon the outcome is lost along an angle and its rate, axes k and k + 1, in windows. */
-static double nearness(const struct ray *ray, int k)
+static double nearness(const struct descend_ray *ray, int k)
 {
     double near = INFINITY;
     for (int j = 2 * k; j < 2 * k + 4; j++)
@@ -503,26 +451,28 @@ static double nearness(const struct ray *ray, int k)
 /* Of all postures the one that matters most becomes the axes. */
 static bool choose(struct ranges *r, struct starts *starts)
 {
-    struct ray ray[RAYS];
+    struct descend_ray ray[RAYS];
     int first = 0;
+    take_axes(r, starts);
     if (!along_axes(r, starts, ray))
         return false;
     for (int k = 0; k < r->axes; k += 2)
         first = nearness(ray, k) < nearness(ray, first) ? k : first;
     for (int k = 0; k < 2 && first > 0; k++) {
         const struct ranges_axis axis = r->axis[k];
-        const struct ranges_field field = r->field[k];
+        const struct starts_field field = r->field[k];
         r->axis[k] = r->axis[first + k];
         r->field[k] = r->field[first + k];
         r->axis[first + k] = axis;
         r->field[first + k] = field;
-        r->axis[k].first = k;
-        r->axis[first + k].first = first + k;
+        r->axis[k].first = r->field[k].axis = k;
+        r->axis[first + k].first = r->field[first + k].axis = first + k;
     }
     for (int f = 0; f < r->fields; f++)
         memcpy((char *)&starts->values + r->field[f].offset, &r->field[f].centre, sizeof(double));
     r->looked = r->axes;
     r->axes = r->fields = 2;
+    take_axes(r, starts);
     return true;
 }
 

@@ -13,6 +13,7 @@
 #ifndef STANCE_BASIN_BASIN_RANGES_H
 #define STANCE_BASIN_BASIN_RANGES_H
 
+#include "basin_descend.h"
 #include "basin_starts.h"
 
 #include "runner/base/progress.h"
@@ -25,13 +26,6 @@
 enum {
     RANGES_PARAMETERS = 3, /* most points of the other axes, evenly spread */
     RANGES_STARTS = 256,   /* of the ranges, to tell the share */
-};
-
-/* A coordinate of the start, and how it moves with its axis: centre + along * x. */
-struct ranges_field {
-    char path[96];
-    size_t offset; /* in struct scenario_values */
-    double centre, along;
 };
 
 enum { RANGES_OPEN = STARTS_IMPOSSIBLE + 1 }; /* an end beyond how far is looked */
@@ -65,7 +59,7 @@ struct ranges {
     int axes, fields;
     int looked; /* axes that were looked along alone: those that were not chosen come behind */
     struct ranges_axis axis[STARTS_MOST];
-    struct ranges_field field[STARTS_MOST];
+    struct starts_field field[STARTS_MOST];
     bool chosen;             /* the scenario has no axes of starts */
     bool symmetric;          /* ranges of directions: the equilibrium is their middle */
     size_t parameters, held; /* points of the other axes, and at how many the equilibrium holds */

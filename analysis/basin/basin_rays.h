@@ -8,8 +8,8 @@
 #ifndef STANCE_BASIN_BASIN_RAYS_H
 #define STANCE_BASIN_BASIN_RAYS_H
 
+#include "basin.h"
 #include "basin_descend.h"
-#include "basin_sample.h"
 
 enum basin_ray_end {
     RAY_CROSSES, /* between low and high */

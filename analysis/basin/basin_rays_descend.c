@@ -14,13 +14,9 @@
 #include <string.h>
 
 struct simulator {
-    const struct scenario *s;
     struct starts starts;
-    uint8_t of; /* outcome */
-    int n;
-    size_t offset[DESCEND_DIMENSIONS]; /* of each factor in the values */
-    double half[DESCEND_DIMENSIONS];   /* of its range */
-    size_t row, rows;                  /* of the table */
+    double half[DESCEND_DIMENSIONS]; /* of the range of each factor */
+    size_t row, rows;                /* of the table */
     struct progress progress;
 };
 
@@ -32,35 +28,26 @@ static void tell(void *context, uint64_t more)
                      own->rows, more);
 }
 
-/* Starts whose simulation fails count as inside: a shorter distance is not made up. */
-static bool simulate(void *context, size_t count, const double *z, bool *inside)
+static bool simulate(void *context, size_t count, const double *z, uint8_t *end)
 {
-    struct simulator *own = context;
-    const size_t n = (size_t)own->n;
-    double *value = malloc((count * n + 1) * sizeof *value);
-    uint8_t *end = malloc(count + 1);
-    for (size_t i = 0; value && i < count * n; i++)
-        value[i] = z[i] * own->half[i % n];
-    const bool good = value && end && starts_run(&own->starts, n, own->offset, count, value, end);
-    for (size_t i = 0; good && i < count; i++)
-        inside[i] = end[i] == STARTS_FAILED || end[i] == own->of;
-    free(value);
-    free(end);
-    return good;
+    return starts_run(context, count, z, end);
 }
 
-/* Where the paths of the rays stand in the values. */
+/* Where the paths of the rays stand in the values; false: one is not moved by a factor of its own,
+ * over a range. */
 static bool find_paths(struct simulator *own, const struct basin_rays *rays)
 {
-    const struct scenario_axis *axis = &own->s->axis[rays->sample.axis];
-    for (int j = 0; j < own->n; j++) {
+    const struct scenario_axis *axis = &rays->r->read->axis[rays->sample.axis];
+    for (int j = 0; j < own->starts.axes; j++) {
         const struct basin_factor *factor = &rays->sample.factor[j];
+        struct starts_field *const field = &own->starts.field[own->starts.fields++];
         own->half[j] = 0.5 * fabs(factor->to - factor->from);
+        *field = (struct starts_field){.axis = j, .along = own->half[j]};
         for (int k = 0; k < axis->paths; k++)
             if (strcmp(axis->path[k], factor->of->name) == 0)
-                own->offset[j] = axis->offset[k];
-        if (!(own->half[j] > 0) || own->offset[j] == 0)
-            return false; /* not by a factor of its own, over a range */
+                field->offset = axis->offset[k];
+        if (!(own->half[j] > 0) || field->offset == 0)
+            return false;
     }
     return true;
 }
@@ -68,20 +55,12 @@ static bool find_paths(struct simulator *own, const struct basin_rays *rays)
 static bool begin(struct simulator *own, const struct basin_rays *rays, size_t row,
                   stance_message *message)
 {
-    static const stance_outcome outcome[RESULTS_OUTCOMES] = {
-#define DESCEND_OUTCOME(NAME, name, number, text) [RESULTS_##NAME] = STANCE_##NAME,
-        STANCE_OUTCOMES(DESCEND_OUTCOME)
-#undef DESCEND_OUTCOME
-    };
     const struct results *r = rays->r;
-    *own = (struct simulator){.of = outcome[rays->of],
-                              .s = r->read,
-                              .n = (int)rays->sample.factors,
-                              .starts = {.tell = tell, .context = own},
+    *own = (struct simulator){.starts = {.tell = tell, .context = own},
                               .row = row,
                               .rows = rays->rows,
                               .progress = progress_begin(false)};
-    if (own->n > DESCEND_DIMENSIONS || !own->s)
+    if (rays->sample.factors > DESCEND_DIMENSIONS || !r->read)
         return complain(message, "%.150s: its scenario cannot be simulated by this version",
                         r->file);
     uint64_t index = 0;
@@ -91,11 +70,13 @@ static bool begin(struct simulator *own, const struct basin_rays *rays, size_t r
             at = rays->by[k] == a ? basin_rays_point(rays, row, k) : at;
         index = index * r->axis[a].count + at;
     }
-    return find_paths(own, rays)
-               ? starts_begin(&own->starts, own->s, index, message)
-               : complain(message,
-                          "%.150s: descents need a factor with a range of its own for every offset",
-                          r->file);
+    const bool good = starts_begin(&own->starts, r->read, index, message);
+    own->starts.axes = (int)rays->sample.factors;
+    return good && (find_paths(own, rays) ||
+                    complain(message,
+                             "%.150s: descents need a factor with a range of its own for every "
+                             "offset",
+                             r->file));
 }
 
 /* Unit vectors along the shortest ray and others that end, and their ends. */
@@ -104,6 +85,7 @@ static size_t choose_starts(const struct basin_rays *rays, size_t row, const str
 {
     const struct basin_ray *ray = rays->ray + row * rays->sample.points;
     struct basin_reach reach;
+    const size_t n = rays->sample.factors;
     size_t ends = 0, chosen = 0;
     if (!basin_rays_reach(rays, row, &reach) || reach.count[RAY_CROSSES] == 0)
         return 0;
@@ -117,13 +99,13 @@ static size_t choose_starts(const struct basin_rays *rays, size_t row, const str
             if ((twice ? !wanted : p != reach.first) || chosen == starts)
                 continue;
             double square = 0;
-            for (int k = 0; k < own->n; k++) {
+            for (size_t k = 0; k < n; k++) {
                 const double u = rays->sample.factor[k].of->value[p] / own->half[k];
-                start[chosen * (size_t)own->n + (size_t)k] = u;
+                start[chosen * n + k] = u;
                 square += u * u;
             }
-            for (int k = 0; k < own->n; k++)
-                start[chosen * (size_t)own->n + (size_t)k] /= sqrt(square);
+            for (size_t k = 0; k < n; k++)
+                start[chosen * n + k] /= sqrt(square);
             r[chosen++] = basin_ray_middle(&ray[p]) * sqrt(square);
         }
     }
@@ -133,6 +115,11 @@ static size_t choose_starts(const struct basin_rays *rays, size_t row, const str
 bool basin_rays_nearest(const struct basin_rays *rays, size_t row, size_t starts,
                         struct basin_nearest *nearest, stance_message *message)
 {
+    static const stance_outcome outcome[RESULTS_OUTCOMES] = {
+#define DESCEND_OUTCOME(NAME, name, number, text) [RESULTS_##NAME] = STANCE_##NAME,
+        STANCE_OUTCOMES(DESCEND_OUTCOME)
+#undef DESCEND_OUTCOME
+    };
     double start[DESCEND_STARTS * DESCEND_DIMENSIONS], r[DESCEND_STARTS], most = 0;
     struct simulator *own = calloc(1, sizeof *own);
     const struct results_axis *scale = &rays->r->axis[rays->scale];
@@ -146,11 +133,14 @@ bool basin_rays_nearest(const struct basin_rays *rays, size_t row, size_t starts
     for (size_t i = 0; i < scale->count; i++)
         most = fmax(most, scale->value[i]);
     const size_t chosen = choose_starts(rays, row, own, starts, start, r);
-    const struct descend_set set = {own->n, 4 * most, simulate, own};
-    const bool good = chosen == 0 || basin_descend(&set, start, r, chosen, &nearest->end) ||
+    /* Starts whose simulation fails count as inside: a shorter distance is not made up. */
+    const uint64_t inside = UINT64_C(1) << outcome[rays->of] | UINT64_C(1) << STARTS_FAILED;
+    const struct descend_set set = {own->starts.axes, inside, simulate, &own->starts};
+    const bool good = chosen == 0 ||
+                      basin_descend(&set, 4 * most, start, r, chosen, &nearest->end) ||
                       statistics_no_memory(rays->r, message);
     nearest->failed = own->starts.failed;
-    for (int k = 0; k < own->n; k++) {
+    for (int k = 0; k < own->starts.axes; k++) {
         nearest->of[k] = nearest->end.u[k] * 0.5 * (nearest->end.low + nearest->end.high);
         nearest->at[k] = nearest->of[k] * own->half[k];
     }

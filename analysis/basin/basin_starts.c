@@ -23,19 +23,21 @@ bool starts_begin(struct starts *starts, const struct scenario *s, uint64_t inde
 }
 
 /* Makes the case of a start; false: there is none. */
-static bool place(struct starts *starts, size_t n, const size_t *offset, const double *value,
-                  stance_case *out)
+static bool place(struct starts *starts, const double *x, stance_case *out)
 {
-    const struct scenario *s = starts->s;
-    for (size_t k = 0; k < n; k++)
-        memcpy((char *)&starts->values + offset[k], &value[k], sizeof *value);
-    return resolve_case(s, &starts->values, &starts->design, starts->index, out, &starts->why);
+    for (int f = 0; f < starts->fields; f++) {
+        const struct starts_field *const field = &starts->field[f];
+        const double value = field->centre + field->along * x[field->axis];
+        memcpy((char *)&starts->values + field->offset, &value, sizeof value);
+    }
+    return resolve_case(starts->s, &starts->values, &starts->design, starts->index, out,
+                        &starts->why);
 }
 
-bool starts_possible(struct starts *starts, size_t n, const size_t *offset, const double *value)
+bool starts_possible(struct starts *starts, const double *x)
 {
     stance_case *out = malloc(sizeof *out);
-    const bool good = out && place(starts, n, offset, value, out);
+    const bool good = out && place(starts, x, out);
     free(out);
     return good;
 }
@@ -74,15 +76,14 @@ static bool array_tell(void *context)
     return false;
 }
 
-bool starts_run(struct starts *starts, size_t n, const size_t *offset, size_t count,
-                const double *value, uint8_t *end)
+bool starts_run(struct starts *starts, size_t count, const double *x, uint8_t *end)
 {
     stance_case *cases = calloc(count + 1, sizeof *cases);
     stance_result *results = calloc(count + 1, sizeof *results);
     const bool good = cases && results;
     size_t possible = 0;
     for (size_t i = 0; good && i < count; i++) {
-        const bool made = place(starts, n, offset, value + i * n, &cases[possible]);
+        const bool made = place(starts, x + i * (size_t)starts->axes, &cases[possible]);
         end[i] = made ? STANCE_NONE : STARTS_IMPOSSIBLE;
         possible += made;
     }

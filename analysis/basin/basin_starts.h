@@ -9,8 +9,18 @@ enum { STARTS_MOST = 18 }; /* coordinates of a start that vary: angles and rates
 /* What becomes of a start: an outcome, or one of these. */
 enum { STARTS_FAILED = STANCE_OUTCOME_COUNT, STARTS_IMPOSSIBLE };
 
+/* A number of the start, and how it moves with what is asked for: centre + along * x[axis]. */
+struct starts_field {
+    char path[96];
+    size_t offset; /* in struct scenario_values */
+    int axis;
+    double centre, along;
+};
+
 struct starts {
     const struct scenario *s;
+    struct starts_field field[STARTS_MOST];
+    int fields, axes;
     uint64_t index; /* of the case that all are like, for its random numbers */
     struct scenario_values values;
     struct resolved_design design;
@@ -23,15 +33,13 @@ struct starts {
     void *context;
 };
 
-/* The case `index` of the sweep, with offsets not scaled. False: it has no design, or its method no
- * kernel on this machine; `message` says so. */
+/* The case `index` of the sweep, with offsets not scaled and without fields. False: it has no
+ * design, or its method no kernel on this machine; `message` says so. */
 bool starts_begin(struct starts *starts, const struct scenario *s, uint64_t index,
                   stance_message *message);
-/* Simulates `count` starts; of start i number k of value[count][n] stands at offset[k] of struct
- * scenario_values. end[count]: what became of each. False: no memory. */
-bool starts_run(struct starts *starts, size_t n, const size_t *offset, size_t count,
-                const double *value, uint8_t *end);
-/* Whether there is that start, value[n]. */
-bool starts_possible(struct starts *starts, size_t n, const size_t *offset, const double *value);
+/* Simulates the starts x[count][axes]. end[count]: what became of each. False: no memory. */
+bool starts_run(struct starts *starts, size_t count, const double *x, uint8_t *end);
+/* Whether there is that start, x[axes]. */
+bool starts_possible(struct starts *starts, const double *x);
 
 #endif

@@ -188,6 +188,16 @@ static int run(int argc, char **argv)
     return wrong ? command_usage(&command_basin, wrong) : report_run(&request.report);
 }
 
+static const struct say_key keys[] = {
+    {NULL, "", basin_keys},
+    {NULL, "of --threshold:", basin_threshold_keys},
+    {NULL, "of --lost:", basin_loss_keys},
+    {NULL, "of --allowed:", basin_allowed_keys},
+    {NULL, "of --answer:", basin_answer_keys},
+    {NULL, "and of rays:", basin_rays_keys},
+    {0},
+};
+
 #define TO(member) OPTION_TO(struct request, member)
 #define QUESTIONS "--threshold --lost --rank --answer --allowed --descend --boundary"
 static const struct option options[] = {
@@ -213,14 +223,12 @@ static const struct option options[] = {
     {.text = "Single questions, each with --json and --csv, too:"},
     {"--threshold", "T", TO(threshold), .low = 1e-6, .high = 1e6, .without = QUESTIONS,
      .needs = "--of",
-     .text = "with --of PATH: where along this parameter the share first falls below T times what "
-             "it is at the first value (T above 1: rises above), the share taken as linear "
-             "between values, with an interval at the level L (Fieller's; from the likely errors, "
-             "of a sample from its points, which all values share)"},
+     .text = "with --of PATH: where along this parameter the share, linear between values, first "
+             "falls below T times what it is at the first value (T above 1: rises above), with "
+             "an interval at the level L (Fieller's)"},
     {"--lost", "PATH", TO(lost), .without = QUESTIONS,
-     .text = "of the starts that have the outcome at one end of this parameter how many lose it "
-             "first at each value, and one of the first that do. From the end where more have it, "
-             "or with PATH=VALUE from that end"},
+     .text = "how many of the starts that have the outcome at the end of this parameter where more "
+             "have it (PATH=VALUE: at that end) lose it first at each value, and one of the first"},
     {"--rank", "N", TO(choice.rank), .low = 1, .high = 1e9, .without = QUESTIONS,
      .text = "of a sample of parameters, the N points with the largest volumes, each with its "
              "values, share and bounds"},
@@ -229,24 +237,21 @@ static const struct option options[] = {
              "peak_torque ...) over the starts with the outcome, and in which case"},
     {"--allowed", TO(allowed), .without = QUESTIONS,
      .text = "the share of starts from which linear theory allows some controller to recover with "
-             "these torques, while the contacts stand (stance design has its reach; stance plot "
-             "--allowed draws it), as if they were glued: of several the bound does not know "
-             "where their centre of pressure may be. None of the starts with a part that no "
-             "torque moves and that does not decay. Of these the share with the outcome; and the "
-             "share of starts with the outcome outside of it. How many of those slipped (by more "
-             "than 1e-6 m), lifted a foot, or did neither, as the file's slip_distance, footfalls "
-             "and least_normal_force say (else unknown): a robot far from where it is linear may "
-             "do what linear theory does not allow. farthest: by how much the set would have to "
-             "grow to have such a start in it"},
+             "these torques while the contacts stand, as if glued; of these the share with the "
+             "outcome; and the share of starts with it outside of that set, which a robot far "
+             "from where it is linear may reach: how many of those slipped (by more than 1e-6 m), "
+             "lifted a foot, or did neither, as the file's slip_distance, footfalls and "
+             "least_normal_force say, and how much the set would have to grow to have the "
+             "farthest in it. None with a part that no torque moves and that does not decay"},
     {"--descend", "N", TO(descents), .low = 1, .high = DESCEND_STARTS, .without = QUESTIONS,
      .text = "of rays: N descents to the nearest end"},
     {"--boundary", TO(boundary), .without = QUESTIONS " --json",
-     .text = "instead, as CSV: a point of the boundary for each pair of neighbours with different "
-             "outcomes, midway between them along the axis `along`, with half their distance as "
-             "`half_width` and both outcomes"},
+     .text = "instead, as CSV: a point of the boundary midway between each two neighbours with "
+             "different outcomes, `along` an axis, half their distance as `half_width`; of rays "
+             "where each ends"},
     {OPTION_TIME_LIMIT},
     {REPORT_CSV, .text = "a row of numbers for each row of the tables"},
-    {REPORT_JSON, .text = "the same as JSON, with the keys"},
+    {REPORT_JSON, .keys = keys, .text = "the same as JSON, with the keys"},
     {0},
 };
 
@@ -258,94 +263,48 @@ const struct command command_basin = {
     "The starts are the axes initial.offset.* and initial.state.*, or a sample of these; every "
     "other axis is a parameter. For each point of the parameters: how many of the starts end in "
     "the outcome, and what share of the box of starts that is. Rows are averages over a sample of "
-    "parameters (stance sensitivity tells what it says of each), and with --by over all other "
-    "parameters. Cases inferred by sweep.refine count as simulated ones do, but have no numbers: "
-    "--within refuses them.\n"
+    "parameters, and with --by over all other parameters. Cases inferred by sweep.refine count as "
+    "simulated ones do, but have no numbers: --within refuses them.\n"
     "\n"
     "  volume    the box reaches from the first to the last place of each axis; cases on its edge "
-    "count by the part of their cell that lies in it (so the share is not quite that of the "
-    "summary, which counts all cases alike)\n"
-    "  +-        likely error at the level L (0.95), conservative: it held in 95 to 100 % of maps "
-    "with boundaries along an axis, slanted or round. The error of a grid is no binomial one, as "
-    "its points are no sample: in each cell that the boundary crosses the volume is off by an "
-    "evenly distributed part, the same in cells along which the boundary runs parallel to an axis "
-    "or in step with the lattice (analysis/basin/basin_map.h); the mean over parameters of a grid "
-    "has the mean error. Over a sample of parameters with the scatter of its points, of saltelli "
-    "and morris that of whole blocks, as if drawn independently; where few points differ from the "
-    "others, the longer side of what is likely either way\n"
-    "  bounds    certain if the boundary is resolved (no cell whose corners agree is crossed): "
-    "the volume of the cells inside, and of those not outside. Cases that failed or are pending "
-    "count as outside in the one and as inside in the other. Of sampled starts: an interval at "
-    "the level L, Wilson's where each point is in or out, with failed and pending cases outside "
-    "for its lower end and inside for its upper one; a point counts once, however many cases it "
-    "has. Where not all starts vary evenly over a range, each by a factor of its own, there is no "
-    "volume: box is 1, and shares stand instead\n"
-    "  S_b, S_bb basin entropy and boundary basin entropy (Daza et al. 2016): mean over boxes of\n"
-    "            --box N (5) cases along each start, and over those with several outcomes. S_bb\n"
-    "            above log 2 = 0.693 implies a fractal boundary where boxes are small beside the\n"
-    "            domains; stripes of three outcomes thinner than a box exceed it, too. So a star\n"
-    "            marks it only where its interval is above and alpha's below 1. Small boxes\n"
-    "            estimate it low (two outcomes at random in 25 cases: 0.673)\n"
+    "count by the part of their cell that lies in it (the summary counts all cases alike). Where "
+    "not all sampled starts vary evenly over a range there is no volume: box is 1\n"
+    "  +-        likely error at the level L (0.95), conservative: of a grid from where the "
+    "boundary may run in the cells that it crosses (analysis/basin/basin_map.h), over a sample of "
+    "parameters with the scatter of its points or blocks; the longer side of what is likely\n"
+    "  bounds    certain if no cell whose corners agree is crossed: the volume of the cells "
+    "inside, and of those not outside; failed and pending cases count as outside in the one and "
+    "as inside in the other. Of sampled starts an interval at the level L, Wilson's where each "
+    "point is in or out\n"
+    "  S_b, S_bb basin entropy and boundary basin entropy (Daza et al. 2016): mean over boxes of "
+    "--box N (5) cases along each start, and over those with several outcomes. S_bb above log 2 = "
+    "0.693 implies a fractal boundary, or stripes thinner than a box: a star marks it only where "
+    "its interval is above and alpha's below 1\n"
     "  alpha     uncertainty exponent (Grebogi et al. 1983): the share of cases that have another "
-    "outcome within e cells along some start grows as e^alpha; 1 for a smooth boundary. The "
-    "boundary's dimension is that of the starts - alpha. Of the distances 1, 2, 4 ... up to a "
-    "twelfth of the shortest axis (96 cases along it give the four that are needed) the longest "
-    "are left out as long as shares over distances, both logarithmic, are not straight; where "
-    "nothing is straight there is no alpha, but the reason. Its error has in it how much parts of "
-    "the map and distances differ\n"
-    "  cut       faces of the box on which starts have the outcome: the share is then the box's, "
-    "and another box has another one (theta-+: at both ends of theta). Of sampled starts where "
-    "some lie within 5 % of the end of a range\n"
+    "outcome within e cells grows as e^alpha, 1 for a smooth boundary, whose dimension is that of "
+    "the starts - alpha. Where shares over distances (four at least: 96 cases along each axis) are "
+    "not straight in logarithms there is none, but the reason\n"
+    "  cut       faces of the box on which starts have the outcome: the share is then the box's "
+    "(theta-+: at both ends of theta). Of sampled starts within 5 % of the end of a range\n"
     "\n"
     "Where the box has the equilibrium in it (all offsets zero), what does not depend on the "
     "box:\n"
     "\n"
-    "  connected the volume of the part of the outcome that hangs together with the equilibrium,\n"
-    "            from neighbour to neighbour along the axes, with its error and bounds as above\n"
+    "  connected the volume of what hangs together with the equilibrium, from neighbour to "
+    "neighbour along the axes, with its error and bounds as above\n"
     "  bounded   yes: that part reaches no face of the box and no case that is not known\n"
     "  nearest   from the equilibrium to the nearest point out of the outcome, each offset in "
-    "units of a disturbance of the size that --weight gives it (else 1 of its unit); the smaller "
-    "one where a face of the box is nearer is told, too (nearest_least)\n"
-    "  median    where rays in 1024 directions, even in these units, first lose the outcome; "
-    "those\n"
-    "  leaving   that leave the box before, or come to a case that is not known, count as longer "
-    "(median_least: as long as they could be followed)\n"
+    "units of a disturbance of the size that --weight gives it (else 1 of its unit); where a face "
+    "of the box is nearer, that is told, too (nearest_least)\n"
+    "  median    where rays in 1024 directions, even in these units, first lose the outcome\n"
+    "  leaving   share of those that leave the box before, or come to a case that is not known: "
+    "they count as longer (median_least: as long as they could be followed)\n"
     "\n"
     "A file of rays (a grid axis initial.offset.scale, and sweep.sample of method sphere over "
-    "offsets, mostly with sweep.refine) tells how far from the equilibrium the outcome reaches in "
-    "every direction: smallest, median and largest scale at which a ray loses it for the first "
-    "time, and for a single row the offsets at which the first one does. --boundary lists the "
-    "rays. The smallest over some directions is an upper bound: --descend N simulates further "
-    "cases of the file's scenario to go from the shortest ray and N - 1 others, spread evenly, "
-    "downhill to the nearest end (analysis/basin/basin_descend.h; a few hundred to a few thousand "
-    "cases each). How many of them agree, and how large a dip would have been missed, tells how "
-    "sure that is.\n",
-    "    outcome, within, level, box_side, design (grid, or the sample's method), starts:\n"
-    "    [paths],\n"
-    "    parameters: [paths], averaged: [paths], box, unit, weights: {path: size}\n"
-    "    rows           [{at: {path: value}, cases, inside, failed, pending, share, volume, reach "
-    "(the likely error at the level), low, high, cells, crossed, entropy, boundary_entropy, "
-    "boxes, mixed_boxes, fractal, alpha, alpha_error, alpha_distances (number of those fitted), "
-    "alpha_missing (why there is none: small, none, wide, bent, few), dimension, distances: "
-    "[cells], uncertain: [share], cut: [{path, end: lower or upper, at}], connected, "
-    "connected_reach, connected_low, connected_high, bounded, connected_cut: [as cut], nearest, "
-    "nearest_least, median, median_least, leaving (share), nearest_at: {path: value}, extent: "
-    "{path: [low, high]}}]; null where there is none\n"
-    "    of --threshold: outcome, threshold, of, unit, level, within, rows [{at, first_share,\n"
-    "                   last_share, value (null: not crossed), low, high (null: beyond the last\n"
-    "                   value), before, after (values between which it is)}]\n"
-    "    of --lost: outcome, of, starts, unknown, kept, lost (values between which the first are\n"
-    "                   lost), first (case), first_at: {path: value}, rows [{value, lost,\n"
-    "                   lost_so_far, share}]\n"
-    "    of --allowed: outcome, rows [{at, starts, allowed, used, outside (shares), why (there\n"
-    "                   is no such set), unreached (modes that no torque moves and that do not\n"
-    "                   decay), glued (several contacts carry), slipped, lifted, neither,\n"
-    "                   unknown: {starts, farthest (null: no growth suffices), case}}]\n"
-    "    of --answer: outcome, answer, rows [{at, cases, smallest, median, q90, q99, largest,\n"
-    "                   largest_case}]\n"
-    "    and of rays: outcome, starts, rays (number), rows [{at, crossing, open, outside,\n"
-    "                   nearest: {scale, bracket: [low, high], at: {path: value}, of_ranges:\n"
-    "                   {path: in units of half the range}, starts, agree, unseen (share of\n"
-    "                   directions), simulations, failed}, smallest, median, largest, first_ray,\n"
-    "                   first_bracket: [low, high], first_at: {path: value}}]\n",
+    "offsets) tells at which scale the outcome is lost for the first time in every direction. The "
+    "smallest is an upper bound: --descend N simulates further cases of the file's scenario from "
+    "the shortest ray and N - 1 others, spread evenly, downhill to the nearest end "
+    "(analysis/basin/basin_descend.h), and tells how many agree and how large a dip would have "
+    "been missed.\n",
+    NULL,
 };

@@ -24,22 +24,11 @@ struct request {
 };
 
 /* Of a field at x of its axis, in the digits that ranges have. */
-static double value_at(const struct ranges_field *field, double x)
+static double value_at(const struct starts_field *field, double x)
 {
     char text[32];
     snprintf(text, sizeof text, "%.9g", field->centre + field->along * x);
     return strtod(text, NULL);
-}
-
-/* "initial.offset.theta", "initial.offset.theta and 2 more" */
-static const char *axis_name(const struct ranges *r, const struct ranges_axis *axis, char name[128])
-{
-    const char *path = r->field[axis->first].path;
-    if (axis->fields == 1)
-        snprintf(name, 128, "%s", path);
-    else
-        snprintf(name, 128, "%s and %d more", path, axis->fields - 1);
-    return name;
 }
 
 /* ---- facts -------------------------------------------------------------------------------- */
@@ -61,81 +50,85 @@ static json_t *range_json(const struct ranges *r, const struct ranges_axis *axis
                         {"count", range->points ? as_whole(range->points) : as_nothing(NULL)});
 }
 
+/* Of an axis; names that are no members are of add_axis. */
+#define AXIS_FACTS(X)                                                                              \
+    X("axis", NULL, as_text(name), "", .left = true, .hidden = TABLE_NO_JSON, .before = "#   ")    \
+    X("low", NULL, as_number(low), "along it alone", "%.3g", .hidden = TABLE_NO_JSON)              \
+    X("high", NULL, as_number(high), .format = "%.3g", .joined = true, .before = " ... ",          \
+      .hidden = TABLE_NO_JSON)                                                                     \
+    X("ends", NULL, as_text(beyond), "beyond", .left = true, .hidden = TABLE_NO_JSON)              \
+    X("least", NULL, as_number(least), "with the others", "%.3g", .hidden = TABLE_NO_JSON)         \
+    X("most", NULL, as_number(most), .format = "%.3g", .joined = true, .before = " ... ",          \
+      .hidden = TABLE_NO_JSON)                                                                     \
+    X("unit", "", as_text(axis->unit), "", .left = true)                                           \
+    X("paths", "", as_tree(paths))                                                                 \
+    X(".many", NULL, as_truth(axis->fields > 1))                                                   \
+    X(".sampled", NULL, as_truth(axis->sampled))                                                   \
+    X("whole", "{from, to: [a value a path], count (null: of a sample)}",                          \
+      as_tree(range_json(r, axis, &axis->whole)))                                                  \
+    X("close", "the same about the equilibrium", as_tree(range_json(r, axis, &axis->close)))       \
+    X("alone", "of the first path: [low, high] along this axis",                                   \
+      as_tree(json_pack("[f,f]", low, high)))                                                      \
+    X("beyond", "what becomes of starts at these ends",                                            \
+      as_tree(table_texts(ranges_end(axis->beyond[0]), ranges_end(axis->beyond[1]))))              \
+    X("reach", "[least, most] along all rays", as_tree(json_pack("[f,f]", least, most)))           \
+    X("cut", "[below, above] whether the whole range cuts the domain",                             \
+      as_tree(chosen ? json_pack("[b,b]", ranges_cut(axis, 0) != RANGES_HELD,                      \
+                                 ranges_cut(axis, 1) != RANGES_HELD)                               \
+                     : NULL))                                                                      \
+    X("lost", "[below, above]", as_tree(json_pack("[b,b]", !axis->open[0], !axis->open[1])))
+#define HEAD(X)                                                                                    \
+    X("scenario", "", as_text(r->s->name))                                                         \
+    X("outcome", "", as_text(ranges_end(r->of)))                                                   \
+    X("chosen", "whether the axes are not the scenario's", as_truth(r->chosen))                    \
+    X("parameters", "points of the other axes", as_whole(r->parameters))                           \
+    X("held", "of these, at which the equilibrium has the outcome", as_whole(r->held))             \
+    X("resolved", "whether the whole ranges have points enough to show the domain",                \
+      as_truth(resolved))                                                                          \
+    X("rays", "", as_whole(r->rays))                                                               \
+    X("not_lost", "of these, along which it was not lost", as_whole(r->open))                      \
+    X("simulations", "", as_whole(r->simulated))                                                   \
+    X("failed", "", as_whole(r->failed))                                                           \
+    X("share", "[least, most] over the points, of 256 starts each",                                \
+      as_tree(table_pair(r->share[0], r->share[1])))
+static const struct say_key axis_keys[] = {AXIS_FACTS(TABLE_KEY){0}};
+static const struct say_key keys[] = {HEAD(TABLE_KEY){"axes", "", axis_keys}, {0}};
+
 static void add_axis(struct table *t, const struct ranges *r, const struct ranges_axis *axis)
 {
-    const struct ranges_field *field = &r->field[axis->first];
+    const struct starts_field *field = &r->field[axis->first];
     char name[128], beyond[64];
     json_t *const paths = json_array();
     for (int k = 0; k < axis->fields; k++)
         table_append(paths, as_text(field[k].path));
+    snprintf(name, sizeof name, axis->fields == 1 ? "%s" : "%s and %d more", field->path,
+             axis->fields - 1);
     snprintf(beyond, sizeof beyond, "%s, %s", ranges_end(axis->beyond[0]),
              ranges_end(axis->beyond[1]));
     const bool chosen = axis - r->axis < r->axes;
     const double low = value_at(field, axis->alone[0]), high = value_at(field, axis->alone[1]),
                  least = chosen ? value_at(field, axis->reach[0]) : NAN,
                  most = chosen ? value_at(field, axis->reach[1]) : NAN;
-    TABLE_FACTS(
-        t,
-        {{"axis", "", .left = true, .hidden = TABLE_NO_JSON, .before = "#   "},
-         as_text(axis_name(r, axis, name))},
-        {{.name = "low", .heading = "along it alone", .format = "%.3g", .hidden = TABLE_NO_JSON},
-         as_number(low)},
-        {{.name = "high",
-          .format = "%.3g",
-          .joined = true,
-          .before = " ... ",
-          .hidden = TABLE_NO_JSON},
-         as_number(high)},
-        {{"ends", "beyond", .left = true, .hidden = TABLE_NO_JSON}, as_text(beyond)},
-        {{.name = "least", .heading = "with the others", .format = "%.3g", .hidden = TABLE_NO_JSON},
-         as_number(least)},
-        {{.name = "most",
-          .format = "%.3g",
-          .joined = true,
-          .before = " ... ",
-          .hidden = TABLE_NO_JSON},
-         as_number(most)},
-        {{"unit", "", .left = true}, as_text(axis->unit)}, {{.name = "paths"}, as_tree(paths)},
-        {{.name = ".many"}, as_truth(axis->fields > 1)},
-        {{.name = ".sampled"}, as_truth(axis->sampled)},
-        {{.name = "whole"}, as_tree(range_json(r, axis, &axis->whole))},
-        {{.name = "close"}, as_tree(range_json(r, axis, &axis->close))},
-        {{.name = "alone"}, as_tree(json_pack("[f,f]", low, high))},
-        {{.name = "beyond"},
-         as_tree(table_texts(ranges_end(axis->beyond[0]), ranges_end(axis->beyond[1])))},
-        {{.name = "reach"}, as_tree(json_pack("[f,f]", least, most))},
-        {{.name = "cut"},
-         as_tree(chosen ? json_pack("[b,b]", ranges_cut(axis, 0) != RANGES_HELD,
-                                    ranges_cut(axis, 1) != RANGES_HELD)
-                        : NULL)},
-        {{.name = "lost"}, as_tree(json_pack("[b,b]", !axis->open[0], !axis->open[1]))});
+    TABLE_FACTS(t, AXIS_FACTS(TABLE_FACT));
     table_end_row(t);
 }
 
-/* In which directions the outcome was not lost. */
-static void add_open(const struct ranges *r, json_t *facts)
-{
-    for (int k = 0; k < 2 * r->axes; k++) {
-        const struct ranges_axis *axis = &r->axis[k / 2];
-        if (axis->open[k % 2])
-            say_add(facts, ".open", "%s %s = %.3g %s", json_object_get(facts, ".open") ? "," : "",
-                    r->field[axis->first].path,
-                    value_at(&r->field[axis->first], (k % 2 ? 1 : -1) * axis->limit), axis->unit);
-    }
-}
-
-/* At which ends the ranges cut the domain, and why they go no further. */
-static void add_cuts(const struct ranges *r, json_t *facts)
+/* In which directions the outcome was not lost, and at which ends the ranges cut the domain. */
+static void add_ends(const struct ranges *r, json_t *facts)
 {
     static const char *const why[] = {[RANGES_NO_START] = "where starts cease to exist",
                                       [RANGES_NOT_FOLLOWED] = "rays were followed no further"};
     for (int k = 0; k < 2 * r->axes; k++) {
         const struct ranges_axis *axis = &r->axis[k / 2];
+        const struct starts_field *field = &r->field[axis->first];
         const enum ranges_cut cut = ranges_cut(axis, k % 2);
+        if (axis->open[k % 2])
+            say_add(facts, ".open", "%s %s = %.3g %s", json_object_get(facts, ".open") ? "," : "",
+                    field->path, value_at(field, (k % 2 ? 1 : -1) * axis->limit), axis->unit);
         if (cut)
-            say_add(facts, ".cuts", "#   cut at %s = %.9g %s: %s\n", r->field[axis->first].path,
-                    value_at(&r->field[axis->first], k % 2 ? axis->whole.to : axis->whole.from),
-                    axis->unit, why[cut]);
+            say_add(facts, ".cuts", "#   cut at %s = %.9g %s: %s\n", field->path,
+                    value_at(field, k % 2 ? axis->whole.to : axis->whole.from), axis->unit,
+                    why[cut]);
     }
 }
 
@@ -156,15 +149,11 @@ static void add_sweep(const struct ranges *r, json_t *facts)
     }
     for (int a = 0; a < r->axes; a++)
         sampled += r->axis[a].sampled;
-    json_t *const sample = TABLE_OBJECT(
-        {"method", as_text(doe_words[design->method])}, {"count", as_whole(design->count)},
-        {"levels",
-         design->method == DOE_MORRIS ? as_whole((uint64_t)design->levels) : as_nothing(NULL)},
-        {"second", as_truth(design->second_order)});
-    table_put(facts, ".grid", as_truth(json_array_size(scales) > 0 || sampled < r->axes));
-    table_put(facts, ".scales", as_tree(scales));
-    table_put(facts, ".sample", as_tree(sampled > 0 ? json_incref(sample) : NULL));
-    json_decref(sample);
+    TABLE_PUT(facts, {".grid", as_truth(json_array_size(scales) > 0 || sampled < r->axes)},
+              {".scales", as_tree(scales)}, {".sample", as_truth(sampled > 0)},
+              {".method", as_text(doe_words[design->method])}, {".count", as_whole(design->count)},
+              {".levels", as_whole(design->method == DOE_MORRIS ? (uint64_t)design->levels : 0)},
+              {".second", as_truth(design->second_order)});
 }
 
 /* A part of a scenario: what is not that is a comment, as is a sweep behind a hash. */
@@ -178,9 +167,9 @@ static void add_sweep(const struct ranges *r, json_t *facts)
          "[.scales*:" hash "    - \\{path: {path}, from: {from%.9g}, to: {to%.9g}, "               \
          "count: {count}}\n][axes*:[!.sampled:" hash                                               \
          AXIS(range) "]]]"                                                                         \
-                     "[.sample:" hash "  sample:\n" hash "    method: {method}\n" hash             \
-                     "    count: {count}\n"                                                        \
-                     "[levels:" hash "    levels: {levels}\n][second:" hash                        \
+                     "[.sample:" hash "  sample:\n" hash "    method: {.method}\n" hash            \
+                     "    count: {.count}\n"                                                       \
+                     "[.levels:" hash "    levels: {.levels}\n][.second:" hash                     \
                      "    second_order: true\n]" hash "    vary:\n[axes*:[.sampled:" hash          \
                      "  " AXIS(range) "]]]"
 static const char text[] =
@@ -210,20 +199,14 @@ static bool print(const struct ranges *r, bool json)
     for (int a = 0; !json && a < r->looked; a++)
         add_axis(&looked, r, &r->axis[a]);
     json_t *const facts = TABLE_OBJECT(
-        {"scenario", as_text(r->s->name)}, {"outcome", as_text(ranges_end(r->of))},
-        {"chosen", as_truth(r->chosen)}, {"parameters", as_whole(r->parameters)},
-        {"held", as_whole(r->held)}, {"resolved", as_truth(resolved)}, {"rays", as_whole(r->rays)},
-        {"not_lost", as_whole(r->open)}, {"simulations", as_whole(r->simulated)},
-        {"failed", as_whole(r->failed)},
-        {"share", as_tree(json_pack("[f,f]", r->share[0], r->share[1]))},
-        {".start", as_text(r->s->base.state_given ? "initial.state" : "the equilibrium")},
+        HEAD(TABLE_MEMBER){".start",
+                           as_text(r->s->base.state_given ? "initial.state" : "the equilibrium")},
         {".short", as_whole(r->parameters - r->held)}, {".impossible", as_whole(r->impossible)},
         {".thin", as_truth(r->share[1] < THIN || !resolved)});
     say_add(facts, ".share", "%.*f %%", r->share[0] < 0.1, 100 * r->share[0]);
     if (r->share[1] - r->share[0] >= 0.01)
         say_add(facts, ".share", " to %.0f %%", 100 * r->share[1]);
-    add_open(r, facts);
-    add_cuts(r, facts);
+    add_ends(r, facts);
     add_sweep(r, facts);
     const bool good =
         table_give(facts, "axes", &axes, NULL, 0) &&
@@ -303,7 +286,7 @@ static const struct option options[] = {
     {"--of", "OUTCOME", OPTION_TO(struct request, of), .word = results_outcome_word,
      .text = "look for another outcome than stabilised, or than walks with stop.walks"},
     {OPTION_TIME_LIMIT},
-    {OPTION_JSON(struct request, json)},
+    {OPTION_JSON(struct request, json), .keys = keys},
     {0},
 };
 
@@ -325,18 +308,5 @@ const struct command command_ranges = {
     "ranges hold the domains of all. A ray ends where the outcome is lost first: islands beyond "
     "do not count. Angles are followed up to 3.14 rad, places to 10 m, rates to 100 rad/s or m/s, "
     "and ranges end where starts cease to exist: at which ends they cut the domain is said.\n",
-    "    scenario, outcome         strings\n"
-    "    chosen                    whether the axes are not the scenario's\n"
-    "    parameters, held          points of the other axes; of these, at which the equilibrium "
-    "has the outcome\n"
-    "    resolved                  whether the whole ranges have points enough to show the "
-    "domain\n"
-    "    rays, not_lost            rays; of these, along which it was not lost\n"
-    "    simulations, failed       numbers\n"
-    "    share                     [least, most] over the points, of 256 starts each\n"
-    "    axes                      [{paths, unit, whole: {from, to: [a value a path], count "
-    "(null: of a sample)}, close: the same about the equilibrium; of the first path alone: [low, "
-    "high] along this axis, beyond: [what becomes of starts there], reach: [least, most] along "
-    "all rays, cut: [below, above] whether the whole range cuts the domain, lost: [below, "
-    "above]}]\n",
+    NULL,
 };

@@ -36,7 +36,8 @@ static bool balance(const stance_scene *scene, const stance_equilibrium_choice *
         re[i] = -3 - 0.3 * i;
     if (scene->equilibrium(scene, c->robot, choice, &equilibrium, NULL) != STANCE_OK ||
         scene->linearise(scene, c->robot, &equilibrium, A, B) != STANCE_OK ||
-        stance_place(n, m, A, B, re, im, K, NULL, NULL, &ignored) != STANCE_OK)
+        stance_place(STANCE_ROBUST, &(stance_plant){n, m, A, B}, 0, &(stance_poles){re, im}, K,
+                     NULL, &ignored) != STANCE_OK)
         return false;
     memcpy(c->position, equilibrium.position, sizeof c->position);
     memcpy(c->near.feedforward, equilibrium.torque, sizeof c->near.feedforward);

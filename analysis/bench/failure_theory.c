@@ -139,10 +139,9 @@ static double critical_sample_time(const struct scenario *s, const struct scenar
     for (int i = 0; i < scene->actuators; i++)
         for (int j = 0; j < n; j++)
             K[i * n + j] = c->near.gain[i][j];
-    return stance_critical_sample_time(n, scene->actuators, A, B, K, (int)c->delay, 10, &T) ==
-                   STANCE_OK
-               ? T
-               : NAN;
+    const stance_plant plant = {n, scene->actuators, A, B};
+    const stance_sampling loop = {.K = K, .delay = (int)c->delay};
+    return stance_critical_sample_time(&plant, &loop, 10, &T) == STANCE_OK ? T : NAN;
 }
 
 /* ---- Painleve ------------------------------------------------------------------------------- */

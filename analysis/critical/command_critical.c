@@ -1,7 +1,7 @@
 /* command_critical.c - `stance critical`: a run along one number more than the scenario has, of
  * which is simulated what brackets where the outcome is lost; and what a results file says of that.
  */
-#include "critical_print.h"
+#include "critical.h"
 
 #include "analysis/basin/basin_print.h"
 #include "analysis/table/report.h"
@@ -40,18 +40,6 @@ struct search {
 
 /* ---- what a results file says --------------------------------------------------------------- */
 
-static int show(const struct request *request, const struct results *r, enum results_kind of,
-                const char *within, stance_message *message)
-{
-    struct critical critical;
-    bool usage;
-    if (!critical_make(&critical, r, request->of, of, &request->choice, &usage, message))
-        return usage ? EXIT_USAGE : EXIT_IO;
-    const bool good = critical_print(&critical, within, request->report.form);
-    critical_free(&critical);
-    return good ? EXIT_DONE : EXIT_IO;
-}
-
 static int work(struct report *report, const struct results *r, stance_message *message)
 {
     const struct request *const request = (const struct request *)report;
@@ -60,22 +48,23 @@ static int work(struct report *report, const struct results *r, stance_message *
                                      : statistics_judged(r);
     const struct basin_within within = {"critical", &request->within, of};
     struct results own;
+    struct critical critical;
+    bool usage;
     char said[256];
     if (memchr(r->kind, RESULTS_DONE, r->cases)) {
         complain(message, "%.150s: holds no outcomes (record.answers left them out)", r->file);
         return EXIT_USAGE;
     }
     int code = basin_within_make(&own, r, &within, said, sizeof said, message);
-    if (code == EXIT_DONE)
-        code = show(request, &own, of, said, message);
+    if (code == EXIT_DONE &&
+        !critical_make(&critical, &own, request->of, of, &request->choice, &usage, message)) {
+        code = usage ? EXIT_USAGE : EXIT_IO;
+    } else if (code == EXIT_DONE) {
+        code = critical_print(&critical, said, report->form) ? EXIT_DONE : EXIT_IO;
+        critical_free(&critical);
+    }
     free(own.kind);
     return code;
-}
-
-static int read_file(struct request *request, const char *file)
-{
-    request->report.files = (struct option_texts){&file, 1};
-    return report_run(&request->report);
 }
 
 /* ---- the run -------------------------------------------------------------------------------- */
@@ -91,25 +80,6 @@ static bool is_results(const char *name)
     return is;
 }
 
-/* The place of the axis on the grid: the one that the scenario has along the path, or a further
- * one behind all of them. */
-static int axis_place(const struct scenario *s, const char *path)
-{
-    const int axes = s->axes - s->sample.given;
-    for (int a = 0; a < axes; a++)
-        if (s->axis[a].paths == 1 && strcmp(s->axis[a].path[0], path) == 0)
-            return a;
-    return axes;
-}
-
-static bool refines_one(const struct scenario *s)
-{
-    int axes = 0;
-    for (int a = 0; a < s->axes; a++)
-        axes += s->axis[a].refined;
-    return axes == 1;
-}
-
 /* The --set that gives a scenario the axis, which alone is refined, after those that there are. */
 static bool add_sets(struct search *search, const struct scenario *s, const char *path,
                      const double ends[2])
@@ -119,12 +89,17 @@ static bool add_sets(struct search *search, const struct scenario *s, const char
     const char **const all = calloc(sets->count + SETS, sizeof *all);
     if (!all)
         return run_fail(&search->run, EXIT_IO, "stance critical: not enough memory");
+    /* Its place on the grid: that of the axis that the scenario has along the path, or behind all.
+     */
+    const int axes = s->axes - s->sample.given;
+    int place = 0;
+    while (place < axes && (s->axis[place].paths != 1 || strcmp(s->axis[place].path[0], path) != 0))
+        place++;
     for (size_t k = 0; k < sets->count; k++)
         all[k] = sets->text[k];
     snprintf(asked->set[0], SET,
              "sweep.grid[%d]={path: '%s', from: %.17g, to: %.17g, count: %" PRIu64 ", spacing: %s}",
-             axis_place(s, path), path, ends[0], ends[1], asked->count,
-             asked->log ? "log" : "linear");
+             place, path, ends[0], ends[1], asked->count, asked->log ? "log" : "linear");
     snprintf(asked->set[1], SET, "record={answers: [outcome, evidence, end_time]}");
     /* Of fewer values than the lattice has all are simulated, as probes. */
     const bool all_first = asked->count <= asked->start + 1;
@@ -135,18 +110,6 @@ static bool add_sets(struct search *search, const struct scenario *s, const char
         all[sets->count + k] = asked->set[k];
     *sets = (struct option_texts){all, sets->count + SETS};
     return true;
-}
-
-/* Asks for what only a run has, or an axis of its own. */
-static bool asks_for_run(const struct search *search)
-{
-    const struct options *const o = &search->run.options;
-    return o->asked.sets.count > 0 || o->output || o->force || o->resume || o->dry_run ||
-           isfinite(o->time_limit);
-}
-static bool asks_for_values(const struct request *asked)
-{
-    return asked->log || asked->count != COUNT || asked->start != START || asked->probes != PROBES;
 }
 
 /* On rank 0, whose scenario the others get. */
@@ -162,9 +125,12 @@ static bool ask_for_axis(struct search *search)
                          "outcome is kept, not '%.60s'",
                          of);
     struct scenario *const s = good ? run_read_scenario(run, run->options.asked.sets.count) : NULL;
+    int refined = 0;
     if (s && of)
         good = add_sets(search, s, path, ends);
-    else if (s && !refines_one(s))
+    for (int a = 0; s && a < s->axes; a++)
+        refined += s->axis[a].refined;
+    if (s && !of && refined != 1)
         good =
             run_fail(run, EXIT_USAGE,
                      "stance critical: %.150s does not say along which number (sweep.refine.along"
@@ -187,12 +153,18 @@ static void stage_options(struct run *run)
     run->options.quiet |= search->asked.report.form != TABLE_AS_TEXT;
     if (run->parallel.rank != 0)
         return;
-    if (search->reads && (asks_for_run(search) || asks_for_values(&search->asked)))
+    const struct options *const o = &run->options;
+    const struct request *const asked = &search->asked;
+    const bool values = asked->log || asked->count != COUNT || asked->start != START ||
+                        asked->probes != PROBES,
+               runs = o->asked.sets.count > 0 || o->output || o->force || o->resume || o->dry_run ||
+                      isfinite(o->time_limit);
+    if (search->reads && (runs || values))
         run_fail(run, EXIT_USAGE,
                  "stance critical: %.150s holds results, which is read: only --of, --outcome, "
                  "--within, --share, --level and the form count",
                  run->options.asked.file);
-    else if (!search->reads && !search->asked.of && asks_for_values(&search->asked))
+    else if (!search->reads && !asked->of && values)
         run_fail(run, EXIT_USAGE,
                  "stance critical: --count, --log, --start and --probes are of the axis that --of "
                  "asks for");
@@ -219,8 +191,9 @@ static int run_critical(int argc, char **argv)
                          (code == EXIT_DONE || code == EXIT_CASES_FAILED);
     run_drop(run);
     if (reports) {
-        const int read =
-            read_file(&search->asked, search->reads ? run->options.asked.file : run->file);
+        const char *file = search->reads ? run->options.asked.file : run->file;
+        search->asked.report.files = (struct option_texts){&file, 1};
+        const int read = report_run(&search->asked.report);
         code = read == EXIT_DONE ? code : read;
     }
     free(search);

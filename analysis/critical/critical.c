@@ -27,16 +27,6 @@ bool critical_is_refined(const struct results *r)
     return refined_axis(r) >= 0;
 }
 
-/* That one, or the only axis of the grid; -1: neither. */
-static int own_axis(const struct results *r)
-{
-    int found = -1, axes = 0;
-    for (int a = 0; a < r->axes; a++)
-        if (a != r->sample && r->axis[a].count > 1)
-            axes++, found = a;
-    return axes == 1 ? found : refined_axis(r);
-}
-
 static bool find_axis(struct critical *c, const char *of, double ends[2], stance_message *message)
 {
     const struct results *const r = c->r;
@@ -49,10 +39,14 @@ static bool find_axis(struct critical *c, const char *of, double ends[2], stance
                         of);
     if (of && !path[0])
         snprintf(path, sizeof path, "%.95s", of);
-    c->along = of ? -1 : own_axis(r);
-    for (int a = 0; of && a < r->axes; a++)
-        if (a != r->sample && strcmp(r->axis[a].name, path) == 0)
-            c->along = a;
+    /* Without one the only axis of the grid, else the refined one. */
+    int axes = 0;
+    c->along = -1;
+    for (int a = 0; a < r->axes; a++)
+        if (a != r->sample && (of ? strcmp(r->axis[a].name, path) == 0 : r->axis[a].count > 1))
+            axes++, c->along = a;
+    if (!of && axes != 1)
+        c->along = refined_axis(r);
     if (c->along < 0 && !of)
         return complain(message,
                         r->axes > (r->sample >= 0)

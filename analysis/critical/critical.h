@@ -16,6 +16,7 @@
 #define STANCE_CRITICAL_CRITICAL_H
 
 #include "analysis/statistics/statistics.h"
+#include "analysis/table/table.h"
 
 /* ---- one line of values ------------------------------------------------------------------- */
 
@@ -99,5 +100,10 @@ bool critical_make(struct critical *critical, const struct results *r, const cha
                    enum results_kind of, const struct critical_choice *choice, bool *usage,
                    stance_message *message);
 void critical_free(struct critical *critical);
+
+enum { CRITICAL_SHOWN = 60 };                /* rows that people see */
+extern const struct say_key critical_keys[]; /* of its JSON */
+/* `within`: what the outcome was narrowed to, "" for nothing. False: memory or the output fails. */
+bool critical_print(const struct critical *critical, const char *within, enum table_form form);
 
 #endif

@@ -1,5 +1,5 @@
-/* critical_print.c - see critical_print.h. */
-#include "critical_print.h"
+/* critical_print.c - critical values as text, JSON and CSV. */
+#include "critical.h"
 
 #include "analysis/basin/basin_print.h"
 #include "runner/base/message.h"
@@ -8,46 +8,29 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A number with its unit is too much in a column: digits that tell neighbours apart. */
-static void number_text(const struct critical *c, double value, char *text, size_t size)
-{
-    results_number_text(value, 0.5 * fabs(c->value[1] - c->value[0]), text, size);
-}
-
-/* "96 ... 110, 130 ...": from the first value kept again to the last one. */
-static void islands_text(const struct critical *c, const struct critical_row *row, char *text,
-                         size_t size)
+/* Values kept again, for programs, and for people as "96 ... 110, 130 ...": from the first one to
+ * the last, with digits that tell neighbours apart, as a number with its unit is too much in a
+ * column. */
+static json_t *islands_json(const struct critical *c, const struct critical_row *row, char *text,
+                            size_t size)
 {
     enum { SHOWN = 4 };
+    const double gap = 0.5 * fabs(c->value[1] - c->value[0]);
+    json_t *const list = json_array();
     text[0] = '\0';
-    for (size_t k = 0; k < row->islands && k < SHOWN; k++) {
+    for (size_t k = 0; k < row->islands; k++) {
         const struct critical_island *const island = &c->island[row->island + k];
         char first[40], last[40] = "";
-        number_text(c, island->from[1], first, sizeof first);
+        TABLE_APPEND(list, {"from", as_tree(table_pair(island->from[0], island->from[1]))},
+                     {"to", as_tree(table_pair(island->to[0], island->to[1]))});
+        results_number_text(island->from[1], gap, first, sizeof first);
         if (!isnan(island->to[1]))
-            number_text(c, island->to[0], last, sizeof last);
-        add_text(text, size, "%s%s ...%s%s", k ? ", " : "", first, last[0] ? " " : "", last);
+            results_number_text(island->to[0], gap, last, sizeof last);
+        if (k < SHOWN)
+            add_text(text, size, "%s%s ...%s%s", k ? ", " : "", first, last[0] ? " " : "", last);
     }
     if (row->islands > SHOWN)
         add_text(text, size, ", ... (%zu)", row->islands);
-}
-
-static json_t *pair(const double value[2])
-{
-    json_t *const list = json_array();
-    table_append(list, as_number(value[0]));
-    table_append(list, as_number(value[1]));
-    return list;
-}
-
-static json_t *islands_json(const struct critical *c, const struct critical_row *row)
-{
-    json_t *const list = json_array();
-    for (size_t k = 0; k < row->islands; k++) {
-        const struct critical_island *const island = &c->island[row->island + k];
-        TABLE_APPEND(list, {"from", as_tree(pair(island->from))},
-                     {"to", as_tree(pair(island->to))});
-    }
     return list;
 }
 
@@ -61,7 +44,7 @@ static const char *remark(const struct critical_row *row)
                                                 : "";
 }
 
-/* What is said of a row; `again` and `exact` are of add_row. */
+/* What is said of a row; names that are no members are of add_row. */
 #define ROW(X)                                                                                     \
     X("end", "lost; kept: up to the last value; outside: lost at the first; unknown",              \
       as_text(critical_end_words[v->end]))                                                         \
@@ -82,15 +65,14 @@ static const char *remark(const struct critical_row *row)
       .hidden = TABLE_NO_JSON)                                                                     \
     X("remark", NULL, as_text(remark(row)), "", .left = true, .before = "  ", .empty = "",         \
       .hidden = TABLE_VIEW_ONLY)                                                                   \
-    X("islands", "[{from: [a, b], to: [a, b]}]", as_tree(islands_json(c, row)),                    \
-      .hidden = TABLE_NO_CSV)
+    X("islands", "[{from: [a, b], to: [a, b]}]", as_tree(islands), .hidden = TABLE_NO_CSV)
 
 static void add_row(struct table *t, const struct critical *c, const struct critical_row *row)
 {
     const struct critical_value *const v = &row->value;
     const bool exact = !c->sampled && v->unknown == 0 && v->end == CRITICAL_LOST;
     char again[240];
-    islands_text(c, row, again, sizeof again);
+    json_t *const islands = islands_json(c, row, again, sizeof again);
     table_axes(t, c->r, c->by, c->by_axes, row->point);
     TABLE_FACTS(t, ROW(TABLE_FACT));
     table_end_row(t);

@@ -5,9 +5,9 @@
  * down to what the multipliers' error leaves. Where it ends without one the gaits on both sides
  * belong to different branches, which is said as `jump`. A step along the path that finds no gait
  * is halved. */
-#include "along.h"
+#include "gait.h"
 
-#include "runner/base/command.h"
+#include "runner/base/message.h"
 #include "runner/plan/asked.h"
 #include "runner/plan/instruction_set.h"
 
@@ -30,10 +30,11 @@ struct follow {
     const char *file;
     struct return_map map;
     bool begun;
-    double guess[RETURN_MAP_MOST];
+    struct return_point guess;
     struct gait gait; /* the last one that was found ... */
     double last;      /* ... at this value; and the one before */
     double before[RETURN_MAP_MOST], last_before;
+    struct gait next, there; /* what is looked for; at the end of the stretch that is looked at */
     int found;
     double at, asked; /* the value that is looked at; of which it is asked what it comes to */
     int settled;      /* times of steps there */
@@ -44,16 +45,6 @@ struct follow {
     stance_message message;
 };
 
-/* What the gait comes to, slightly off it. */
-static void settle(struct follow *f)
-{
-    const size_t count = sizeof f->time / sizeof *f->time;
-    double z[RETURN_MAP_MOST];
-    for (int i = 0; i < f->map.n; i++)
-        z[i] = f->gait.z[i] + (i % 2 ? -OFF : OFF);
-    f->settled = return_map_settle(&f->map, z, ALONG_WALKED, count, f->time) ? (int)count : 0;
-}
-
 static int take(const struct scenario *s, const stance_case *c, void *context)
 {
     struct follow *const f = context;
@@ -61,58 +52,55 @@ static int take(const struct scenario *s, const stance_case *c, void *context)
         instruction_set_kernel(s->scene, stance_methods()[s->base.method]);
     bool good = f->begun ? return_map_change(&f->map, c, &f->message)
                          : return_map_begin(&f->map, c, kernel, f->along->steps, f->along->settle,
-                                            f->guess, &f->message);
+                                            &f->guess, &f->message);
     f->begun |= good;
-    struct gait *const gait = calloc(1, sizeof *gait);
-    good = good && gait && gait_find(&f->map, f->guess, gait, &f->message);
+    good = good && gait_find(&f->map, &f->guess, &f->next, &f->message);
     if (good)
-        f->gait = *gait;
-    if (good && f->along->settled && f->at == f->asked)
-        settle(f);
-    free(gait);
+        f->gait = f->next;
+    if (good && f->along->settled && f->at == f->asked) { /* what it comes to, slightly off it */
+        struct return_point off = f->gait.from;
+        for (int i = 0; i < f->map.n; i++)
+            off.z[i] += i % 2 ? -OFF : OFF;
+        f->settled =
+            return_map_settle(&f->map, &off, ALONG_WALKED, ALONG_TIMES, f->time) ? ALONG_TIMES : 0;
+    }
     return good ? EXIT_DONE : EXIT_USAGE;
 }
 
 void along_blame(const char *path, double value, stance_message *message)
 {
-    char why[sizeof message->text];
-    if (!message->text[0])
-        return;
-    snprintf(why, sizeof why, "%s", message->text);
-    snprintf(message->text, sizeof why, "with %.40s %.6g: %.150s", path, value, why);
+    const stance_message why = *message;
+    if (why.text[0])
+        complain(message, "with %.40s %.6g: %.150s", path, value, why.text);
 }
 
 /* The gait at a value; false, with f->message: none is found. */
 static bool find(struct follow *f, double value)
 {
+    const char *const path = f->along->path;
+    const struct return_point from = f->gait.from;
     f->message.text[0] = '\0';
     f->at = value;
     struct scenario *const s =
-        along_at(f->file, f->plain, f->along->path, value, f->begun ? &f->map : NULL, f->gait.z);
+        along_at(f->file, f->plain, path, value, f->begun ? &f->map : NULL, &from);
     if (!s) {
         f->refused = true;
-        snprintf(f->message.text, sizeof f->message.text, "the scenario does not admit %.60s=%.17g",
-                 f->along->path, value);
-        return false;
+        return complain(&f->message, "the scenario does not admit %.60s=%.17g", path, value);
     }
-    if (f->found > 1)
-        for (int i = 0; i < f->map.n; i++) {
-            const double slope = (f->gait.z[i] - f->before[i]) / (f->last - f->last_before);
-            f->guess[i] = f->gait.z[i] + slope * (value - f->last);
-        }
-    else if (f->found == 1)
-        memcpy(f->guess, f->gait.z, sizeof f->guess);
-    double from[RETURN_MAP_MOST];
-    memcpy(from, f->gait.z, sizeof from);
+    if (f->found > 0)
+        f->guess = from;
+    for (int i = 0; f->found > 1 && i < f->map.n; i++)
+        f->guess.z[i] +=
+            (from.z[i] - f->before[i]) / (f->last - f->last_before) * (value - f->last);
     const bool good = asked_first(&command_gait, s, take, f) == EXIT_DONE;
     scenario_drop(s);
-    if (!good)
-        along_blame(f->along->path, value, &f->message);
     if (good) {
-        memcpy(f->before, from, sizeof from);
+        memcpy(f->before, from.z, sizeof f->before);
         f->last_before = f->last;
         f->last = value;
         f->found++;
+    } else {
+        along_blame(path, value, &f->message);
     }
     return good;
 }
@@ -165,6 +153,26 @@ static int repeats(const struct along_gait *row)
     return 0;
 }
 
+/* What is told of a gait; `list` and `times` are of tell. */
+#define ROW(X)                                                                                     \
+    X("value", "", as_number(row->value), along->path, "%.12g", .width = 16)                       \
+    X("period", "", as_number(row->period), "period (s)", "%.9f", .width = 13)                     \
+    X("step_length", "", as_number(row->length / along->steps), "step (m)", "%.7f", .width = 11)   \
+    X("speed", "", as_number(row->length / row->period), "speed (m/s)", "%.6f", .width = 12)       \
+    X("re", "", as_number(row->re[0]), "multiplier", "%.6f", .width = 11)                          \
+    X("im", "", as_number(row->im[0]), "+- i", "%.6f", .width = 9)                                 \
+    X("modulus", "of the largest multiplier", as_number(hypot(row->re[0], row->im[0])), "modulus", \
+      "%.6f", .width = 9)                                                                          \
+    X("holds", "", as_text(row->stable ? "holds" : ""), "", .left = true, .width = 5)              \
+    X("place", "flip, fold or jump, to another gait", as_text(row->place), "", .left = true,       \
+      .width = 4, .empty = "")                                                                     \
+    X("repeats", "", row->settled ? as_number(repeats(row)) : as_nothing(NULL), "repeats", "%.0f", \
+      .width = 7, .empty = "")                                                                     \
+    X("settled", "the 16 times", as_tree(times), .hidden = TABLE_NO_CSV)                           \
+    X("multipliers", "[{re, im}]", as_tree(list), .hidden = TABLE_NO_CSV)
+
+const struct say_key along_keys[] = {ROW(TABLE_KEY){0}};
+
 static void tell(const struct along *along, const struct along_gait *row, struct table *t)
 {
     json_t *const list = json_array(), *const times = row->settled ? json_array() : NULL;
@@ -173,22 +181,7 @@ static void tell(const struct along *along, const struct along_gait *row, struct
             TABLE_APPEND(list, {"re", as_number(row->re[i])}, {"im", as_number(row->im[i])});
     for (int i = 0; i < row->settled; i++)
         table_append(times, as_number(row->time[i]));
-    TABLE_FACTS(
-        t,
-        {{.name = "value", .heading = along->path, .format = "%.12g", .width = 16},
-         as_number(row->value)},
-        {{"period", "period (s)", "%.9f", .width = 13}, as_number(row->period)},
-        {{"step_length", "step (m)", "%.7f", .width = 11}, as_number(row->length / along->steps)},
-        {{"speed", "speed (m/s)", "%.6f", .width = 12}, as_number(row->length / row->period)},
-        {{"re", "multiplier", "%.6f", .width = 11}, as_number(row->re[0])},
-        {{"im", "+- i", "%.6f", .width = 9}, as_number(row->im[0])},
-        {{"modulus", "modulus", "%.6f", .width = 9}, as_number(hypot(row->re[0], row->im[0]))},
-        {{"holds", "", .left = true, .width = 5}, as_text(row->stable ? "holds" : "")},
-        {{"place", "", .left = true, .width = 4, .empty = ""}, as_text(row->place)},
-        {{"repeats", "repeats", "%.0f", .width = 7, .empty = ""},
-         row->settled ? as_number(repeats(row)) : as_nothing(NULL)},
-        {{"settled", .hidden = TABLE_NO_CSV}, as_tree(times)},
-        {{"multipliers", .hidden = TABLE_NO_CSV}, as_tree(list)});
+    TABLE_FACTS(t, ROW(TABLE_FACT));
     table_end_row(t);
 }
 
@@ -243,14 +236,11 @@ static int follow(struct follow *f)
         f->asked = end;
         if (!reach(f, end) || !note(f, NULL))
             return EXIT_USAGE;
-        struct gait *const there = malloc(sizeof *there);
-        if (!there)
-            return EXIT_USAGE;
-        *there = f->gait;
+        f->there = f->gait;
         f->asked = NAN;
         for (int kind = 0; kind < 2; kind++) {
             const int sign = kind == 0 ? 1 : -1;
-            f->gait = *there, f->last = end;
+            f->gait = f->there, f->last = end;
             const double now = room(f, sign);
             if ((at[kind] < 0) == (now < 0) || !isfinite(at[kind]) || !isfinite(now))
                 continue;
@@ -264,60 +254,18 @@ static int follow(struct follow *f)
             f->row[f->rows - 1] = f->row[f->rows - 2];
             f->row[f->rows - 2] = place;
         }
-        f->gait = *there, f->last = end;
-        memcpy(f->before, there->z, sizeof f->before);
+        f->gait = f->there, f->last = end;
+        memcpy(f->before, f->there.from.z, sizeof f->before);
         f->found = 1; /* the line begins anew behind a place */
-        free(there);
     }
     return EXIT_DONE;
 }
 
-bool along_read(char *text, struct along *along)
-{
-    char path[96];
-    double ends[2];
-    if (!option_range(text, path, ends))
-        return false;
-    *strchr(text, '=') = '\0';
-    along->path = text;
-    along->from = ends[0];
-    along->to = ends[1];
-    return true;
-}
-
-char *along_initial(const struct return_map *map, const double *z, double height)
-{
-    const stance_scene *const scene = map->scene;
-    double position[STANCE_MAX_COORDINATES], velocity[STANCE_MAX_COORDINATES];
-    char *set = NULL;
-    size_t size = 0;
-    FILE *const out = open_memstream(&set, &size);
-    if (!out)
-        return NULL;
-    return_map_state(map, z, position, velocity);
-    return_map_lift(map, height, position);
-    fputs("initial={state: {", out);
-    for (int rate = 0; rate < 2; rate++)
-        for (int j = 0; j < scene->postures; j++) {
-            const int k = scene->posture[j];
-            fprintf(out, "%s%s%s: %.15g", rate + j ? ", " : "", rate ? "v" : "",
-                    scene->coordinate[k].name, rate ? velocity[k] : position[k]);
-        }
-    if (scenario_numbers_feet(scene))
-        fprintf(out, "}, support_foot: %d}", map->foot[0] + 1);
-    else
-        fprintf(out, "}, support: [%s]}", scene->contact_name[map->foot[0]]);
-    if (fclose(out) == 0)
-        return set;
-    free(set);
-    return NULL;
-}
-
 struct scenario *along_at(const char *file, const char *plain, const char *path, double value,
-                          const struct return_map *map, const double *z)
+                          const struct return_map *map, const struct return_point *at)
 {
     char set[160];
-    char *const initial = map ? along_initial(map, z, CLEAR) : NULL;
+    char *const initial = map ? return_map_initial(map, at, CLEAR) : NULL;
     snprintf(set, sizeof set, "%.100s=%.17g", path, value);
     const char *const sets[] = {initial ? initial : set, set};
     struct scenario *const s = asked_again(file, plain, sets, 2);

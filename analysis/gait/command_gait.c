@@ -1,6 +1,5 @@
 /* command_gait.c - `stance gait`: the cycle that a walking robot comes to, and whether it holds. */
-#include "margins.h"
-#include "sensitivity.h"
+#include "gait.h"
 
 #include "runner/plan/asked.h"
 #include "runner/plan/instruction_set.h"
@@ -54,50 +53,98 @@ static const char text[] =
     "\nIt returns to within {residual%.1e}, after {iterations} iteration{iterations#s} of "
     "Newton.\n";
 
-/* A row for each number that is drawn anew; false: it has been told why not. */
+/* "PATH=FROM..TO" of an option; false: it is none, as has been told. */
+static bool read_along(const char *option, const char *value, struct along *along)
+{
+    double ends[2];
+    const bool good = option_range(value, along->path, ends);
+    if (good)
+        along->from = ends[0], along->to = ends[1];
+    else
+        fprintf(stderr, "stance gait: %s takes PATH=FROM..TO, two different numbers, not '%s'\n",
+                option, value);
+    return good;
+}
+
+/* What is told of a number that is drawn anew in each return. */
+#define SPREAD(X)                                                                                  \
+    X("path", "", as_text(along.path), "", .width = 28, .left = true, .before = "  ")              \
+    X("from", "", as_number(along.from), "from", "%.6g", .width = 10)                              \
+    X("to", "", as_number(along.to), "to", "%.6g", .width = 10)                                    \
+    X("period", "", as_number(is.time), "period (s)", "%.3e", .width = 11)                         \
+    X("step_length", "", as_number(is.length / map->steps), "step (m)", "%.3e", .width = 11)       \
+    X("speed", "", as_number(is.speed), "speed (m/s)", "%.3e", .width = 12)                        \
+    X("error", "", as_number(is.error), "+- part", "%.1e", .width = 8)
+
+/* A row for each; false: it has been told why not. */
 static bool spread(const struct scenario *s, const struct return_map *map, const struct gait *gait,
                    const struct option_texts *asked, struct table *t)
 {
     for (size_t k = 0; k < asked->count; k++) {
-        char path[200];
         struct along along;
         struct gait_sensitivity is;
         stance_message message = {""};
-        snprintf(path, sizeof path, "%s", asked->text[k]);
-        if (!along_read(path, &along)) {
-            fprintf(stderr,
-                    "stance gait: --sensitivity takes PATH=FROM..TO, two different numbers, not "
-                    "'%s'\n",
-                    asked->text[k]);
+        if (!read_along("--sensitivity", asked->text[k], &along))
             return false;
-        }
         if (!gait_sensitivity_find(s, map, gait, &along, &is, &message)) {
             if (message.text[0])
                 fail(s, message.text);
             return false;
         }
-        TABLE_FACTS(
-            t, {{"path", "", .width = 28, .left = true, .before = "  "}, as_text(path)},
-            {{"from", "from", "%.6g", .width = 10}, as_number(along.from)},
-            {{"to", "to", "%.6g", .width = 10}, as_number(along.to)},
-            {{"period", "period (s)", "%.3e", .width = 11}, as_number(is.time)},
-            {{"step_length", "step (m)", "%.3e", .width = 11}, as_number(is.length / map->steps)},
-            {{"speed", "speed (m/s)", "%.3e", .width = 12}, as_number(is.speed)},
-            {{"error", "+- part", "%.1e", .width = 8}, as_number(is.error)});
+        TABLE_FACTS(t, SPREAD(TABLE_FACT));
         table_end_row(t);
     }
     return true;
 }
 
-/* The gait as facts. */
+/* What is told of a gait, of facts_of. */
+#define GAIT(X)                                                                                    \
+    X("title", "", as_text(s->title[0] ? s->title : NULL))                                         \
+    X("steps", "", as_whole((uint64_t)map->steps))                                                 \
+    X("repeats", "", as_whole((uint64_t)repeats))                                                  \
+    X("method", "", as_text(map->kernel->method->name))                                            \
+    X("period", "", as_number(gait->at.time))                                                      \
+    X("step_length", "", as_number(gait->at.length / map->steps))                                  \
+    X("speed", "", as_number(gait->at.length / gait->at.time))                                     \
+    X("foot", "", as_text(scene->contact_name[map->foot[0]]))                                      \
+    X("sampled", "", as_truth(map->base.sample_every > 0 && scene->actuators > 0))                 \
+    X("state", "{name: value}", as_tree(state))                                                    \
+    X("multipliers", "[{re, im, modulus, error}] of conjugate ones that with im > 0",              \
+      as_tree(list))                                                                               \
+    X("stable", "", as_truth(gait->stable))                                                        \
+    X("peak_torque", "", scene->actuators > 0 ? as_number(r->peak_torque) : as_nothing(NULL))      \
+    X("friction_used", "", as_number(r->friction_used))                                            \
+    X("friction", "", as_number(map->base.friction))                                               \
+    X("slip_distance", "", as_number(r->slip_distance))                                            \
+    X("cost_of_transport", "", as_number(margins->cost))                                           \
+    X("impact_friction", "", as_number(margins->impact_friction))                                  \
+    X("least_normal_force", "", as_number(margins->least_normal_force))                            \
+    X("lift_speed", "", as_number(margins->lift))                                                  \
+    X("clearance", "", as_number(margins->clearance))                                              \
+    X("clock", "", as_tree(clock))                                                                 \
+    X("under_ground", "", as_number(margins->under))                                               \
+    X("residual", "", as_number(gait->residual))                                                   \
+    X("iterations", "", as_whole((uint64_t)gait->iterations))
+
+static const struct say_key spread_keys[] = {SPREAD(TABLE_KEY){0}};
+static const struct say_key gait_keys[] = {
+    GAIT(TABLE_KEY){"sensitivity", "", spread_keys},
+    {NULL, "with --along title, path, stopped and", NULL},
+    {"rows", "", along_keys},
+    {0},
+};
+
 static json_t *facts_of(const struct scenario *s, const struct return_map *map,
                         const struct gait *gait, const struct gait_margins *margins, bool told)
 {
     const stance_scene *const scene = map->scene;
+    const stance_result *const r = &gait->at.result;
+    const int repeats = gait_repeats(map, gait);
     double position[STANCE_MAX_COORDINATES], velocity[STANCE_MAX_COORDINATES];
-    json_t *const state = json_object(), *const list = json_array();
+    json_t *const state = json_object(), *const list = json_array(),
+                  *const clock = isnan(margins->clock_off) ? NULL : json_array();
     char name[STANCE_NAME + 2], number[64];
-    return_map_state(map, gait->z, position, velocity);
+    return_map_state(map, &gait->from, position, velocity);
     for (int rate = 0; rate < 2; rate++)
         for (int j = 0; j < scene->postures; j++) {
             const int k = scene->posture[j];
@@ -113,57 +160,28 @@ static json_t *facts_of(const struct scenario *s, const struct return_map *map,
                      {"modulus", as_number(hypot(gait->re[i], gait->im[i]))},
                      {"error", as_number(gait->error[i])}, {".number", as_text(number)});
     }
-    json_t *const clock = isnan(margins->clock_off) ? NULL : json_array();
-    char set[32 * STANCE_MAX_COEFFICIENTS + 40] = "controller.phase.clock=[";
+    json_t *const facts = TABLE_OBJECT(
+        GAIT(TABLE_MEMBER){".shorter", as_truth(repeats < map->steps)},
+        {".slips", as_truth(r->slip_distance > 1e-6)}, {".under", as_truth(margins->under > 0)},
+        {".clock_off", as_number(margins->clock_off)});
     for (int i = 0; clock && i < STANCE_MAX_COEFFICIENTS; i++) {
         table_append(clock, as_number(margins->clock[i]));
-        snprintf(set + strlen(set), sizeof set - strlen(set), "%s%.9g%s", i > 0 ? ", " : "",
-                 margins->clock[i], i + 1 == STANCE_MAX_COEFFICIENTS ? "]" : "");
+        if (told)
+            say_add(facts, ".clock", "%s%.9g%s", i > 0 ? ", " : "controller.phase.clock=[",
+                    margins->clock[i], i + 1 == STANCE_MAX_COEFFICIENTS ? "]" : "");
     }
-    const stance_result *const r = &gait->at.result;
-    const int repeats = gait_repeats(map, gait);
-    return TABLE_OBJECT(
-        {"title", as_text(s->title[0] ? s->title : NULL)},
-        {"steps", as_whole((uint64_t)map->steps)}, {"repeats", as_whole((uint64_t)repeats)},
-        {".shorter", as_truth(repeats < map->steps)},
-        {"method", as_text(map->kernel->method->name)}, {"period", as_number(gait->at.time)},
-        {"step_length", as_number(gait->at.length / map->steps)},
-        {"speed", as_number(gait->at.length / gait->at.time)},
-        {"foot", as_text(scene->contact_name[map->foot[0]])},
-        {"sampled", as_truth(map->base.sample_every > 0 && scene->actuators > 0)},
-        {"state", as_tree(state)}, {"multipliers", as_tree(list)},
-        {"stable", as_truth(gait->stable)},
-        {"peak_torque", scene->actuators > 0 ? as_number(r->peak_torque) : as_nothing(NULL)},
-        {"friction_used", as_number(r->friction_used)}, {"friction", as_number(map->base.friction)},
-        {"slip_distance", as_number(r->slip_distance)},
-        {".slips", as_truth(r->slip_distance > 1e-6)},
-        {"cost_of_transport", as_number(margins->cost)},
-        {"impact_friction", as_number(margins->impact_friction)},
-        {"least_normal_force", as_number(margins->least_normal_force)},
-        {"lift_speed", as_number(margins->lift)}, {"clearance", as_number(margins->clearance)},
-        {"clock", clock ? as_tree(clock) : as_nothing(NULL)},
-        {".clock", clock && told ? as_text(set) : as_nothing(NULL)},
-        {".clock_off", as_number(margins->clock_off)}, {"under_ground", as_number(margins->under)},
-        {".under", as_truth(margins->under > 0)}, {"residual", as_number(gait->residual)},
-        {"iterations", as_whole((uint64_t)gait->iterations)});
+    return facts;
 }
 
-/* The scenario's text, begun on the gait. NULL: no memory. */
-static char *begun(const struct scenario *s, const struct return_map *map, const struct gait *gait)
-{
-    static const char *const drop[] = {"initial", "sweep", "optimise"};
-    char *const set = along_initial(map, gait->z, 0);
-    char *const result = set ? scenario_rewrite(s->text, drop, sizeof drop / sizeof *drop,
-                                                (const char *const[]){set}, 1)
-                             : NULL;
-    free(set);
-    return result;
-}
-
+/* The scenario's text, begun on the gait. */
 static int write_scenario(const struct scenario *s, const char *path, const struct return_map *map,
                           const struct gait *gait)
 {
-    char *const result = begun(s, map, gait);
+    static const char *const drop[] = {"initial", "sweep", "optimise"};
+    char *const set = return_map_initial(map, &gait->from, 0);
+    char *const result = set ? scenario_rewrite(s->text, drop, sizeof drop / sizeof *drop,
+                                                (const char *const[]){set}, 1)
+                             : NULL;
     FILE *const out = result ? fopen(path, "w") : NULL;
     const bool written = out && fputs(result, out) >= 0;
     const bool closed = out && fclose(out) == 0;
@@ -175,6 +193,7 @@ static int write_scenario(const struct scenario *s, const char *path, const stru
                s->base.walk_steps > 0
                    ? ""
                    : "  (give it stop.walks.steps, and its runs are judged: they walk)\n");
+    free(set);
     free(result);
     return written && closed ? EXIT_DONE : EXIT_IO;
 }
@@ -205,14 +224,14 @@ static int find(const struct scenario *s, const stance_case *c, void *asked)
         instruction_set_kernel(s->scene, stance_methods()[s->base.method]);
     struct return_map *const map = malloc(sizeof *map);
     struct gait *const gait = malloc(sizeof *gait);
-    double z[RETURN_MAP_MOST] = {0};
+    struct return_point from = {.time = 0};
     stance_message message = {""};
     int code = EXIT_USAGE;
     if (!map || !gait || !kernel)
         fail(s, strerror(ENOMEM));
-    else if (!return_map_begin(map, c, kernel, (int)request->steps, (int)request->settle, z,
+    else if (!return_map_begin(map, c, kernel, (int)request->steps, (int)request->settle, &from,
                                &message) ||
-             !gait_find(map, z, gait, &message))
+             !gait_find(map, &from, gait, &message))
         fail(s, message.text);
     else if (request->path)
         code = write_scenario(s, request->path, map, gait);
@@ -230,14 +249,8 @@ static int follow(const struct scenario *s, struct request *request)
                           .settle = (int)request->settle,
                           .settled = request->settled || request->path,
                           .look = request->path ? &request->look : NULL};
-    char path[200];
-    snprintf(path, sizeof path, "%s", request->along);
-    if (!along_read(path, &along)) {
-        fprintf(stderr,
-                "stance gait: --along takes PATH=FROM..TO, two different numbers, not '%s'\n",
-                request->along);
+    if (!read_along("--along", request->along, &along))
         return EXIT_USAGE;
-    }
     if (request->path && (!look_place(request->path, &request->look) || !request->look.file ||
                           request->look.format[LOOK_GIF]))
         return command_usage(
@@ -298,7 +311,7 @@ static const struct option options[] = {
      .text = "after how many steps it repeats what it comes to, slightly off each gait, in the "
              "times of 16 steps after 200 footfalls; 0: in none; nothing where it falls"},
     {TABLE_CSV(struct request, form), .needs = "--along", .text = "as comma-separated values"},
-    {TABLE_JSON(struct request, form), .text = "as JSON"},
+    {TABLE_JSON(struct request, form), .keys = gait_keys, .text = "as JSON. Keys"},
     {.at = offsetof(struct request, look), .rows = look_drawn},
     {0},
 };
@@ -326,15 +339,5 @@ const struct command command_gait = {
     "height: 0}}, of whose height steps are independent). The error (+- part) is relative, by how "
     "much the whole range and half of it differ, with the residual's part; what changes no more "
     "than that is refused.\n"
-    "  JSON: {title, steps, repeats, method, period, step_length, speed, foot, sampled, state: "
-    "{name: "
-    "value}, multipliers: [{re, im, modulus, error}] of conjugate ones that with im > 0, stable, "
-    "peak_torque, friction_used, friction, slip_distance, cost_of_transport, impact_friction, "
-    "least_normal_force, lift_speed, clearance, clock, under_ground, residual, iterations, "
-    "sensitivity: "
-    "[{path, from, to, period, step_length, speed, error}]}; with --along {title, path, stopped, "
-    "rows: [{value, period, step_length, speed, re, im, modulus, holds, place, repeats, settled, "
-    "multipliers: [{re, im}]}]}, re, im and modulus of the largest multiplier, place flip, fold or "
-    "jump (to another gait), settled the 16 times.\n"
     "Exit codes: 0 found, 2 bad use or scenario, or no such gait, 3 FILE cannot be written.",
 };

@@ -3,55 +3,63 @@
  * Columns of the derivative are differences: central ones for Newton, whose steps need no more;
  * for multipliers the formula of fourth order, (8 (P(h) - P(-h)) - (P(2h) - P(-2h))) / 12 h, at two
  * steps, since the map may be strongly curved: what they differ by is the error that is told. */
-#include "return_map.h"
+#include "gait.h"
+
+#include "runner/base/message.h"
 
 #include <lapacke.h>
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#define NEWTON_STEP 1e-4 /* rad, rad/s */
 #define NEWTON_DONE 1e-12
 #define NEWTON_GOOD 1e-6 /* a residual that admits a fixed point */
 enum { NEWTON_MOST = 20 };
-static const double steps[2] = {1e-3, 3e-4};
+
+/* Points apart from one by so many h (rad, rad/s), and their weights in the derivative times h. */
+struct difference {
+    double h;
+    int count;
+    double apart[4], weight[4];
+};
+static const struct difference central = {1e-4, 2, {1, -1}, {0.5, -0.5}};
+#define FOURTH                                                                                     \
+    4, {1, -1, 2, -2},                                                                             \
+    {                                                                                              \
+        8.0 / 12, -8.0 / 12, -1.0 / 12, 1.0 / 12                                                   \
+    }
+static const struct difference fourth[2] = {{1e-3, FOURTH}, {3e-4, FOURTH}};
 
 struct work {
-    double z[1 + 4 * RETURN_MAP_MOST][RETURN_MAP_MOST];
-    struct return_point point[1 + 4 * RETURN_MAP_MOST];
+    struct return_point from[1 + 4 * RETURN_MAP_MOST], to[1 + 4 * RETURN_MAP_MOST];
     double J[RETURN_MAP_MOST * RETURN_MAP_MOST]; /* columns */
     double by[RETURN_MAP_MOST][2];               /* of time and length */
 };
 
-/* The point z and, beside it in each coordinate, `apart` times h. */
-static size_t place(const struct return_map *map, const double *z, double h, const int *apart,
-                    size_t count, struct work *w)
+/* The return of z to w->to[0], and the derivatives there by those of the points beside it. */
+static bool derive(const struct return_map *map, const struct return_point *z,
+                   const struct difference *d, struct work *w, stance_message *message)
 {
-    const size_t n = (size_t)map->n;
-    for (size_t k = 0; k < 1 + count * n; k++)
-        memcpy(w->z[k], z, sizeof w->z[k]);
-    for (size_t j = 0; j < n; j++)
-        for (size_t k = 0; k < count; k++)
-            w->z[1 + count * j + k][j] += apart[k] * h;
-    return 1 + count * n;
-}
-
-/* J by points apart, with weights over h. */
-static void derive(const struct return_map *map, double h, const double *weight, size_t count,
-                   struct work *w)
-{
-    const size_t n = (size_t)map->n;
+    const int n = map->n, count = d->count;
+    for (int k = 0; k < 1 + count * n; k++)
+        w->from[k] = *z;
+    for (int j = 0; j < n; j++)
+        for (int k = 0; k < count; k++)
+            w->from[1 + count * j + k].z[j] += d->apart[k] * d->h;
+    if (!return_map_take(map, (size_t)(1 + count * n), w->from, w->to, message))
+        return false;
     memset(w->J, 0, sizeof w->J);
     memset(w->by, 0, sizeof w->by);
-    for (size_t j = 0; j < n; j++)
-        for (size_t k = 0; k < count; k++) {
-            const struct return_point *const p = &w->point[1 + count * j + k];
-            for (size_t i = 0; i < n; i++)
-                w->J[j * n + i] += weight[k] / h * p->z[i];
-            w->by[j][0] += weight[k] / h * p->time;
-            w->by[j][1] += weight[k] / h * p->length;
+    for (int j = 0; j < n; j++)
+        for (int k = 0; k < count; k++) {
+            const struct return_point *const p = &w->to[1 + count * j + k];
+            const double weight = d->weight[k] / d->h;
+            for (int i = 0; i < n; i++)
+                w->J[j * n + i] += weight * p->z[i];
+            w->by[j][0] += weight * p->time;
+            w->by[j][1] += weight * p->length;
         }
+    return true;
 }
 
 static double residual(const struct return_map *map, const double *z, const double *to)
@@ -62,63 +70,52 @@ static double residual(const struct return_map *map, const double *z, const doub
     return largest;
 }
 
-/* Says of a point on Newton's way that it is not of the start. */
-static bool strayed(const struct gait *gait, stance_message *message)
-{
-    char why[sizeof message->text];
-    snprintf(why, sizeof why, "%s", message->text);
-    snprintf(message->text, sizeof message->text,
-             "no gait is near: the nearest returns to within %.3g, and further on %.140s",
-             gait->residual, why);
-    return false;
-}
-
 static bool newton(const struct return_map *map, struct gait *gait, struct work *w,
                    stance_message *message)
 {
-    static const int apart[] = {1, -1};
-    static const double weight[] = {0.5, -0.5};
     const lapack_int n = map->n;
-    double z[RETURN_MAP_MOST];
-    memcpy(z, gait->z, sizeof z);
+    struct return_point at = gait->from;
     gait->residual = INFINITY;
     for (gait->iterations = 0; gait->iterations < NEWTON_MOST; gait->iterations++) {
         lapack_int pivot[RETURN_MAP_MOST];
         double move[RETURN_MAP_MOST];
-        const size_t count = place(map, z, NEWTON_STEP, apart, 2, w);
-        if (!return_map_take(map, count, (const double(*)[RETURN_MAP_MOST])w->z, w->point, message))
-            return gait->residual <= NEWTON_GOOD ||
-                   (gait->iterations > 0 && strayed(gait, message));
-        const double now = residual(map, z, w->point[0].z);
+        if (!derive(map, &at, &central, w, message)) {
+            const stance_message why = *message;
+            if (gait->residual > NEWTON_GOOD && gait->iterations > 0)
+                complain(message,
+                         "no gait is near: the nearest returns to within %.3g, and further on "
+                         "%.140s",
+                         gait->residual, why.text);
+            return gait->residual <= NEWTON_GOOD;
+        }
+        const double now = residual(map, at.z, w->to[0].z);
         const bool better = now < gait->residual, stuck = !(now < 0.5 * gait->residual);
         if (better) {
-            memcpy(gait->z, z, sizeof z);
+            gait->from = at;
             gait->residual = now;
-            gait->at = w->point[0];
+            gait->at = w->to[0];
         }
         if (now <= NEWTON_DONE || (stuck && gait->residual <= NEWTON_GOOD))
             return true;
-        derive(map, NEWTON_STEP, weight, 2, w);
         for (lapack_int i = 0; i < n; i++) {
             w->J[i * n + i] -= 1;
-            move[i] = z[i] - w->point[0].z[i];
+            move[i] = at.z[i] - w->to[0].z[i];
         }
         if (LAPACKE_dgesv(LAPACK_COL_MAJOR, n, 1, w->J, n, pivot, move, n) != 0)
             break;
         for (lapack_int i = 0; i < n; i++)
-            z[i] += move[i];
+            at.z[i] += move[i];
     }
     if (gait->residual <= NEWTON_GOOD)
         return true;
     int worst = 0;
     char name[STANCE_NAME + 2];
     for (int i = 0; i < n; i++)
-        if (fabs(gait->at.z[i] - gait->z[i]) > fabs(gait->at.z[worst] - gait->z[worst]))
+        if (fabs(gait->at.z[i] - gait->from.z[i]) > fabs(gait->at.z[worst] - gait->from.z[worst]))
             worst = i;
-    snprintf(message->text, sizeof message->text,
-             "no gait within %d iterations; the nearest returns with %s off by %.3g",
-             gait->iterations, return_map_name(map, worst, name), gait->residual);
-    return false;
+    return complain(message,
+                    "no gait within %d iterations; the nearest returns with %s off by %.3g",
+                    gait->iterations, return_map_name(map, worst, name), gait->residual);
 }
 
 /* Eigenvalues of w->J, the largest first. */
@@ -139,20 +136,14 @@ static bool multipliers(const struct return_map *map, struct work *w, double *re
 static bool judge(const struct return_map *map, struct gait *gait, struct work *w,
                   stance_message *message)
 {
-    static const int apart[] = {1, -1, 2, -2};
-    static const double weight[] = {8.0 / 12, -8.0 / 12, -1.0 / 12, 1.0 / 12};
     double re[2][RETURN_MAP_MOST], im[2][RETURN_MAP_MOST];
     for (int k = 0; k < 2; k++) {
-        const size_t count = place(map, gait->z, steps[k], apart, 4, w);
-        if (!return_map_take(map, count, (const double(*)[RETURN_MAP_MOST])w->z, w->point, message))
+        if (!derive(map, &gait->from, &fourth[k], w, message))
             return false;
-        derive(map, steps[k], weight, 4, w);
         memcpy(gait->J, w->J, sizeof gait->J);
         memcpy(gait->by, w->by, sizeof gait->by);
-        if (!multipliers(map, w, re[k], im[k])) {
-            snprintf(message->text, sizeof message->text, "its multipliers do not converge");
-            return false;
-        }
+        if (!multipliers(map, w, re[k], im[k]))
+            return complain(message, "its multipliers do not converge");
     }
     gait->stable = true;
     for (int i = 0; i < map->n; i++) {
@@ -168,27 +159,23 @@ static bool judge(const struct return_map *map, struct gait *gait, struct work *
 int gait_repeats(const struct return_map *map, const struct gait *gait)
 {
     struct return_map part = *map;
-    struct return_point point;
+    struct return_point to;
     stance_message ignored;
     for (part.steps = 1; part.steps < map->steps; part.steps++)
         if (map->steps % part.steps == 0 && return_map_change(&part, &map->base, &ignored) &&
-            return_map_take(&part, 1, (const double(*)[RETURN_MAP_MOST])gait->z, &point,
-                            &ignored) &&
-            residual(map, gait->z, point.z) <= NEWTON_GOOD)
-            return part.steps;
-    return map->steps;
+            return_map_take(&part, 1, &gait->from, &to, &ignored) &&
+            residual(map, gait->from.z, to.z) <= NEWTON_GOOD)
+            break;
+    return part.steps;
 }
 
-bool gait_find(const struct return_map *map, const double *z, struct gait *gait,
+bool gait_find(const struct return_map *map, const struct return_point *from, struct gait *gait,
                stance_message *message)
 {
     struct work *const w = calloc(1, sizeof *w);
-    if (!w) {
-        snprintf(message->text, sizeof message->text, "out of memory");
-        return false;
-    }
-    memset(gait, 0, sizeof *gait);
-    memcpy(gait->z, z, sizeof gait->z);
+    if (!w)
+        return complain(message, "out of memory");
+    *gait = (struct gait){.from = *from};
     const bool found = newton(map, gait, w, message) && judge(map, gait, w, message);
     free(w);
     return found;

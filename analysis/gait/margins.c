@@ -1,28 +1,20 @@
 /* margins.c - the gait once more, with answers of walking, and its first step recorded. */
-#include "margins.h"
+#include "gait.h"
+
+#include "runner/base/message.h"
 
 #include <lapacke.h>
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* What the foot that stands carries at least, N: row 0 has nothing before it. */
-static double least_force(const struct return_map *map, const stance_trajectory *record,
-                          int64_t rows)
-{
-    double least = INFINITY;
-    for (int64_t k = 1; k < rows; k++)
-        least = fmin(least, record->force[2 * (k * map->scene->contacts + map->foot[0])]);
-    return least;
-}
-
-/* How high the foot that swings is while it is ahead of the other one, and how deep before, in the
- * first rows of a record. */
+/* Of the first rows of a record: what the foot that stands carries at least; how high the foot that
+ * swings is while it is ahead of the other one, and how deep before. */
 static void look_at_feet(const struct return_map *map, const stance_trajectory *record,
                          int64_t rows, double direction, struct gait_margins *m)
 {
     const stance_scene *const scene = map->scene;
+    m->least_normal_force = INFINITY;
     for (int64_t k = 0; k < rows; k++) {
         const double *const q = record->position + k * scene->coordinates;
         const double *const v = record->velocity + k * scene->coordinates;
@@ -34,6 +26,9 @@ static void look_at_feet(const struct return_map *map, const stance_trajectory *
             m->clearance = fmax(m->clearance, gap);
         else
             m->under = fmax(m->under, -gap);
+        if (k > 0) /* row 0 has nothing before it */
+            m->least_normal_force = fmin(m->least_normal_force,
+                                         record->force[2 * (k * scene->contacts + map->foot[0])]);
     }
 }
 
@@ -80,14 +75,6 @@ static void fit_clock(const struct return_map *map, const stance_trajectory *rec
     free(A);
 }
 
-/* Speed at which the foot that stood leaves the ground after the last footfall. */
-static double lift_of(const struct return_map *map, const stance_result *r)
-{
-    double place[2], speed[2];
-    return_map_foot(map, r->position, r->velocity, (map->steps - 1) % 2, place, speed);
-    return fmax(speed[1], 0);
-}
-
 bool gait_margins_find(const struct return_map *map, const struct gait *gait,
                        struct gait_margins *margins, stance_message *message)
 {
@@ -99,10 +86,8 @@ bool gait_margins_find(const struct return_map *map, const struct gait *gait,
     stance_trajectory record = {.interval = map->base.step, .rows = (int64_t)rows};
     stance_case c[2] = {map->base, map->base};
     stance_result r[2];
-    if (!all) {
-        snprintf(message->text, sizeof message->text, "out of memory");
-        return false;
-    }
+    if (!all)
+        return complain(message, "out of memory");
     record.position = all, record.velocity = record.position + rows * n;
     record.gap = record.velocity + rows * n, record.force = record.gap + rows * contacts;
     record.torque = record.force + rows * 2 * contacts;
@@ -113,21 +98,23 @@ bool gait_margins_find(const struct return_map *map, const struct gait *gait,
     c[1].footfalls = map->steps + 1;
     bool good = true;
     for (int k = 0; good && k < 2; k++) {
-        good = return_map_state(map, gait->z, c[k].position, c[k].velocity);
+        good = return_map_state(map, &gait->from, c[k].position, c[k].velocity);
         if (good)
             map->kernel->run(&c[k], &r[k], 1);
         good = good && r[k].status == STANCE_DONE && r[k].footfalls >= c[k].footfalls;
     }
     if (good) {
+        const stance_result *const back = &gait->at.result;
+        const int64_t whole = (int64_t)(r[0].end_time / c[0].step);
+        double place[2], speed[2]; /* of the foot that stood */
+        return_map_foot(map, back->position, back->velocity, (map->steps - 1) % 2, place, speed);
         *margins = (struct gait_margins){.cost = map->steps <= 4 ? r[1].cost_of_transport : NAN,
                                          .impact_friction = r[1].impact_friction,
-                                         .lift = lift_of(map, &gait->at.result)};
-        const int64_t whole = (int64_t)(r[0].end_time / c[0].step);
+                                         .lift = fmax(speed[1], 0)};
         look_at_feet(map, &record, whole, gait->at.length, margins);
-        margins->least_normal_force = least_force(map, &record, whole);
         fit_clock(map, &record, whole, margins);
     } else {
-        snprintf(message->text, sizeof message->text, "it does not take another step");
+        complain(message, "it does not take another step");
     }
     free(all);
     return good;

@@ -1,6 +1,6 @@
 /* plot_along.c - a gait followed along a number: multipliers, speed and the times of its steps,
  * with those that the robot comes to from slightly off it. */
-#include "along.h"
+#include "gait.h"
 
 #include "analysis/draw/gnuplot.h"
 #include "runner/scenario/schema.h"

@@ -1,10 +1,10 @@
 /* return_map.c - the section, and where cases return to it. */
-#include "return_map.h"
+#include "gait.h"
 
 #include "engine/tree.h"
+#include "runner/base/message.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -13,12 +13,6 @@
 #define FAR 1e6        /* m: behind all feet */
 #define SYMMETRIC 1e-9 /* of the energy, and so on: legs that are alike */
 #define SLIDES 1e-6    /* m/s */
-
-static bool refuse(stance_message *message, const char *text)
-{
-    snprintf(message->text, sizeof message->text, "%s", text);
-    return false;
-}
 
 /* Reads coordinates or rates as the other leg sees them. */
 static void exchange(const stance_scene *scene, const double *x, double *out)
@@ -54,7 +48,7 @@ static double slope_of(const struct return_map *map, const double *posture, int 
     return (above - gap_of(map, q)) / (2 * d);
 }
 
-bool return_map_state(const struct return_map *map, const double *z, double *position,
+bool return_map_state(const struct return_map *map, const struct return_point *at, double *position,
                       double *velocity)
 {
     const stance_scene *const scene = map->scene;
@@ -63,12 +57,12 @@ bool return_map_state(const struct return_map *map, const double *z, double *pos
     memset(velocity, 0, STANCE_MAX_COORDINATES * sizeof *velocity);
     for (int j = 0, i = 0; j < p; j++) {
         if (j != map->follows)
-            position[scene->posture[j]] = z[i++];
-        velocity[scene->posture[j]] = z[p - 1 + j];
+            position[scene->posture[j]] = at->z[i++];
+        velocity[scene->posture[j]] = at->z[p - 1 + j];
     }
     double gap = 1;
     for (int round = 0; round < 30 && fabs(gap) > 1e-15; round++) {
-        gap = gap_of(map, position) - map->behind;
+        gap = gap_of(map, position) - at->behind;
         const double slope = slope_of(map, position, left);
         if (!(fabs(slope) > 1e-6))
             return false;
@@ -89,11 +83,34 @@ void return_map_foot(const struct return_map *map, const double *position, const
     speed[0] = cosine * v[0] - sine * v[1], speed[1] = sine * v[0] + cosine * v[1];
 }
 
-void return_map_lift(const struct return_map *map, double height, double *position)
+char *return_map_initial(const struct return_map *map, const struct return_point *at, double height)
 {
-    const int left = map->scene->posture[map->follows];
+    const stance_scene *const scene = map->scene;
+    double position[STANCE_MAX_COORDINATES], velocity[STANCE_MAX_COORDINATES];
+    char *set = NULL;
+    size_t size = 0;
+    FILE *const out = open_memstream(&set, &size);
+    if (!out)
+        return NULL;
+    return_map_state(map, at, position, velocity);
+    const int left = scene->posture[map->follows];
     if (height != 0)
         position[left] += height / slope_of(map, position, left);
+    fputs("initial={state: {", out);
+    for (int rate = 0; rate < 2; rate++)
+        for (int j = 0; j < scene->postures; j++) {
+            const int k = scene->posture[j];
+            fprintf(out, "%s%s%s: %.15g", rate + j ? ", " : "", rate ? "v" : "",
+                    scene->coordinate[k].name, rate ? velocity[k] : position[k]);
+        }
+    if (scenario_numbers_feet(scene))
+        fprintf(out, "}, support_foot: %d}", map->foot[0] + 1);
+    else
+        fprintf(out, "}, support: [%s]}", scene->contact_name[map->foot[0]]);
+    if (fclose(out) == 0)
+        return set;
+    free(set);
+    return NULL;
 }
 
 /* The section's coordinates of a state in which the second leg landed, or the first one. */
@@ -126,36 +143,39 @@ const char *return_map_name(const struct return_map *map, int i, char name[STANC
     return name;
 }
 
-/* Whether a case made its footfalls, after `before` others. */
+/* Whether a case made its footfalls. */
 static bool returned(const struct return_map *map, const stance_case *c, const stance_result *r,
-                     long before, stance_message *message)
+                     stance_message *message)
 {
-    const long now = r->footfalls == STANCE_NO_COUNT ? 0 : (long)r->footfalls, made = before + now;
+    const long now = r->footfalls == STANCE_NO_COUNT ? 0 : (long)r->footfalls,
+               made = map->made + now;
     if (r->status == STANCE_DONE && r->outcome != STANCE_FELL && now >= c->footfalls)
         return true;
     const char *const cause =
         r->outcome == STANCE_FELL && r->fall_cause > 0 ? map->scene->cause[r->fall_cause - 1] : "";
-    snprintf(message->text, sizeof message->text,
-             r->status != STANCE_DONE    ? "a run failed after %ld footfall%s%s%s"
-             : r->outcome == STANCE_FELL ? "it falls after %ld footfall%s%s%s; give a start that "
-                                           "walks (--settle 1 looks near the "
-                                           "start, --along follows a gait away from one)"
-                                         : "it makes %ld footfall%s in 100 s and no more%s%s",
-             made, made == 1 ? "" : "s", cause[0] ? ", by " : "", cause);
-    return false;
+    return complain(message,
+                    r->status != STANCE_DONE ? "a run failed after %ld footfall%s%s%s"
+                    : r->outcome == STANCE_FELL
+                        ? "it falls after %ld footfall%s%s%s; give a start that "
+                          "walks (--settle 1 looks near the "
+                          "start, --along follows a gait away from one)"
+                        : "it makes %ld footfall%s in 100 s and no more%s%s",
+                    made, made == 1 ? "" : "s", cause[0] ? ", by " : "", cause);
 }
 
 /* Ground under the foot behind, where it is not that under the other one: before all pieces that
  * there are, up to half-way between the feet. */
-static bool lay_behind(const struct return_map *map, stance_case *c, stance_message *message)
+static bool lay_behind(const struct return_map *map, double behind, stance_case *c,
+                       stance_message *message)
 {
     stance_tree_numbers *const body = &c->body;
     double place[2][2], speed[2];
-    if (map->behind == 0 || body->plates == 0)
+    if (behind == 0 || body->plates == 0)
         return true;
     if (body->plates > STANCE_MAX_PLATES - 2)
-        return refuse(message, "ground.plates has too many pieces: two more are laid, for the foot "
-                               "behind");
+        return complain(message,
+                        "ground.plates has too many pieces: two more are laid, for the foot "
+                        "behind");
     for (int k = 0; k < 2; k++)
         return_map_foot(map, c->position, c->velocity, k, place[k], speed);
     memmove(body->plate + 2, body->plate, (size_t)body->plates * sizeof *body->plate);
@@ -164,7 +184,7 @@ static bool lay_behind(const struct return_map *map, stance_case *c, stance_mess
     const double from[2] = {-FAR, 0.5 * (place[0][0] + place[1][0])};
     const bool ahead = place[1][0] < place[0][0];
     for (int k = 0; k < 2; k++) {
-        const double height = (k == 0) == ahead ? map->behind : 0;
+        const double height = (k == 0) == ahead ? behind : 0;
         body->plate_kind[k] = STANCE_PLATE;
         body->plate[k] =
             (stance_plate_numbers){.from = from[k], .height = height, .friction_factor = 1};
@@ -173,61 +193,43 @@ static bool lay_behind(const struct return_map *map, stance_case *c, stance_mess
     return true;
 }
 
-static bool take(const struct return_map *map, size_t count, const double (*z)[RETURN_MAP_MOST],
-                 long before, struct return_point *point, stance_message *message)
+bool return_map_take(const struct return_map *map, size_t count, const struct return_point *from,
+                     struct return_point *to, stance_message *message)
 {
     stance_case *const cases = calloc(count, sizeof *cases);
     stance_result *const results = malloc(count * sizeof *results);
-    bool good = (cases && results) || refuse(message, "out of memory");
+    bool good = (cases && results) || complain(message, "out of memory");
     for (size_t i = 0; good && i < count; i++) {
         cases[i] = map->base;
         cases[i].footfalls = map->steps;
-        good = return_map_state(map, z[i], cases[i].position, cases[i].velocity) ||
-               refuse(message, "both feet are not on the ground at once: no such posture is near");
-        good = good && lay_behind(map, &cases[i], message);
+        good =
+            return_map_state(map, &from[i], cases[i].position, cases[i].velocity) ||
+            complain(message, "both feet are not on the ground at once: no such posture is near");
+        good = good && lay_behind(map, from[i].behind, &cases[i], message);
     }
     if (good)
         map->kernel->run(cases, results, count);
     for (size_t i = 0; good && i < count; i++) {
-        double from[2], end[2], speed[2];
-        good = returned(map, &cases[i], &results[i], before, message);
+        double begin[2], end[2], speed[2], posture[STANCE_MAX_COORDINATES];
+        const stance_result *const r = &results[i];
+        const bool second = map->steps % 2;
+        good = returned(map, &cases[i], r, message);
         if (!good)
             break;
-        const bool second = map->steps % 2;
-        double posture[STANCE_MAX_COORDINATES];
-        section_of(map, results[i].position, results[i].velocity, second, point[i].z, posture);
-        point[i].behind = gap_of(map, posture);
-        return_map_foot(map, results[i].position, results[i].velocity, second, end, speed);
-        if (hypot(speed[0], speed[1]) > SLIDES) {
-            good =
-                refuse(message, "the foot that lands slides: no gait on feet that stick; give more "
-                                "ground.friction");
-            break;
-        }
-        return_map_foot(map, cases[i].position, cases[i].velocity, 0, from, speed);
-        point[i].time = results[i].end_time;
-        point[i].length = end[0] - from[0];
-        point[i].result = results[i];
+        section_of(map, r->position, r->velocity, second, to[i].z, posture);
+        to[i].behind = gap_of(map, posture);
+        return_map_foot(map, r->position, r->velocity, second, end, speed);
+        good = hypot(speed[0], speed[1]) <= SLIDES ||
+               complain(message, "the foot that lands slides: no gait on feet that stick; give "
+                                 "more ground.friction");
+        return_map_foot(map, cases[i].position, cases[i].velocity, 0, begin, speed);
+        to[i].time = r->end_time;
+        to[i].length = end[0] - begin[0];
+        to[i].result = *r;
     }
     free(cases);
     free(results);
     return good;
-}
-
-bool return_map_take(const struct return_map *map, size_t count, const double (*z)[RETURN_MAP_MOST],
-                     struct return_point *point, stance_message *message)
-{
-    return take(map, count, z, 0, point, message);
-}
-
-/* The foot of a leg that is on the ground; -1: none, or several. */
-static int foot_of(const stance_scene *scene, uint32_t leg, const double *gap)
-{
-    int foot = -1, count = 0;
-    for (int c = 0; c < scene->contacts; c++)
-        if (scene->grip[c] >= 0 && leg >> c & 1 && fabs(gap[c]) < NEAR)
-            foot = c, count++;
-    return count == 1 ? foot : -1;
 }
 
 /* Where the torques of a linear law do not depend on which leg is which. */
@@ -317,52 +319,51 @@ static bool check(const stance_case *c, const stance_kernel *kernel, int steps,
 {
     const char *const method = kernel->method->name;
     if (!c->scene->exchange.any)
-        return refuse(message, "no two legs of the robot are alike in structure");
-    if (strcmp(method, "capturing") != 0 && strcmp(method, "event-driven") != 0) {
-        snprintf(message->text, sizeof message->text,
-                 "%s puts footfalls at the end of a step; give method.name capturing or "
-                 "event-driven",
-                 method);
-        return false;
-    }
+        return complain(message, "no two legs of the robot are alike in structure");
+    if (strcmp(method, "capturing") != 0 && strcmp(method, "event-driven") != 0)
+        return complain(message,
+                        "%s puts footfalls at the end of a step; give method.name capturing or "
+                        "event-driven",
+                        method);
     if (c->noise != 0 || c->angle_noise != 0 || c->rate_noise != 0)
-        return refuse(message, "a gait with noise has no cycle: set controller.noise, angle_noise "
-                               "and rate_noise to 0");
+        return complain(message,
+                        "a gait with noise has no cycle: set controller.noise, angle_noise "
+                        "and rate_noise to 0");
     if (c->delay > 0 || c->lag > 0 || (c->torque_rate > 0 && isfinite(c->torque_rate)))
-        return refuse(message, "controller.delay, lag and torque_rate remember the step before, "
-                               "which the section does not");
+        return complain(message, "controller.delay, lag and torque_rate remember the step before, "
+                                 "which the section does not");
     if (c->restitution > 0)
-        return refuse(message, "a foot that rebounds is not on the ground after its footfall: set "
-                               "ground.restitution to 0");
+        return complain(message,
+                        "a foot that rebounds is not on the ground after its footfall: set "
+                        "ground.restitution to 0");
     for (int k = 0; k < c->body.plates; k++)
         if (c->body.plate[k].footfall == 0 && c->body.plate[k].height != 0)
-            return refuse(message, "on uneven ground no step is as the one before: leave out "
-                                   "ground.plates, but for one with footfall: 1 and height: 0 that "
-                                   "--sensitivity varies");
+            return complain(message,
+                            "on uneven ground no step is as the one before: leave out "
+                            "ground.plates, but for one with footfall: 1 and height: 0 that "
+                            "--sensitivity varies");
     if (timed(c))
-        return refuse(message,
-                      "a gait has no time of its own: pushes, ramps and integrals of a run "
-                      "begin once, not at each footfall");
+        return complain(message,
+                        "a gait has no time of its own: pushes, ramps and integrals of a run "
+                        "begin once, not at each footfall");
     return steps % 2 == 0 || alike(c->scene, c) ||
-           refuse(message, "the legs, or what drives them, differ: a gait repeats after an even "
-                           "number of steps; give --steps 2");
+           complain(message, "the legs, or what drives them, differ: a gait repeats after an even "
+                             "number of steps; give --steps 2");
 }
 
-bool return_map_settle(const struct return_map *map, const double *z, size_t first, size_t count,
-                       double *time)
+bool return_map_settle(const struct return_map *map, const struct return_point *from, size_t first,
+                       size_t count, double *time)
 {
     struct return_map one = *map;
-    struct return_point next;
+    struct return_point at = *from;
     stance_message ignored;
-    double from[1][RETURN_MAP_MOST];
     one.steps = alike(map->scene, &map->base) ? 1 : map->steps;
-    memcpy(from[0], z, sizeof from[0]);
     for (size_t k = 0, made = 0; k < count; made += (size_t)one.steps) {
-        if (!take(&one, 1, (const double(*)[RETURN_MAP_MOST])from, 0, &next, &ignored))
+        at.behind = 0;
+        if (!return_map_take(&one, 1, &at, &at, &ignored))
             return false;
-        memcpy(from[0], next.z, sizeof from[0]);
         if (made >= first)
-            time[k++] = next.time / one.steps;
+            time[k++] = at.time / one.steps;
     }
     return true;
 }
@@ -400,7 +401,7 @@ static bool lands_second(const stance_scene *scene, const stance_case *c, const 
 }
 
 bool return_map_begin(struct return_map *map, const stance_case *c, const stance_kernel *kernel,
-                      int steps, int settle, double *z, stance_message *message)
+                      int steps, int settle, struct return_point *from, stance_message *message)
 {
     const stance_scene *const scene = c->scene;
     stance_case first;
@@ -414,36 +415,38 @@ bool return_map_begin(struct return_map *map, const stance_case *c, const stance
     first.footfalls = 1;
     for (bool again = true; again; first.footfalls++) { /* legs that differ keep their places */
         kernel->run(&first, &r, 1);
-        if (!returned(map, &first, &r, 0, message))
+        if (!returned(map, &first, &r, message))
             return false;
         again = steps % 2 == 0 && first.footfalls == 1 && lands_second(scene, c, &r);
     }
     scene->gaps(scene, c->robot, r.position, gap);
     for (int leg = 0; leg < 2; leg++) {
-        map->foot[leg] = foot_of(scene, scene->exchange.leg[leg], gap);
-        if (map->foot[leg] < 0)
-            return refuse(message,
-                          "at a footfall one contact of each leg, no more, has to be on the "
-                          "ground, which is the same plane in each step of a gait");
+        int feet = 0;
+        for (int k = 0; k < scene->contacts; k++)
+            if (scene->grip[k] >= 0 && scene->exchange.leg[leg] >> k & 1 && fabs(gap[k]) < NEAR)
+                map->foot[leg] = k, feet++;
+        if (feet != 1)
+            return complain(message,
+                            "at a footfall one contact of each leg, no more, has to be on the "
+                            "ground, which is the same plane in each step of a gait");
     }
     const bool second = lands_second(scene, c, &r);
     map->n = 2 * scene->postures - 1;
-    section_of(map, r.position, r.velocity, second, z, map->posture);
+    section_of(map, r.position, r.velocity, second, from->z, map->posture);
     for (int j = 0; j < scene->postures; j++) {
         const double slope = fabs(slope_of(map, map->posture, scene->posture[j]));
         if (slope > largest)
             largest = slope, map->follows = j;
     }
-    section_of(map, r.position, r.velocity, second, z, NULL);
+    section_of(map, r.position, r.velocity, second, from->z, NULL);
     if (!(largest > 1e-6))
-        return refuse(message, "no angle lifts a foot");
-    for (int made = 1; made < settle; made += steps) {
-        struct return_point next;
-        double from[1][RETURN_MAP_MOST];
-        memcpy(from[0], z, sizeof from[0]);
-        if (!take(map, 1, (const double(*)[RETURN_MAP_MOST])from, made, &next, message))
+        return complain(message, "no angle lifts a foot");
+    from->behind = 0;
+    for (map->made = 1; map->made < settle; map->made += steps) {
+        if (!return_map_take(map, 1, from, from, message))
             return false;
-        memcpy(z, next.z, sizeof next.z);
+        from->behind = 0;
     }
+    map->made = 0;
     return true;
 }

@@ -15,12 +15,12 @@
  * makes of the narrower one, below which nothing is told. On even ground f is 0, and this
  * is the sum of C A^k B.
  */
-#include "sensitivity.h"
+#include "gait.h"
 
+#include "runner/base/message.h"
 #include "runner/plan/asked.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -35,8 +35,8 @@ enum { ANSWERS_MOST = RETURN_MAP_MOST + 4 };
 
 struct change {
     struct return_map map;
-    const double *z;
-    struct return_point point[2];
+    const struct gait *gait;
+    struct return_point first, next;
     stance_message *message;
 };
 
@@ -45,8 +45,8 @@ static int take(const struct scenario *s, const stance_case *c, void *context)
     struct change *const change = context;
     (void)s;
     return return_map_change(&change->map, c, change->message) &&
-                   return_map_take(&change->map, 1, (const double(*)[RETURN_MAP_MOST])change->z,
-                                   change->point, change->message)
+                   return_map_take(&change->map, 1, &change->gait->from, &change->first,
+                                   change->message)
                ? EXIT_DONE
                : EXIT_USAGE;
 }
@@ -56,24 +56,20 @@ static bool at(const struct scenario *s, const char *path, double value,
                const struct return_map *map, struct change *change, double *answer)
 {
     change->map = *map;
-    struct scenario *const changed = along_at(s->file, s->text, path, value, map, change->z);
-    bool good = changed && asked_first(&command_gait, changed, take, change) == EXIT_DONE;
+    struct scenario *const changed =
+        along_at(s->file, s->text, path, value, map, &change->gait->from);
+    const bool good = changed && asked_first(&command_gait, changed, take, change) == EXIT_DONE &&
+                      return_map_take(map, 1, &change->first, &change->next, change->message);
     scenario_drop(changed);
-    if (good) {
-        change->map = *map;
-        change->map.behind = change->point[0].behind;
-        good =
-            return_map_take(&change->map, 1, (const double(*)[RETURN_MAP_MOST])change->point[0].z,
-                            &change->point[1], change->message);
-    }
     if (!good) {
         along_blame(path, value, change->message);
         return false;
     }
-    memcpy(answer, change->point[1].z, (size_t)map->n * sizeof *answer);
+    const struct return_point *const point[] = {&change->first, &change->next};
+    memcpy(answer, change->next.z, (size_t)map->n * sizeof *answer);
     for (int k = 0; k < 2; k++) {
-        answer[map->n + 2 * k] = change->point[k].time;
-        answer[map->n + 2 * k + 1] = change->point[k].length;
+        answer[map->n + 2 * k] = point[k]->time;
+        answer[map->n + 2 * k + 1] = point[k]->length;
     }
     return true;
 }
@@ -132,15 +128,13 @@ bool gait_sensitivity_find(const struct scenario *s, const struct return_map *ma
     double by[2][ANSWERS_MOST], answer[2][ANSWERS_MOST], variance[MEASURES];
     double largest = 0, off = 0, aside = 0;
     const int answers = map->n + 4;
-    struct change *const change = malloc(sizeof *change);
+    if (!gait->stable)
+        return complain(message,
+                        "what each step adds grows without bound in a gait that does not hold");
+    struct change *const change = calloc(1, sizeof *change);
     bool good = change != NULL;
-    if (!gait->stable) {
-        snprintf(message->text, sizeof message->text,
-                 "what each step adds grows without bound in a gait that does not hold");
-        good = false;
-    }
     if (change)
-        *change = (struct change){.z = gait->z, .message = message};
+        *change = (struct change){.gait = gait, .message = message};
     for (int k = 0; good && k < 2; k++) {
         const double width = k == 0 ? range : 0.5 * range;
         for (int side = 0; good && side < 2; side++)
@@ -150,8 +144,10 @@ bool gait_sensitivity_find(const struct scenario *s, const struct return_map *ma
     }
     good = good && at(s, along->path, middle, map, change, answer[0]);
     free(change);
-    for (int i = 0; good && i < answers; i++) {
-        const double is = i < map->n              ? gait->z[i]
+    if (!good)
+        return false;
+    for (int i = 0; i < answers; i++) {
+        const double is = i < map->n              ? gait->from.z[i]
                           : (i - map->n) % 2 == 0 ? gait->at.time
                                                   : gait->at.length;
         aside = fmax(aside, fabs(answer[0][i] - is));
@@ -159,23 +155,17 @@ bool gait_sensitivity_find(const struct scenario *s, const struct return_map *ma
         off = fmax(off, fabs(by[1][i] - by[0][i]));
         by[1][i] += (by[1][i] - by[0][i]) / 3;
     }
-    if (good && aside > fmax(MIDDLE * largest * fabs(range), EXACT)) {
-        snprintf(message->text, sizeof message->text,
-                 "the gait is not one of the middle, %.60s=%.6g: give a range about the scenario's "
-                 "value",
-                 along->path, middle);
-        good = false;
-    }
+    if (aside > fmax(MIDDLE * largest * fabs(range), EXACT))
+        return complain(message,
+                        "the gait is not one of the middle, %.60s=%.6g: give a range about the "
+                        "scenario's value",
+                        along->path, middle);
     const double floor = fmax(gait->residual, SAME) / fabs(0.5 * range);
-    if (good && largest <= floor) {
-        snprintf(message->text, sizeof message->text,
-                 "%.60s from %.6g to %.6g changes nothing in the gait's returns beyond %.1e: give "
-                 "what they meet (a plate of footfall: 1) or a wider range",
-                 along->path, along->from, along->to, 0.5 * floor * fabs(range));
-        good = false;
-    }
-    if (!good)
-        return false;
+    if (largest <= floor)
+        return complain(message,
+                        "%.60s from %.6g to %.6g changes nothing in the gait's returns beyond "
+                        "%.1e: give what they meet (a plate of footfall: 1) or a wider range",
+                        along->path, along->from, along->to, 0.5 * floor * fabs(range));
     add_up(map, gait, by[1], variance);
     const double deviation = fabs(range) / sqrt(12); /* of what is even */
     *sensitivity = (struct gait_sensitivity){.time = deviation * sqrt(variance[0]),

@@ -11,6 +11,11 @@
  */
 int search_summarise(struct report *report, stance_message *message);
 
+/* A fact of a table: a share, of which people see per cent. */
+#define SEARCH_SHARE(name, heading, wide, share)                                                   \
+    {                                                                                              \
+        {name, heading, "%.2f", .width = wide, .percent = true}, as_number(share)                  \
+    }
 /* Two facts of a table that people see as one cell: "(22.3 ... 23.6 %)". */
 #define SEARCH_INTERVAL(least, most, interval)                                                     \
     {{least, "", .format = "(%.2f", .before = " ", .left = true, .empty = "", .percent = true},    \

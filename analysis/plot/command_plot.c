@@ -225,7 +225,7 @@ static const struct option options[] = {
     {"FILE...", TO(files), .low = 1, .high = MOST_FILES, .text = "a results file"},
     {.text =
 #define HELP(name, help) help
-         PLOT_PICTURES(HELP) SEARCH_PICTURES_HELP
+         PLOT_PICTURES(HELP) SEARCH_PICTURES(HELP) SEARCH_FRONT_HELP
 #undef HELP
      "  sampled factors     NAME-sensitivity: which factor decides (stance sensitivity -h)\n"
      "  one case with a     NAME-coordinates, -forces, -torques, -gaps against time, and -strip:\n"

@@ -26,8 +26,9 @@ void plot_ground_learn(struct plot_case *c)
         return;
     ground_case(c->scenario, &c->values, t->index, c->floor);
     c->reach = 0.5 * size_of(c);
-    ground_pieces_find(c->floor, t->rows, t->time, t->position, t->velocity, t->force, t->gap,
-                       &c->pieces);
+    const struct ground_motion motion = {t->rows,     t->time,  t->position,
+                                         t->velocity, t->force, t->gap};
+    ground_pieces_find(c->floor, &motion, &c->pieces);
 }
 
 size_t plot_ground(const struct plot_case *c, double time, double low, double high,

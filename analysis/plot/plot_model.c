@@ -187,7 +187,7 @@ static void put_ground(struct model *m)
     GNUPLOT_ROW(m->g, NAN, NAN);
     if (m->scene->mechanism->plates == 0 || !point)
         return;
-    ground_pieces_find(m->c, 0, NULL, NULL, NULL, NULL, NULL, &pieces);
+    ground_pieces_find(m->c, NULL, &pieces);
     const size_t points = ground_line(m->c, &pieces, 0, m->range[0].low - 4 * m->size,
                                       m->range[0].high + 4 * m->size, point, PLOT_GROUND);
     for (size_t k = 0; k < points; k++)

@@ -248,54 +248,45 @@ static void see(const struct table *t, const char *view, struct seen *seen, size
     }
 }
 
-/* A line whose blanks at the end are left out. */
-struct line {
-    FILE *out;
-    int blanks;
-};
-
-static void put(struct line *line, const char *text)
+/* Without blanks at its end; row HEAD: the headings. False: no memory. */
+static bool print_line(const struct table *t, const struct seen *seen, size_t row, FILE *out)
 {
-    for (; *text; text++) {
-        if (*text == ' ') {
-            line->blanks++;
-        } else {
-            fprintf(line->out, "%*s%c", line->blanks, "", *text);
-            line->blanks = 0;
-        }
-    }
-}
-
-/* row HEAD: the headings. */
-static void print_line(const struct table *t, const struct seen *seen, size_t row, FILE *out)
-{
-    struct line line = {out, 0};
-    char text[CELL];
-    for (size_t k = 0; k < seen->count; k++) {
+    char text[CELL], *line = NULL;
+    size_t size = 0;
+    FILE *const to = open_memstream(&line, &size);
+    for (size_t k = 0; to && k < seen->count; k++) {
         const struct table_column *column = &t->column[seen->column[k]];
         if (!seen_text(t, seen, row, k, text))
             continue;
         const int fill = seen->width[k] - letters(text);
-        put(&line, column->before ? column->before : k ? " " : "  ");
-        line.blanks += column->left ? 0 : fill;
-        put(&line, text);
-        line.blanks += column->left ? fill : 0;
+        fprintf(to, "%s%*s%s%*s",
+                column->before ? column->before
+                : k            ? " "
+                               : "  ",
+                column->left ? 0 : fill, "", text, column->left ? fill : 0, "");
     }
-    putc('\n', out);
+    const bool good = to && fclose(to) == 0;
+    while (good && size > 0 && line[size - 1] == ' ')
+        size--;
+    if (good)
+        fprintf(out, "%.*s\n", (int)size, line);
+    free(line);
+    return good;
 }
 
 bool table_write_text(const struct table *t, FILE *out, const char *view, size_t most)
 {
     const size_t rows = table_rows(t), shown = most == 0 || rows < most ? rows : most;
+    bool good = !t->failed;
     struct seen seen;
     see(t, view, &seen, shown);
     if (seen.headed && !t->begun)
-        print_line(t, &seen, HEAD, out);
-    for (size_t i = 0; i < shown; i++)
-        print_line(t, &seen, spread(i, shown, rows), out);
+        good = print_line(t, &seen, HEAD, out) && good;
+    for (size_t i = 0; good && i < shown; i++)
+        good = print_line(t, &seen, spread(i, shown, rows), out);
     if (shown < rows)
         fprintf(out, "  (%zu of %zu rows; --csv and --json have them all)\n", shown, rows);
-    return !t->failed && !ferror(out);
+    return good && !ferror(out);
 }
 
 /* ---- CSV ---------------------------------------------------------------------------------- */
@@ -437,6 +428,14 @@ json_t *table_list(const char *const *text, size_t count)
     json_t *const list = text ? json_array() : NULL;
     for (size_t i = 0; text && i < count; i++)
         table_append(list, as_text(text[i]));
+    return list;
+}
+
+json_t *table_pair(double low, double high)
+{
+    json_t *const list = json_array();
+    table_append(list, as_number(low));
+    table_append(list, as_number(high));
     return list;
 }
 

@@ -181,6 +181,8 @@ static inline json_t *table_texts(const char *first, const char *second)
 {
     return table_list((const char *[]){first, second}, 2);
 }
+/* [low, high] */
+json_t *table_pair(double low, double high);
 /* {path: value} of the axes at one point[]; which[axes] of them, NULL: all. */
 json_t *table_at(const struct results *r, const bool *which, const size_t *point);
 /* Adds to an object, of a place with what it is for people, and its unit, as `.key`; to a list. */

@@ -26,41 +26,39 @@ const char *stance_complex_text(double _Complex number, char text[64])
     return text;
 }
 
-typedef struct eigenvalue {
-    double re, im;
-} eigenvalue;
-
 static int by_real_then_imaginary(const void *left, const void *right)
 {
-    const eigenvalue *a = left, *b = right;
-    if (a->re != b->re)
-        return a->re < b->re ? -1 : 1;
-    return (a->im > b->im) - (a->im < b->im);
+    const double *a = left, *b = right;
+    if (a[0] != b[0])
+        return a[0] < b[0] ? -1 : 1;
+    return (a[1] > b[1]) - (a[1] < b[1]);
 }
 
 stance_error stance_eigenvalues(int n, const double *A, double *re, double *im)
 {
-    const size_t entries = (size_t)n * (size_t)n;
-    if (n < 1 || !matrix_finite(entries, A))
+    double copy[STANCE_LOOP_MOST * STANCE_LOOP_MOST], sorted[STANCE_LOOP_MOST][2];
+    if (n < 1 || n > STANCE_LOOP_MOST || !matrix_finite((size_t)(n * n), A))
         return STANCE_BAD_ARGUMENT;
-    double *copy = matrix_room(entries);
-    eigenvalue *sorted = calloc((size_t)n, sizeof *sorted);
-    stance_error error = STANCE_NO_MEMORY;
-    if (copy && sorted) {
-        memcpy(copy, A, entries * sizeof *A);
-        const int info =
-            LAPACKE_dgeev(LAPACK_COL_MAJOR, 'N', 'N', n, copy, n, re, im, NULL, 1, NULL, 1);
-        error = info == 0 ? STANCE_OK : STANCE_NUMERICAL;
-    }
-    for (int i = 0; i < n && error == STANCE_OK; i++)
-        sorted[i] = (eigenvalue){re[i], im[i]};
-    if (error == STANCE_OK)
-        qsort(sorted, (size_t)n, sizeof *sorted, by_real_then_imaginary);
-    for (int i = 0; i < n && error == STANCE_OK; i++)
-        re[i] = sorted[i].re, im[i] = sorted[i].im;
-    free(sorted);
-    free(copy);
-    return error;
+    memcpy(copy, A, (size_t)(n * n) * sizeof *A);
+    if (LAPACKE_dgeev(LAPACK_COL_MAJOR, 'N', 'N', n, copy, n, re, im, NULL, 1, NULL, 1) != 0)
+        return STANCE_NUMERICAL;
+    for (int i = 0; i < n; i++)
+        sorted[i][0] = re[i], sorted[i][1] = im[i];
+    qsort(sorted, (size_t)n, sizeof *sorted, by_real_then_imaginary);
+    for (int i = 0; i < n; i++)
+        re[i] = sorted[i][0], im[i] = sorted[i][1];
+    return STANCE_OK;
+}
+
+stance_error stance_check_plant(const stance_plant *plant, stance_message *message)
+{
+    const int n = plant->states, m = plant->inputs;
+    if (n < 1 || m < 1 || n > STANCE_PLANT_MOST || m > STANCE_PLANT_MOST)
+        return stance_refuse(message, STANCE_BAD_ARGUMENT,
+                             "a design needs 1 to %d states and inputs", STANCE_PLANT_MOST);
+    if (!matrix_finite((size_t)(n * n), plant->A) || !matrix_finite((size_t)(n * m), plant->B))
+        return stance_refuse(message, STANCE_BAD_ARGUMENT, "A and B must be finite");
+    return STANCE_OK;
 }
 
 /* Column block k of the Kalman matrix [n][n m], scaled to unit Frobenius norm. A change of the
@@ -84,40 +82,26 @@ static void next_block(int n, int m, const double *A, const double *block, doubl
         memset(next, 0, (size_t)(n * m) * sizeof *next);
 }
 
-stance_error stance_kalman(int n, int m, const double *A, const double *B, double *sv, int *rank)
+stance_error stance_kalman(const stance_plant *plant, double *sv, int *rank)
 {
-    if (n < 1 || m < 1)
-        return STANCE_BAD_ARGUMENT;
-    const size_t size = (size_t)n * (size_t)m;
-    if (!matrix_finite((size_t)n * (size_t)n, A) || !matrix_finite(size, B))
-        return STANCE_BAD_ARGUMENT;
-    double *kalman = matrix_room(size * (size_t)n), *block = matrix_room(size),
-           *next = matrix_room(size), *unused = matrix_room((size_t)n);
-    stance_error error = STANCE_NO_MEMORY;
-    if (kalman && block && next && unused) {
-        memcpy(block, B, size * sizeof *B);
-        for (int k = 0; k < n; k++) {
-            store_block(n, m, k, block, kalman);
-            next_block(n, m, A, block, next);
-            double *swap = block;
-            block = next;
-            next = swap;
-        }
-        /* Row-major [n][n m] is column-major [n m][n]: the same singular values. */
-        const int info = LAPACKE_dgesvd(LAPACK_COL_MAJOR, 'N', 'N', n * m, n, kalman, n * m, sv,
-                                        NULL, 1, NULL, 1, unused);
-        error = info == 0 ? STANCE_OK : STANCE_NUMERICAL;
+    enum { N = STANCE_PLANT_MOST };
+    const int n = plant->states, m = plant->inputs;
+    double kalman[N * N * N], block[2][N * N], unused[N];
+    const stance_error error = stance_check_plant(plant, NULL);
+    if (error != STANCE_OK)
+        return error;
+    memcpy(block[0], plant->B, (size_t)(n * m) * sizeof **block);
+    for (int k = 0; k < n; k++) {
+        store_block(n, m, k, block[k % 2], kalman);
+        next_block(n, m, plant->A, block[k % 2], block[(k + 1) % 2]);
     }
-    if (error == STANCE_OK) {
-        *rank = 0;
-        while (*rank < n && sv[*rank] > KALMAN_TOLERANCE * sv[0])
-            ++*rank;
-    }
-    free(unused);
-    free(next);
-    free(block);
-    free(kalman);
-    return error;
+    /* Row-major [n][n m] is column-major [n m][n]: the same singular values. */
+    if (LAPACKE_dgesvd(LAPACK_COL_MAJOR, 'N', 'N', n * m, n, kalman, n * m, sv, NULL, 1, NULL, 1,
+                       unused) != 0)
+        return STANCE_NUMERICAL;
+    for (*rank = 0; *rank < n && sv[*rank] > KALMAN_TOLERANCE * sv[0];)
+        ++*rank;
+    return STANCE_OK;
 }
 
 /* ---- modes that the inputs do not reach ------------------------------------------------------ */
@@ -130,68 +114,54 @@ static bool passes(enum mode_filter filter, double norm, double re, double im)
            (filter == GROWING_MODES ? re >= -slack * norm : hypot(re, im) >= 1 - slack);
 }
 
-stance_error stance_input_range(int n, int m, const double *B, double *U, int *rank)
+stance_error stance_input_range(int n, int m, const double *B, double *U, double *pseudo, int *rank)
 {
+    enum { N = STANCE_PLANT_MOST };
     const int k = n < m ? n : m;
-    double *copy = matrix_room((size_t)n * (size_t)m + 2 * (size_t)k);
-    if (!copy)
-        return STANCE_NO_MEMORY;
-    double *sv = copy + n * m;
+    double copy[N * N], vt[N * N], sv[N], unused[N];
     matrix_transpose(n, m, B, copy);
-    const int info =
-        LAPACKE_dgesvd(LAPACK_COL_MAJOR, 'A', 'N', n, m, copy, n, sv, U, n, NULL, 1, sv + k);
-    for (*rank = 0; info == 0 && *rank < k && sv[*rank] > RANK_TOLERANCE * sv[0];)
+    if (LAPACKE_dgesvd(LAPACK_COL_MAJOR, 'A', pseudo ? 'S' : 'N', n, m, copy, n, sv, U, n, vt, k,
+                       unused) != 0)
+        return STANCE_NUMERICAL;
+    for (*rank = 0; *rank < k && sv[*rank] > RANK_TOLERANCE * sv[0];)
         ++*rank;
-    free(copy);
-    return info == 0 ? STANCE_OK : STANCE_NUMERICAL;
+    for (int i = 0; i < m && pseudo; i++)
+        for (int j = 0; j < *rank; j++)
+            pseudo[i * *rank + j] = vt[i * k + j] / sv[j];
+    return STANCE_OK;
 }
 
-/* Whether (A - s I, U) has full rank. matrix [n][n + r] and sv [2 n] are scratch. The range of B
- * stands in for B, at the size of A: the unit of the inputs does not matter. */
-static stance_error mode_reached(int n, int r, const double *A, const double *U, double norm,
-                                 double _Complex mode, double _Complex *matrix, double *sv,
-                                 bool *reached)
+stance_error stance_hautus(const stance_plant *plant, enum mode_filter filter, double complex *mode,
+                           bool *reached)
 {
-    for (int i = 0; i < n; i++) {
-        for (int j = 0; j < n; j++)
-            matrix[j * n + i] = A[i * n + j] - (i == j ? mode : 0);
-        for (int j = 0; j < r; j++)
-            matrix[(n + j) * n + i] = norm * U[j * n + i];
-    }
-    const int info = LAPACKE_zgesvd(LAPACK_COL_MAJOR, 'N', 'N', n, n + r, matrix, n, sv, NULL, 1,
-                                    NULL, 1, sv + n);
-    *reached = sv[n - 1] > HAUTUS_TOLERANCE * sv[0];
-    return info == 0 ? STANCE_OK : STANCE_NUMERICAL;
-}
-
-stance_error stance_hautus(int n, int m, const double *A, const double *B, enum mode_filter filter,
-                           double _Complex *mode, bool *reached)
-{
-    const size_t side = (size_t)n, nn = side * side;
-    double *re = matrix_room(4 * side + nn);
+    enum { N = STANCE_PLANT_MOST };
+    const int n = plant->states;
+    double re[N], im[N], sv[N], unused[N], U[N * N];
     /* A column to spare: OpenBLAS 0.3.21 (zgemv for Haswell) reads a stride beyond the last one,
      * now and then in a page that is not there. */
-    double _Complex *matrix = calloc(side * (side + (size_t)m + 1), sizeof *matrix);
-    const double norm = matrix_norm(n * n, A);
+    double complex matrix[N * (2 * N + 1)];
+    const double norm = matrix_norm(n * n, plant->A);
     int rank = 0;
-
     *reached = true;
-    if (!re || !matrix) {
-        free(matrix);
-        free(re);
-        return STANCE_NO_MEMORY;
-    }
-    double *im = re + n, *sv = im + n, *U = sv + 2 * n;
-    stance_error error = stance_eigenvalues(n, A, re, im);
+    stance_error error = stance_eigenvalues(n, plant->A, re, im);
     if (error == STANCE_OK)
-        error = stance_input_range(n, m, B, U, &rank);
-    for (int i = 0; error == STANCE_OK && *reached && i < n; i++) {
-        if (passes(filter, norm, re[i], im[i])) {
-            *mode = CMPLX(re[i], im[i]);
-            error = mode_reached(n, rank, A, U, norm, *mode, matrix, sv, reached);
+        error = stance_input_range(n, plant->inputs, plant->B, U, NULL, &rank);
+    for (int k = 0; error == STANCE_OK && *reached && k < n; k++) {
+        if (!passes(filter, norm, re[k], im[k]))
+            continue;
+        /* Has (A - s I, U) full rank? The range of B stands in for B, at the size of A: the unit of
+         * the inputs does not matter. */
+        *mode = CMPLX(re[k], im[k]);
+        for (int i = 0; i < n; i++) {
+            for (int j = 0; j < n; j++)
+                matrix[j * n + i] = plant->A[i * n + j] - (i == j ? *mode : 0);
+            for (int j = 0; j < rank; j++)
+                matrix[(n + j) * n + i] = norm * U[j * n + i];
         }
+        if (LAPACKE_zgesvd(LAPACK_COL_MAJOR, 'N', 'N', n, n + rank, matrix, n, sv, NULL, 1, NULL, 1,
+                           unused) != 0)
+            error = STANCE_NUMERICAL;
+        *reached = sv[n - 1] > HAUTUS_TOLERANCE * sv[0];
     }
-    free(matrix);
-    free(re);
     return error;
 }

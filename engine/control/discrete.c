@@ -34,83 +34,63 @@ void mb05nd_(const int *n, const double *delta, const double *a, const int *lda,
 
 stance_error stance_exponential(int n, const double *A, double T, double *E, double *integral)
 {
-    const size_t nn = (size_t)n * (size_t)n;
-    const int room = 2 * n * n;
+    enum { N = STANCE_LOOP_MOST };
+    double unused[N * N], work[2 * N * N];
     const double tolerance = DBL_EPSILON;
-    double *work = matrix_room(3 * nn);
-    int *integers = calloc((size_t)n, sizeof *integers), info = 0;
-    stance_error error = work && integers ? STANCE_OK : STANCE_NO_MEMORY;
-
-    if (error == STANCE_OK) {
-        /* The transposes that Fortran sees have transposed exponentials. */
-        mb05nd_(&n, &T, A, &n, E, &n, integral ? integral : work + room, &n, &tolerance, integers,
-                work, &room, &info);
-        error = info == 0 && matrix_finite(nn, E) ? STANCE_OK : STANCE_NUMERICAL;
-    }
-    free(integers);
-    free(work);
-    return error;
+    const int room = 2 * n * n;
+    int integers[N], info = 0;
+    /* The transposes that Fortran sees have transposed exponentials. */
+    mb05nd_(&n, &T, A, &n, E, &n, integral ? integral : unused, &n, &tolerance, integers, work,
+            &room, &info);
+    return info == 0 && matrix_finite((size_t)(n * n), E) ? STANCE_OK : STANCE_NUMERICAL;
 }
 
-/* Room for one pair (n, m). */
+enum { N = STANCE_PLANT_MOST, LOOP = STANCE_LOOP_MOST };
+
+/* A loop, and what it is at one T. */
 typedef struct sampled {
-    int n, m;
+    const stance_plant *plant;
+    const double *K;
+    int n, m, delay;
     int side; /* of the loop: n + delay m */
-    const double *A, *B, *K;
-    double *Ad, *Bd, *integral, *loop, *re, *im;
+    double Ad[N * N], Bd[N * N], integral[N * N], loop[LOOP * LOOP], re[LOOP], im[LOOP];
 } sampled;
 
-static void sampled_free(sampled *s)
+static stance_error sampled_make(sampled *s, const stance_plant *plant, const double *K, int delay)
 {
-    free(s->Ad);
-}
-
-static stance_error sampled_make(sampled *s, int n, int m, const double *A, const double *B,
-                                 const double *K, int delay)
-{
-    if (n < 1 || m < 1 || delay < 0 || (delay && !K))
+    const stance_error error = stance_check_plant(plant, NULL);
+    const int n = plant->states, m = plant->inputs;
+    if (error != STANCE_OK || delay < 0 || (delay && !K) || n + delay * m > LOOP ||
+        (K && !matrix_finite((size_t)(n * m), K)))
         return STANCE_BAD_ARGUMENT;
-    const size_t nn = (size_t)n * (size_t)n, nm = (size_t)n * (size_t)m;
-    if (!matrix_finite(nn, A) || !matrix_finite(nm, B) || (K && !matrix_finite(nm, K)))
-        return STANCE_BAD_ARGUMENT;
-    *s = (sampled){.n = n, .m = m, .side = n + delay * m, .A = A, .B = B, .K = K};
-    const size_t side = (size_t)s->side;
-    s->Ad = matrix_room(2 * nn + side * side + nm + 2 * side);
-    if (!s->Ad)
-        return STANCE_NO_MEMORY;
-    s->integral = s->Ad + nn;
-    s->Bd = s->integral + nn;
-    s->loop = s->Bd + nm;
-    s->re = s->loop + side * side;
-    s->im = s->re + side;
+    s->plant = plant, s->K = K;
+    s->n = n, s->m = m, s->delay = delay;
+    s->side = n + delay * m;
     return STANCE_OK;
 }
 
 /* Ad and Bd for T. */
 static stance_error sampled_discretise(sampled *s, double T)
 {
-    const stance_error error = stance_exponential(s->n, s->A, T, s->Ad, s->integral);
+    const stance_error error = stance_exponential(s->n, s->plant->A, T, s->Ad, s->integral);
     if (error != STANCE_OK)
         return error;
-    matrix_multiply(s->n, s->n, s->m, s->integral, s->B, s->Bd);
-    return matrix_finite((size_t)s->n * (size_t)s->m, s->Bd) ? STANCE_OK : STANCE_NUMERICAL;
+    matrix_multiply(s->n, s->n, s->m, s->integral, s->plant->B, s->Bd);
+    return matrix_finite((size_t)(s->n * s->m), s->Bd) ? STANCE_OK : STANCE_NUMERICAL;
 }
 
-stance_error stance_discretise(int n, int m, const double *A, const double *B, double T, double *Ad,
-                               double *Bd)
+stance_error stance_discretise(const stance_plant *plant, double T, double *Ad, double *Bd)
 {
     sampled s;
     if (!isfinite(T) || T < 0)
         return STANCE_BAD_ARGUMENT;
-    stance_error error = sampled_make(&s, n, m, A, B, NULL, 0);
-    if (error != STANCE_OK)
-        return error;
-    error = sampled_discretise(&s, T);
+    stance_error error = sampled_make(&s, plant, NULL, 0);
+    if (error == STANCE_OK)
+        error = sampled_discretise(&s, T);
     if (error == STANCE_OK) {
-        memcpy(Ad, s.Ad, (size_t)n * (size_t)n * sizeof *Ad);
-        memcpy(Bd, s.Bd, (size_t)n * (size_t)m * sizeof *Bd);
+        memcpy(Ad, s.Ad, (size_t)(s.n * s.n) * sizeof *Ad);
+        memcpy(Bd, s.Bd, (size_t)(s.n * s.m) * sizeof *Bd);
     }
-    sampled_free(&s);
     return error;
 }
 
@@ -125,7 +105,7 @@ static stance_error sampled_close(sampled *s, double T)
         matrix_close(n, m, s->Ad, s->Bd, s->K, s->loop);
         return STANCE_OK;
     }
-    memset(s->loop, 0, (size_t)side * (size_t)side * sizeof *s->loop);
+    memset(s->loop, 0, (size_t)(side * side) * sizeof *s->loop);
     for (int i = 0; i < n; i++) {
         memcpy(s->loop + i * side, s->Ad + i * n, (size_t)n * sizeof *s->Ad);
         memcpy(s->loop + i * side + n, s->Bd + i * m, (size_t)m * sizeof *s->Bd);
@@ -144,90 +124,83 @@ static stance_error sampled_eigenvalues(sampled *s, double T)
     return error == STANCE_OK ? stance_eigenvalues(s->side, s->loop, s->re, s->im) : error;
 }
 
-stance_error stance_sampled_loop(int n, int m, const double *A, const double *B, const double *K,
-                                 double T, int delay, double *re, double *im)
+stance_error stance_sampled_loop(const stance_plant *plant, const stance_sampling *loop, double *re,
+                                 double *im)
 {
     sampled s;
-    if (!isfinite(T) || T < 0)
+    if (!isfinite(loop->T) || loop->T < 0)
         return STANCE_BAD_ARGUMENT;
-    stance_error error = sampled_make(&s, n, m, A, B, K, delay);
-    if (error != STANCE_OK)
-        return error;
-    error = sampled_eigenvalues(&s, T);
+    stance_error error = sampled_make(&s, plant, loop->K, loop->delay);
+    if (error == STANCE_OK)
+        error = sampled_eigenvalues(&s, loop->T);
     if (error == STANCE_OK) {
         memcpy(re, s.re, (size_t)s.side * sizeof *re);
         memcpy(im, s.im, (size_t)s.side * sizeof *im);
     }
-    sampled_free(&s);
     return error;
 }
 
-stance_error stance_sampled_wander(int n, int m, const double *A, const double *B, const double *K,
-                                   double T, int delay, const double *measured, double commanded,
-                                   double *rms)
+/* P[side][side]: what one sample's noise on the commands does to the state. */
+static void disturb(const sampled *s, const double *measured, double commanded, double *P)
 {
-    sampled s;
-    if (!isfinite(T) || T <= 0 || !K)
-        return STANCE_BAD_ARGUMENT;
-    stance_error error = sampled_make(&s, n, m, A, B, K, delay);
-    if (error != STANCE_OK)
-        return error;
-    const int side = s.side;
-    const size_t whole = (size_t)side * (size_t)side;
-    double *const P = matrix_room(3 * whole), *const half = P + whole, *const next = half + whole;
-    error = P ? sampled_close(&s, T) : STANCE_NO_MEMORY;
-    /* What one sample's noise on the commands does to the state. */
-    for (int i = 0; i < side && error == STANCE_OK; i++)
+    const int n = s->n, m = s->m, side = s->side;
+    for (int i = 0; i < side; i++)
         for (int j = 0; j < side; j++) {
             P[i * side + j] = 0;
             for (int a = 0; a < m; a++)
                 for (int b = 0; b < m; b++) {
                     double W = a == b ? commanded : 0;
                     for (int k = 0; k < n; k++)
-                        W += K[a * n + k] * measured[k] * K[b * n + k];
-                    const double Gi = delay ? i == side - m + a : s.Bd[i * m + a];
-                    const double Gj = delay ? j == side - m + b : s.Bd[j * m + b];
+                        W += s->K[a * n + k] * measured[k] * s->K[b * n + k];
+                    const double Gi = s->delay ? i == side - m + a : s->Bd[i * m + a];
+                    const double Gj = s->delay ? j == side - m + b : s->Bd[j * m + b];
                     P[i * side + j] += Gi * W * Gj;
                 }
         }
-    double largest = 1;
-    for (int round = 0; round < 64 && error == STANCE_OK && largest > 0x1p-60; round++) {
-        matrix_multiply(side, side, side, s.loop, P, half);
-        for (int i = 0; i < side; i++)
-            for (int j = 0; j < side; j++) {
-                next[i * side + j] = 0;
-                for (int k = 0; k < side; k++)
-                    next[i * side + j] += half[i * side + k] * s.loop[j * side + k];
-            }
-        for (size_t i = 0; i < whole; i++)
-            P[i] += next[i];
-        matrix_multiply(side, side, side, s.loop, s.loop, half);
-        memcpy(s.loop, half, whole * sizeof *half);
-        largest = 0;
-        for (size_t i = 0; i < whole; i++)
-            largest = fmax(largest, fabs(s.loop[i]));
-        if (!matrix_finite(whole, P))
-            error = STANCE_NUMERICAL; /* not stable */
-    }
-    if (error == STANCE_OK && largest > 0x1p-60)
-        error = STANCE_NUMERICAL;
-    for (int i = 0; i < n && error == STANCE_OK; i++)
-        rms[i] = sqrt(fmax(0, P[i * side + i]));
-    free(P);
-    sampled_free(&s);
-    return error;
 }
 
-void stance_lagged(int n, int m, const double *A, const double *B, const double *K, double lag,
-                   double *A1, double *B1, double *K1)
+stance_error stance_sampled_wander(const stance_plant *plant, const stance_sampling *loop,
+                                   const double *measured, double commanded, double *rms)
 {
-    const int side = n + m;
-    memset(A1, 0, (size_t)side * (size_t)side * sizeof *A1);
-    memset(B1, 0, (size_t)side * (size_t)m * sizeof *B1);
-    memset(K1, 0, (size_t)m * (size_t)side * sizeof *K1);
+    sampled s;
+    double P[LOOP * LOOP], half[LOOP * LOOP], next[LOOP * LOOP], largest = 1;
+    if (!isfinite(loop->T) || loop->T <= 0 || !loop->K)
+        return STANCE_BAD_ARGUMENT;
+    stance_error error = sampled_make(&s, plant, loop->K, loop->delay);
+    if (error == STANCE_OK)
+        error = sampled_close(&s, loop->T);
+    if (error != STANCE_OK)
+        return error;
+    const int side = s.side, whole = side * side;
+    disturb(&s, measured, commanded, P);
+    for (int round = 0; round < 64 && largest > 0x1p-60; round++) {
+        matrix_multiply(side, side, side, s.loop, P, half);
+        for (int i = 0; i < side; i++)
+            for (int j = 0; j < side; j++)
+                next[i * side + j] = matrix_dot(side, half + i * side, s.loop + j * side);
+        for (int i = 0; i < whole; i++)
+            P[i] += next[i];
+        matrix_multiply(side, side, side, s.loop, s.loop, half);
+        memcpy(s.loop, half, (size_t)whole * sizeof *half);
+        largest = matrix_largest(whole, s.loop);
+        if (!matrix_finite((size_t)whole, P))
+            return STANCE_NUMERICAL; /* not stable */
+    }
+    for (int i = 0; i < s.n; i++)
+        rms[i] = sqrt(fmax(0, P[i * side + i]));
+    return largest > 0x1p-60 ? STANCE_NUMERICAL : STANCE_OK;
+}
+
+void stance_lagged(const stance_plant *plant, const double *K, double lag, double *A1, double *B1,
+                   double *K1)
+{
+    const int n = plant->states, m = plant->inputs, side = n + m;
+    memset(A1, 0, (size_t)(side * side) * sizeof *A1);
+    memset(B1, 0, (size_t)(side * m) * sizeof *B1);
+    memset(K1, 0, (size_t)(m * side) * sizeof *K1);
     for (int i = 0; i < n; i++) {
-        memcpy(A1 + i * side, A + i * n, (size_t)n * sizeof *A);
-        memcpy(A1 + i * side + n, B + i * m, (size_t)m * sizeof *B);
+        memcpy(A1 + i * side, plant->A + i * n, (size_t)n * sizeof *A1);
+        memcpy(A1 + i * side + n, plant->B + i * m, (size_t)m * sizeof *A1);
     }
     for (int j = 0; j < m; j++) {
         A1[(n + j) * side + n + j] = -1 / lag;
@@ -369,30 +342,27 @@ static stance_error sampled_scan(sampled *s, double interval, double longest, do
     return STANCE_OK;
 }
 
-stance_error stance_critical_sample_time(int n, int m, const double *A, const double *B,
-                                         const double *K, int delay, double longest, double *T)
+stance_error stance_critical_sample_time(const stance_plant *plant, const stance_sampling *loop,
+                                         double longest, double *T)
 {
     sampled s;
+    double decay = 0, size = 0, slow = INFINITY, growth;
     if (!isfinite(longest) || longest <= 0)
         return STANCE_BAD_ARGUMENT;
-    stance_error error = sampled_make(&s, n, m, A, B, K, delay);
+    stance_error error = sampled_make(&s, plant, loop->K, loop->delay);
     if (error != STANCE_OK)
         return error;
-    double decay = 0, size = 0, slow = INFINITY, growth;
-    error = spectrum(&s, A, &decay, &size, &slow, &growth);
+    error = spectrum(&s, plant->A, &decay, &size, &slow, &growth);
     if (error == STANCE_OK) {
-        matrix_close(n, m, A, B, K, s.loop);
+        matrix_close(s.n, s.m, plant->A, plant->B, s.K, s.loop);
         error = spectrum(&s, s.loop, &decay, &size, &slow, &growth);
     }
+    *T = 0;
+    if (error != STANCE_OK || growth >= 0)
+        return error;
+    /* Sixty points to a turn of the fastest mode, open or closed. */
     const double fastest = fmax(size, fmin(decay, DECAYS_COUNT * slow));
-    if (error == STANCE_OK && growth >= 0) {
-        *T = 0;
-    } else if (error == STANCE_OK) {
-        /* Sixty points to a turn of the fastest mode, open or closed. */
-        error = sampled_scan(&s, fmin(longest, 2 * M_PI / (60 * fastest)), longest, T);
-    }
-    sampled_free(&s);
-    return error;
+    return sampled_scan(&s, fmin(longest, 2 * M_PI / (60 * fastest)), longest, T);
 }
 
 /* ---- pole assignment for the sampled model --------------------------------------------------- */
@@ -405,9 +375,9 @@ static double complex delta_pole(double complex pole, double T)
     return CMPLX(grown * cos(im) - 2 * half * half, (1 + grown) * sin(im)) / T;
 }
 
-static stance_error check_pairs(int n, const double *re, const double *im, double T,
-                                stance_message *message)
+static stance_error check_pairs(int n, const stance_poles *poles, double T, stance_message *message)
 {
+    const double *const re = poles->re, *const im = poles->im;
     for (int i = 0; i < n; i++) {
         if (fabs(im[i]) * T >= M_PI) {
             char text[64];
@@ -425,49 +395,49 @@ static stance_error check_pairs(int n, const double *re, const double *im, doubl
  * over T: the same gain places (exp(s T) - 1)/T for (D, E), which tend to s, A and B as T goes to
  * 0, where Ad alone would lose its digits to the identity. So does the robust gain to that of
  * continuous time. */
-stance_error stance_place_sampled(stance_placement how, int n, int m, const double *A,
-                                  const double *B, double T, const double *re, const double *im,
-                                  double *K, int *sweeps, double *condition,
-                                  stance_message *message)
+static stance_error place_sampled(stance_placement how, const placement *near, double T, double *K,
+                                  stance_robustness *robustness, stance_message *message)
 {
     sampled s;
-    if (!isfinite(T) || T <= 0) {
-        return stance_refuse(message, STANCE_BAD_ARGUMENT,
-                             "a design for a sampled model needs a sample time above 0, not %.6g s",
-                             T);
-    }
-    stance_error error = sampled_make(&s, n, m, A, B, NULL, 0);
+    const int n = near->plant->states, m = near->plant->inputs;
+    stance_error error = sampled_make(&s, near->plant, NULL, 0);
     if (error != STANCE_OK)
         return stance_refuse(message, error, "pole placement: %s", stance_error_text(error));
     error = sampled_discretise(&s, T);
-    if (error != STANCE_OK) {
-        stance_refuse(message, error, "discretisation over %.6g s: %s", T,
-                      stance_error_text(error));
-    } else {
-        error = check_pairs(n, re, im, T, message);
+    if (error != STANCE_OK)
+        return stance_refuse(message, error, "discretisation over %.6g s: %s", T,
+                             stance_error_text(error));
+    error = check_pairs(n, near->poles, T, message);
+    if (error != STANCE_OK)
+        return error;
+    matrix_multiply(n, n, n, s.integral, near->plant->A, s.loop);
+    for (int i = 0; i < n * n; i++)
+        s.loop[i] /= T;
+    for (int i = 0; i < n * m; i++)
+        s.Bd[i] /= T;
+    for (int i = 0; i < n; i++) {
+        const double complex pole = delta_pole(CMPLX(near->poles->re[i], near->poles->im[i]), T);
+        s.re[i] = creal(pole);
+        s.im[i] = cimag(pole);
     }
-    if (error == STANCE_OK) {
-        matrix_multiply(n, n, n, s.integral, A, s.loop);
-        for (int i = 0; i < n * n; i++)
-            s.loop[i] /= T;
-        for (int i = 0; i < n * m; i++)
-            s.Bd[i] /= T;
-        for (int i = 0; i < n; i++) {
-            const double complex pole = delta_pole(CMPLX(re[i], im[i]), T);
-            s.re[i] = creal(pole);
-            s.im[i] = cimag(pole);
-        }
-        const linear_model near = {A, B, re, im}, wanted = {s.loop, s.Bd, s.re, s.im};
-        error = how == STANCE_SCHUR
-                    ? stance_place_schur(n, m, s.loop, s.Bd, s.re, s.im, K, message)
-                    : stance_place_following(n, m, &near, &wanted, K, sweeps, condition, message);
-    }
-    if (error == STANCE_OK && how == STANCE_SCHUR) {
-        if (sweeps)
-            *sweeps = 0;
-        if (condition)
-            *condition = NAN;
-    }
-    sampled_free(&s);
-    return error;
+    const placement wanted = {&(stance_plant){n, m, s.loop, s.Bd}, &(stance_poles){s.re, s.im}};
+    return how == STANCE_SCHUR ? stance_place_schur(&wanted, K, message)
+                               : stance_place_robust(&wanted, near, K, robustness, message);
+}
+
+stance_error stance_place(stance_placement how, const stance_plant *plant, double T,
+                          const stance_poles *poles, double *K, stance_robustness *robustness,
+                          stance_message *message)
+{
+    const placement wanted = {plant, poles};
+    stance_robustness ignored;
+    robustness = robustness ? robustness : &ignored;
+    *robustness = (stance_robustness){0, NAN};
+    if (!isfinite(T) || T < 0)
+        return stance_refuse(message, STANCE_BAD_ARGUMENT, "a design cannot sample every %.6g s",
+                             T);
+    if (T > 0)
+        return place_sampled(how, &wanted, T, K, robustness, message);
+    return how == STANCE_SCHUR ? stance_place_schur(&wanted, K, message)
+                               : stance_place_robust(&wanted, NULL, K, robustness, message);
 }

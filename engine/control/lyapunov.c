@@ -18,11 +18,27 @@ void sb03md_(const char *dico, const char *job, const char *fact, const char *tr
              double *dwork, const int *ldwork, int *info, size_t dico_length, size_t job_length,
              size_t fact_length, size_t trana_length);
 
-/* Eigenvalues into scratch[2 n]. */
-static stance_error check_stable(int n, const double *loop, bool sampled, double *scratch,
-                                 stance_message *message)
+stance_error stance_solve_lyapunov(int n, const double *F, bool discrete, const double *C,
+                                   double *X)
 {
-    double *re = scratch, *im = scratch + n;
+    enum { N = STANCE_PLANT_MOST };
+    const int work = n * n + 4 * n;
+    const size_t nn = (size_t)(n * n);
+    double a[N * N], u[N * N], re[N], im[N], dwork[N * N + 4 * N];
+    double scale = 1, separation = 0, bound = 0;
+    int integers = 0, info = 0;
+    memcpy(a, F, nn * sizeof *a); /* Fortran sees the transpose, hence "T" */
+    memmove(X, C, nn * sizeof *X);
+    sb03md_(discrete ? "D" : "C", "X", "N", "T", &n, a, &n, u, &n, X, &n, &scale, &separation,
+            &bound, re, im, &integers, dwork, &work, &info, 1, 1, 1, 1);
+    for (size_t i = 0; i < nn; i++)
+        X[i] /= scale;
+    return info == 0 && matrix_finite(nn, X) ? STANCE_OK : STANCE_NUMERICAL;
+}
+
+static stance_error check_stable(int n, const double *loop, bool sampled, stance_message *message)
+{
+    double re[STANCE_PLANT_MOST], im[STANCE_PLANT_MOST];
     const stance_error error = stance_eigenvalues(n, loop, re, im);
     for (int i = 0; error == STANCE_OK && i < n; i++) {
         if (sampled ? hypot(re[i], im[i]) >= 1 : re[i] >= 0) {
@@ -36,99 +52,62 @@ static stance_error check_stable(int n, const double *loop, bool sampled, double
     return error;
 }
 
-stance_error stance_solve_lyapunov(int n, const double *F, bool discrete, const double *C,
-                                   double *X)
-{
-    const size_t nn = (size_t)n * (size_t)n;
-    const int work = n * n + 4 * n;
-    double *a = matrix_room(3 * nn + 6 * (size_t)n);
-    double scale = 1, separation = 0, bound = 0;
-    int integers = 0, info = 0;
-
-    if (!a)
-        return STANCE_NO_MEMORY;
-    double *u = a + nn, *re = u + nn, *dwork = re + 2 * n;
-    memcpy(a, F, nn * sizeof *a); /* Fortran sees the transpose, hence "T" */
-    memmove(X, C, nn * sizeof *X);
-    sb03md_(discrete ? "D" : "C", "X", "N", "T", &n, a, &n, u, &n, X, &n, &scale, &separation,
-            &bound, re, re + n, &integers, dwork, &work, &info, 1, 1, 1, 1);
-    for (size_t i = 0; i < nn; i++)
-        X[i] /= scale;
-    free(a);
-    return info == 0 && matrix_finite(nn, X) ? STANCE_OK : STANCE_NUMERICAL;
-}
-
 stance_error stance_lyapunov(int n, const double *loop, bool sampled, const double *weight,
                              double *P, stance_message *message)
 {
-    if (n < 1 || !matrix_finite((size_t)n * (size_t)n, loop)) {
+    const size_t nn = (size_t)(n * n);
+    double factor[STANCE_PLANT_MOST * STANCE_PLANT_MOST];
+    if (n < 1 || n > STANCE_PLANT_MOST || !matrix_finite(nn, loop))
         return stance_refuse(message, STANCE_BAD_ARGUMENT,
                              "a Lyapunov function needs a finite loop");
-    }
-    for (int i = 0; i < n; i++) {
-        if (!isfinite(weight[i]) || weight[i] <= 0) {
+    for (int i = 0; i < n; i++)
+        if (!isfinite(weight[i]) || weight[i] <= 0)
             return stance_refuse(message, STANCE_BAD_ARGUMENT,
                                  "weight %d of a Lyapunov function must be finite and positive", i);
-        }
-    }
-    const size_t nn = (size_t)n * (size_t)n;
-    double *scratch = matrix_room(nn + 2 * (size_t)n);
-    stance_error error =
-        scratch ? check_stable(n, loop, sampled, scratch, message) : STANCE_NO_MEMORY;
-    if (error == STANCE_OK) {
-        memset(P, 0, nn * sizeof *P);
-        for (int i = 0; i < n; i++)
-            P[i * n + i] = -weight[i];
-        error = stance_solve_lyapunov(n, loop, sampled, P, P);
-        memcpy(scratch, P, nn * sizeof *P);
-        if (error == STANCE_OK && LAPACKE_dpotrf(LAPACK_COL_MAJOR, 'U', n, scratch, n) != 0)
-            error = STANCE_NUMERICAL;
-        if (error == STANCE_NUMERICAL) {
-            stance_refuse(message, error,
-                          "there is no Lyapunov function to working accuracy: the loop is on the "
-                          "border of stability");
-        }
-    }
-    free(scratch);
-    return error;
+    stance_error error = check_stable(n, loop, sampled, message);
+    if (error != STANCE_OK)
+        return error;
+    memset(P, 0, nn * sizeof *P);
+    for (int i = 0; i < n; i++)
+        P[i * n + i] = -weight[i];
+    error = stance_solve_lyapunov(n, loop, sampled, P, P);
+    memcpy(factor, P, nn * sizeof *P);
+    if (error == STANCE_OK && LAPACKE_dpotrf(LAPACK_COL_MAJOR, 'U', n, factor, n) == 0)
+        return STANCE_OK;
+    return stance_refuse(message, STANCE_NUMERICAL,
+                         "there is no Lyapunov function to working accuracy: the loop is on the "
+                         "border of stability");
 }
 
-stance_error stance_sublevel(int n, const double *P, int count, const double *a, const double *d,
-                             double *level, int *binding, double *alone, double *extent)
+stance_error stance_sublevel(int n, const double *P, const stance_bounds *bounds,
+                             stance_sublevel_set *set)
 {
-    if (n < 1 || count < 0 || !matrix_finite((size_t)n * (size_t)n, P))
+    enum { N = STANCE_PLANT_MOST };
+    const int count = bounds->count;
+    double factor[N * N];
+    if (n < 1 || n > N || count < 0 || !matrix_finite((size_t)(n * n), P))
         return STANCE_BAD_ARGUMENT;
-    const int columns = count + n;
-    double *factor = matrix_room((size_t)n * (size_t)(n + columns));
-    if (!factor)
+    double *const solved = matrix_room((size_t)(n * (count + n)));
+    if (!solved)
         return STANCE_NO_MEMORY;
-    double *solved = factor + n * n;
     /* Columns P^-1 a_k, then P^-1 e_i; row-major [count][n] is column-major [n][count]. */
     memcpy(factor, P, (size_t)(n * n) * sizeof *P);
-    memcpy(solved, a, (size_t)(n * count) * sizeof *a);
+    memcpy(solved, bounds->a, (size_t)(n * count) * sizeof *solved);
     for (int i = 0; i < n; i++)
         solved[(count + i) * n + i] = 1;
-    const int info = LAPACKE_dposv(LAPACK_COL_MAJOR, 'U', n, columns, factor, n, solved, n);
-    if (info != 0) {
-        free(factor);
-        return info > 0 ? STANCE_BAD_ARGUMENT : STANCE_NUMERICAL;
+    const int info = LAPACKE_dposv(LAPACK_COL_MAJOR, 'U', n, count + n, factor, n, solved, n);
+    set->level = INFINITY;
+    set->binding = -1;
+    for (int k = 0; k < count && info == 0; k++) {
+        const double reach = matrix_dot(n, bounds->a + k * n, solved + k * n), d = bounds->d[k];
+        const double level = d <= 0 ? 0 : reach > 0 ? d * d / reach : INFINITY;
+        if (level < set->level)
+            set->level = level, set->binding = k;
     }
-    *level = INFINITY;
-    *binding = -1;
-    for (int k = 0; k < count; k++) {
-        double reach = 0;
-        for (int i = 0; i < n; i++)
-            reach += a[k * n + i] * solved[k * n + i];
-        const double c = d[k] <= 0 ? 0 : reach > 0 ? d[k] * d[k] / reach : INFINITY;
-        if (c < *level) {
-            *level = c;
-            *binding = k;
-        }
+    for (int i = 0; i < n && info == 0; i++) {
+        set->alone[i] = sqrt(set->level / P[i * n + i]);
+        set->extent[i] = sqrt(set->level * solved[(count + i) * n + i]);
     }
-    for (int i = 0; i < n; i++) {
-        alone[i] = sqrt(*level / P[i * n + i]);
-        extent[i] = sqrt(*level * solved[(count + i) * n + i]);
-    }
-    free(factor);
-    return STANCE_OK;
+    free(solved);
+    return info > 0 ? STANCE_BAD_ARGUMENT : info < 0 ? STANCE_NUMERICAL : STANCE_OK;
 }

@@ -40,20 +40,21 @@
 #define TOGETHER 1e-12      /* bounds of the gauge that are one */
 #define ROUNDS 1000
 
-enum { MOST = STANCE_NULL_MODES };
+enum { N = STANCE_PLANT_MOST, MOST = STANCE_NULL_MODES };
 
 struct stance_null_set {
     int n, m, k; /* states, inputs, real coordinates of unstable modes */
     struct unreached unreached;
-    double *W; /* [k][n], scaled so that the set touches 1 along each coordinate */
-    double *G; /* [k][m] */
-    double *low, *high;
+    double W[MOST * N]; /* [k][n], scaled so that the set touches 1 along each coordinate */
+    double G[MOST * N]; /* [k][m] */
+    double low[N], high[N];
     double re[MOST], im[MOST]; /* of coordinate i; a pair stands in two places, im > 0 first */
     double size[MOST];         /* of re + i im */
     int order[MOST];           /* the coordinates by re */
     double slowest;            /* least re */
-    int directions;            /* of the table: */
-    double *eta, *point;       /* [directions][k], scaled to h = 1; where they touch the set */
+    int directions;            /* of the table: [directions][k], ... */
+    double eta[DIRECTIONS_ALL * MOST];   /* ... scaled to h = 1 ... */
+    double point[DIRECTIONS_ALL * MOST]; /* ... where they touch the set */
 };
 
 /* ---- the support function -------------------------------------------------------------------- */
@@ -248,33 +249,24 @@ double stance_null_set_support(const stance_null_set *s, const double *eta, doub
 static stance_error find_modes(stance_null_set *s, int n, const double *A, const double *rest,
                                stance_message *message)
 {
-    const size_t nn = (size_t)n * (size_t)n;
-    double *room = matrix_room(3 * nn + 5 * (size_t)n);
-    if (!room)
-        return stance_refuse(message, STANCE_NO_MEMORY, "no memory");
-    double *const copy = room, *const V = copy + nn, *const other = V + nn, *const re = other + nn,
-                  *const im = re + n, *const scaling = im + n, *const s_of = scaling + n,
-                  *const ignored = s_of + n;
+    double copy[N * N], V[N * N], other[N * N], re[N], im[N], scaling[N], s_of[N], ignored[N];
     double largest = 0, norm;
     lapack_int low, high;
-    memcpy(copy, A, nn * sizeof *A); /* read by columns: the transpose, whose right ones they are */
-    int info = LAPACKE_dgeevx(LAPACK_COL_MAJOR, 'B', 'V', 'V', 'E', n, copy, n, re, im, other, n, V,
-                              n, &low, &high, scaling, &norm, s_of, ignored);
+    memcpy(copy, A, (size_t)(n * n) * sizeof *A); /* by columns: the transpose; right ones of it */
+    if (LAPACKE_dgeevx(LAPACK_COL_MAJOR, 'B', 'V', 'V', 'E', n, copy, n, re, im, other, n, V, n,
+                       &low, &high, scaling, &norm, s_of, ignored) != 0)
+        return stance_refuse(message, STANCE_NUMERICAL, "no eigenvectors");
     for (int i = 0; i < n; i++)
         largest = fmax(largest, hypot(re[i], im[i]));
     s->slowest = INFINITY;
-    stance_error error = info == 0 ? STANCE_OK : STANCE_NUMERICAL;
-    for (int i = 0; i < n && error == STANCE_OK; i++) {
+    for (int i = 0; i < n; i++) {
         if (!(re[i] > fmax(MODE_GROWS * largest, rounding_of_eigenvalue(norm, s_of[i]))))
             continue;
-        if (s->k == MOST) {
-            error =
-                stance_refuse(message, STANCE_BAD_ARGUMENT, "more than %d unstable modes", MOST);
-            break;
-        }
+        if (s->k == MOST)
+            return stance_refuse(message, STANCE_BAD_ARGUMENT, "more than %d unstable modes", MOST);
         if (hypot(re[i], im[i]) > SWINGS * re[i])
-            error = stance_refuse(message, STANCE_NUMERICAL,
-                                  "an unstable mode swings too often while it grows");
+            return stance_refuse(message, STANCE_NUMERICAL,
+                                 "an unstable mode swings too often while it grows");
         /* Of a pair the columns are real and imaginary part, im > 0 first. */
         if (rest)
             matrix_multiply(1, n, s->n, V + i * n, rest, s->W + s->k * s->n);
@@ -289,10 +281,7 @@ static stance_error find_modes(stance_null_set *s, int n, const double *A, const
             s->order[place] = s->order[place - 1];
         s->order[place] = s->k - 1;
     }
-    if (info != 0)
-        stance_refuse(message, error, "no eigenvectors");
-    free(room);
-    return error;
+    return STANCE_OK;
 }
 
 /* Rows of W and G so that the set reaches 1 along each coordinate, of a pair along the farther. */
@@ -345,7 +334,7 @@ static void direction_of(const stance_null_set *s, int d, double *eta)
 
 /* Directions that are spread evenly once the set is about round: eta becomes R eta with R R' the
  * inverse of the points' second moments. */
-static stance_error spread_out(stance_null_set *s)
+static bool spread_out(stance_null_set *s)
 {
     const int k = s->k;
     double P[MOST * MOST] = {0};
@@ -354,7 +343,7 @@ static stance_error spread_out(stance_null_set *s)
             for (int j = 0; j <= i; j++)
                 P[i * k + j] += s->point[d * k + i] * s->point[d * k + j] / s->directions;
     if (LAPACKE_dpotrf(LAPACK_ROW_MAJOR, 'L', k, P, k) != 0)
-        return STANCE_NUMERICAL;
+        return false;
     for (int d = 0; d < s->directions; d++) { /* L' eta = direction */
         double *const eta = s->eta + d * k;
         direction_of(s, d, eta);
@@ -364,93 +353,79 @@ static stance_error spread_out(stance_null_set *s)
             eta[i] /= P[i * k + i];
         }
     }
-    return STANCE_OK;
+    return true;
 }
 
-static stance_error make_table(stance_null_set *s, stance_message *message)
+/* Which directions touch the set where; false: somewhere it has no size. */
+static bool make_table(stance_null_set *s)
 {
     s->directions = s->k == 1 ? 2 : s->k == 2 ? DIRECTIONS : DIRECTIONS_ALL;
-    const size_t count = (size_t)s->directions * (size_t)s->k;
-    s->eta = matrix_room(2 * count);
-    s->point = s->eta ? s->eta + count : NULL;
-    if (!s->eta)
-        return stance_refuse(message, STANCE_NO_MEMORY, "no memory");
     for (int d = 0; d < s->directions; d++) {
         direction_of(s, d, s->eta + d * s->k);
         stance_null_set_support(s, s->eta + d * s->k, s->point + d * s->k);
     }
-    if (spread_out(s) != STANCE_OK)
-        return stance_refuse(message, STANCE_UNCONTROLLABLE,
-                             "the torques do not reach all unstable modes");
+    if (!spread_out(s))
+        return false;
     for (int d = 0; d < s->directions; d++) {
         double *const eta = s->eta + d * s->k;
         const double h = stance_null_set_support(s, eta, s->point + d * s->k);
         if (!(h > 0))
-            return stance_refuse(message, STANCE_UNCONTROLLABLE,
-                                 "the torques do not reach all unstable modes");
+            return false;
         for (int i = 0; i < s->k; i++)
             eta[i] /= h;
     }
-    return STANCE_OK;
+    return true;
+}
+
+static stance_error make(stance_null_set *s, const stance_plant *plant, stance_message *message)
+{
+    const struct unreached *const unreached = &s->unreached;
+    stance_error error = stance_unreached_find(plant, &s->unreached);
+    if (error != STANCE_OK)
+        return stance_refuse(message, error, "what no torque moves: %s", stance_error_text(error));
+    error = unreached->count > 0
+                ? find_modes(s, s->n - unreached->count, unreached->A, unreached->rest, message)
+                : find_modes(s, s->n, plant->A, NULL, message);
+    if (error != STANCE_OK || s->k == 0)
+        return error;
+    matrix_multiply(s->k, s->n, s->m, s->W, plant->B, s->G);
+    error = scale(s, message);
+    if (error != STANCE_OK || make_table(s))
+        return error;
+    return stance_refuse(message, STANCE_UNCONTROLLABLE,
+                         "the torques do not reach all unstable modes");
+}
+
+stance_error stance_null_set_make(const stance_plant *plant, const double *low, const double *high,
+                                  stance_null_set **set, stance_message *message)
+{
+    *set = NULL;
+    stance_error error = stance_check_plant(plant, message);
+    for (int j = 0; error == STANCE_OK && j < plant->inputs; j++)
+        if (isinf(low[j]) || isinf(high[j]))
+            error = stance_refuse(message, STANCE_BAD_ARGUMENT, "a torque has no limit");
+        else if (!(low[j] < 0 && high[j] > 0))
+            error = stance_refuse(message, STANCE_BAD_ARGUMENT,
+                                  "the equilibrium takes more torque than there is");
+    if (error != STANCE_OK)
+        return error;
+    stance_null_set *const s = calloc(1, sizeof *s);
+    if (!s)
+        return stance_refuse(message, STANCE_NO_MEMORY, "no memory");
+    s->n = plant->states, s->m = plant->inputs;
+    memcpy(s->low, low, (size_t)s->m * sizeof *low);
+    memcpy(s->high, high, (size_t)s->m * sizeof *high);
+    error = make(s, plant, message);
+    if (error == STANCE_OK)
+        *set = s;
+    else
+        free(s);
+    return error;
 }
 
 void stance_null_set_free(stance_null_set *s)
 {
-    if (!s)
-        return;
-    stance_unreached_free(&s->unreached);
-    free(s->W);
-    free(s->eta);
     free(s);
-}
-
-stance_error stance_null_set_make(int n, int m, const double *A, const double *B, const double *low,
-                                  const double *high, stance_null_set **set,
-                                  stance_message *message)
-{
-    *set = NULL;
-    if (n < 1 || m < 1 || !matrix_finite((size_t)n * (size_t)n, A) ||
-        !matrix_finite((size_t)n * (size_t)m, B))
-        return stance_refuse(message, STANCE_BAD_ARGUMENT, "numbers that are not finite");
-    for (int j = 0; j < m; j++)
-        if (!(low[j] < 0 && high[j] > 0) || isinf(low[j]) || isinf(high[j]))
-            return stance_refuse(message, STANCE_BAD_ARGUMENT, "%s",
-                                 isinf(low[j]) || isinf(high[j])
-                                     ? "a torque has no limit"
-                                     : "the equilibrium takes more torque than there is");
-    stance_null_set *const s = calloc(1, sizeof *s);
-    if (!s)
-        return stance_refuse(message, STANCE_NO_MEMORY, "no memory");
-    s->n = n, s->m = m;
-    s->W = matrix_room(MOST * ((size_t)n + (size_t)m) + 2 * (size_t)m);
-    if (!s->W) {
-        stance_null_set_free(s);
-        return stance_refuse(message, STANCE_NO_MEMORY, "no memory");
-    }
-    s->G = s->W + MOST * n;
-    s->low = s->G + MOST * m;
-    s->high = s->low + m;
-    memcpy(s->low, low, (size_t)m * sizeof *low);
-    memcpy(s->high, high, (size_t)m * sizeof *high);
-    const struct unreached *const unreached = &s->unreached;
-    stance_error error = stance_unreached_find(n, m, A, B, &s->unreached);
-    if (error != STANCE_OK)
-        stance_refuse(message, error, "what no torque moves: %s", stance_error_text(error));
-    else if (unreached->count > 0)
-        error = find_modes(s, n - unreached->count, unreached->A, unreached->rest, message);
-    else
-        error = find_modes(s, n, A, NULL, message);
-    if (error == STANCE_OK && s->k > 0) {
-        matrix_multiply(s->k, n, m, s->W, B, s->G);
-        error = scale(s, message);
-        if (error == STANCE_OK)
-            error = make_table(s, message);
-    }
-    if (error != STANCE_OK)
-        stance_null_set_free(s);
-    else
-        *set = s;
-    return error;
 }
 
 int stance_null_set_modes(const stance_null_set *s, double *re, double *im)
@@ -469,14 +444,6 @@ int stance_null_set_unreached(const stance_null_set *s, double *re, double *im)
 }
 
 /* ---- the gauge ------------------------------------------------------------------------------- */
-
-static double dot(int n, const double *a, const double *b)
-{
-    double sum = 0;
-    for (int i = 0; i < n; i++)
-        sum += a[i] * b[i];
-    return sum;
-}
 
 /* z as a sum of k points of the set, mu >= 0 of each: its gauge is at most the sum of mu. */
 struct hull {
@@ -526,9 +493,7 @@ static double hull_sum(const struct hull *hull, int k)
 /* The direction in which all points of the hull reach 1. */
 static bool hull_normal(const struct hull *hull, int k, double *eta)
 {
-    double one[MOST];
-    for (int i = 0; i < k; i++)
-        one[i] = 1;
+    static const double one[MOST] = {1, 1, 1, 1, 1, 1, 1, 1};
     return hull_solve(hull, k, false, one, eta);
 }
 
@@ -559,7 +524,7 @@ static const double *table_farthest(const stance_null_set *s, const double *eta)
     const double *farthest = NULL;
     double most = 1 + 1e-9;
     for (int d = 0; d < s->directions; d++) {
-        const double along = dot(s->k, eta, s->point + d * s->k);
+        const double along = matrix_dot(s->k, eta, s->point + d * s->k);
         if (along > most)
             most = along, farthest = s->point + d * s->k;
     }
@@ -575,7 +540,7 @@ static void gauge_bounds(const stance_null_set *s, const double *x, bool decide,
     bound[0] = bound[1] = 0;
     memset(&hull, 0, sizeof hull);
     for (int i = 0; i < k; i++) {
-        hull.z[i] = dot(s->n, s->W + i * s->n, x);
+        hull.z[i] = matrix_dot(s->n, s->W + i * s->n, x);
         hull.point[i][i] = hull.z[i] < 0 ? -TINY : TINY;
         hull.mu[i] = fabs(hull.z[i]) / TINY;
     }
@@ -587,13 +552,13 @@ static void gauge_bounds(const stance_null_set *s, const double *x, bool decide,
          round++)
         ;
     for (int d = 0; d < s->directions; d++)
-        bound[0] = fmax(bound[0], dot(k, s->eta + d * k, hull.z));
+        bound[0] = fmax(bound[0], matrix_dot(k, s->eta + d * k, hull.z));
     bound[1] = hull_sum(&hull, k);
     if (decide && (bound[0] >= 1 || bound[1] < 1))
         return;
     for (int round = 0; round < ROUNDS && hull_normal(&hull, k, eta); round++) {
         const double h = stance_null_set_support(s, eta, point);
-        bound[0] = fmax(bound[0], dot(k, eta, hull.z) / h);
+        bound[0] = fmax(bound[0], matrix_dot(k, eta, hull.z) / h);
         bound[1] = fmin(bound[1], hull_sum(&hull, k));
         if (bound[1] - bound[0] <= TOGETHER * bound[1] ||
             (decide && (bound[0] >= 1 || bound[1] < 1)) || !hull_take(&hull, k, point))
@@ -603,18 +568,16 @@ static void gauge_bounds(const stance_null_set *s, const double *x, bool decide,
 
 double stance_null_set_gauge(const stance_null_set *s, const double *x)
 {
-    double bound[2];
-    if (stance_unreached_has(&s->unreached, x))
-        return INFINITY;
-    gauge_bounds(s, x, false, bound);
+    double bound[2] = {0, INFINITY};
+    if (!stance_unreached_has(&s->unreached, x))
+        gauge_bounds(s, x, false, bound);
     return bound[1];
 }
 
 bool stance_null_set_holds(const stance_null_set *s, const double *x)
 {
-    double bound[2];
-    if (stance_unreached_has(&s->unreached, x))
-        return false;
-    gauge_bounds(s, x, true, bound);
+    double bound[2] = {0, INFINITY};
+    if (!stance_unreached_has(&s->unreached, x))
+        gauge_bounds(s, x, true, bound);
     return bound[1] < 1;
 }

@@ -34,7 +34,7 @@
  * from -0.051 ... 0.021 rad only.
  *
  * Sampling breaks the symmetry a little, of the order of T^2, and would let such a trifle choose
- * between the twins. stance_place_following climbs from the eigenvectors of a solved neighbour
+ * between the twins. stance_place_robust then climbs from the eigenvectors of a solved neighbour
  * instead, so that the gain of the sampled model continues that of continuous time.
  */
 #include "control.h"
@@ -54,57 +54,25 @@
 #define FLAT 1e-6         /* change still admitted after MAX_SWEEPS: a degenerate maximum */
 #define EQUAL_HEIGHT 1e-9 /* relative difference of |det X| between mirror images */
 #define WORST_CONDITION 1e13
-#define RANK_TOLERANCE 1e-12
 
 typedef double _Complex number;
+
+enum { N = STANCE_PLANT_MOST };
 
 typedef struct problem {
     int n, m, r;
     const double *A, *B;
-    double complex *pole;  /* [n]; a pair in two places in a row, the one with im > 0 first */
-    double *range;         /* [n][n] columns of U: r for U0, then U1 (column-major) */
-    double *pseudo;        /* [m][r] V S^-1 */
-    number *space;         /* [n][n r] orthonormal basis of S_j, column-major */
-    number *vector;        /* [n][n] x_j; the conjugate's place in a pair is unused */
-    number *best;          /* [n][n] the highest maximum so far */
-    number *image, *small; /* [n n] and [4 n n] scratch */
-    double *X;             /* [n][n] column-major: x_j, or real and imaginary part */
-    double *factor;        /* [n][n] scratch */
-    double *rhs;           /* [n][n] scratch */
-    double *real;          /* [8 n n] scratch */
-    lapack_int *pivot;     /* [n] */
-    void *memory;
+    number pole[N];          /* a pair in two places in a row, the one with im > 0 first */
+    double range[N * N];     /* [n][n] columns of U: r for U0, then U1 (column-major) */
+    double pseudo[N * N];    /* [m][r] V S^-1 */
+    number space[N * N * N]; /* [n][n r] orthonormal basis of S_j, column-major */
+    number vector[N * N];    /* [n][n] x_j; the conjugate's place in a pair is unused */
+    number best[N * N];      /* [n][n] the highest maximum so far */
+    double X[N * N];         /* [n][n] column-major: x_j, or real and imaginary part */
+    double rhs[N * N], factor[N * N], real[N * N]; /* scratch, like these: */
+    number image[N * N], small[4 * N * N];
+    lapack_int pivot[N];
 } problem;
-
-/* ---- memory ---------------------------------------------------------------------------------- */
-
-static stance_error problem_make(problem *p, int n, int m, const double *A, const double *B)
-{
-    const size_t nn = (size_t)n * (size_t)n, nm = (size_t)n * (size_t)m;
-    const size_t numbers = (size_t)n + nn * (size_t)n + nn + nn + nn + 4 * nn;
-    const size_t reals = nn + nm + nn + nn + nn + 8 * nn + 2 * nm + nn;
-    *p = (problem){.n = n, .m = m, .A = A, .B = B};
-    p->memory = calloc(1, numbers * sizeof(number) + reals * sizeof(double) +
-                              (size_t)n * sizeof(lapack_int));
-    if (!p->memory)
-        return STANCE_NO_MEMORY;
-    number *z = p->memory;
-    p->pole = z, z += n;
-    p->space = z, z += nn * (size_t)n;
-    p->vector = z, z += nn;
-    p->best = z, z += nn;
-    p->image = z, z += nn;
-    p->small = z, z += 4 * nn;
-    double *d = (double *)z;
-    p->range = d, d += nn;
-    p->pseudo = d, d += nm;
-    p->X = d, d += nn;
-    p->factor = d, d += nn;
-    p->rhs = d, d += nn;
-    p->real = d, d += 8 * nn + 2 * nm + nn;
-    p->pivot = (lapack_int *)d;
-    return STANCE_OK;
-}
 
 static bool is_pair(const problem *p, int j)
 {
@@ -132,38 +100,20 @@ static stance_error check_multiplicity(const problem *p, stance_message *message
 
 /* ---- what can be placed ---------------------------------------------------------------------- */
 
-/* B = U S V^T: fills r, range, pseudo. */
-static stance_error split_inputs(problem *p, stance_message *message)
+static const number *space_of(const problem *p, int j)
 {
-    const int n = p->n, m = p->m, k = n < m ? n : m;
-    double *copy = p->real, *vt = copy + n * m, *sv = vt + k * m, *unused = sv + k;
-    for (int i = 0; i < n; i++)
-        for (int j = 0; j < m; j++)
-            copy[j * n + i] = p->B[i * m + j];
-    if (LAPACKE_dgesvd(LAPACK_COL_MAJOR, 'A', 'S', n, m, copy, n, sv, p->range, n, vt, k, unused) !=
-        0)
-        return STANCE_NUMERICAL;
-    while (p->r < k && sv[p->r] > RANK_TOLERANCE * sv[0])
-        p->r++;
-    if (p->r == 0) {
-        return stance_refuse(message, STANCE_UNCONTROLLABLE,
-                             "the inputs have no effect: the matrix B is zero");
-    }
-    for (int i = 0; i < m; i++)
-        for (int j = 0; j < p->r; j++)
-            p->pseudo[i * p->r + j] = vt[i * k + j] / sv[j];
-    return STANCE_OK;
+    return p->space + j * p->n * p->r;
 }
 
 /* Orthonormal bases of the S_j. */
 static stance_error find_spaces(problem *p)
 {
     const int n = p->n, rows = n - p->r;
-    number *N = p->image, *vt = p->small;
+    number *M = p->image, *vt = p->small;
     double *sv = p->real, *unused = sv + n;
 
     for (int j = 0; j < n; j++) {
-        number *space = p->space + (size_t)j * (size_t)n * (size_t)p->r;
+        number *space = p->space + j * n * p->r;
         for (int i = 0; i < n * n; i++)
             vt[i] = i % (n + 1) == 0;
         for (int i = 0; i < rows; i++) {
@@ -172,10 +122,10 @@ static stance_error find_spaces(problem *p)
                 double sum = 0;
                 for (int l = 0; l < n; l++)
                     sum += u[l] * p->A[l * n + k];
-                N[k * rows + i] = sum - p->pole[j] * u[k];
+                M[k * rows + i] = sum - p->pole[j] * u[k];
             }
         }
-        if (rows > 0 && LAPACKE_zgesvd(LAPACK_COL_MAJOR, 'N', 'A', rows, n, N, rows, sv, NULL, 1,
+        if (rows > 0 && LAPACKE_zgesvd(LAPACK_COL_MAJOR, 'N', 'A', rows, n, M, rows, sv, NULL, 1,
                                        vt, n, unused) != 0)
             return STANCE_NUMERICAL;
         for (int k = 0; k < p->r; k++)
@@ -200,7 +150,7 @@ static void store_columns(problem *p, int j)
 /* x_j = S_j w, scaled to length 1; false when w is zero. */
 static bool combine(const problem *p, int j, const number *w, number *x)
 {
-    const number *space = p->space + (size_t)j * (size_t)p->n * (size_t)p->r;
+    const number *space = space_of(p, j);
     double norm = 0;
     for (int i = 0; i < p->n; i++) {
         x[i] = 0;
@@ -216,7 +166,7 @@ static bool combine(const problem *p, int j, const number *w, number *x)
 /* w = S_j^H y. */
 static void project(const problem *p, int j, const double *y, number *w)
 {
-    const number *space = p->space + (size_t)j * (size_t)p->n * (size_t)p->r;
+    const number *space = space_of(p, j);
     for (int k = 0; k < p->r; k++) {
         w[k] = 0;
         for (int i = 0; i < p->n; i++)
@@ -380,8 +330,7 @@ static bool scatter(problem *p, int start)
 static void cross_gram(const problem *p, int i, int j, number *M)
 {
     const int n = p->n, r = p->r;
-    const number *Si = p->space + (size_t)i * (size_t)n * (size_t)r;
-    const number *Sj = p->space + (size_t)j * (size_t)n * (size_t)r;
+    const number *Si = space_of(p, i), *Sj = space_of(p, j);
     for (int a = 0; a < r; a++) {
         for (int b = 0; b < r; b++) {
             number sum = 0;
@@ -422,7 +371,7 @@ static bool reflect(problem *p)
         return false;
     number *w = p->small, *image = w + r, *M = image + r;
     for (int j = 0; j < n; j += is_pair(p, j) ? 2 : 1) {
-        const number *space = p->space + (size_t)j * (size_t)n * (size_t)r;
+        const number *space = space_of(p, j);
         number *x = p->vector + j * n;
         for (int k = 0; k < r; k++) {
             w[k] = 0;
@@ -510,7 +459,6 @@ static stance_error not_independent(stance_message *message)
 static bool screen(problem *p, int *taken)
 {
     number *best = p->best;
-    const size_t bytes = (size_t)p->n * (size_t)p->n * sizeof *best;
     double highest = -INFINITY;
     int sweeps;
     for (int start = 0; start < STARTS; start++) {
@@ -520,12 +468,12 @@ static bool screen(problem *p, int *taken)
         if (height > highest + (isfinite(highest) ? EQUAL_HEIGHT : 0)) {
             highest = height;
             *taken = sweeps;
-            memcpy(best, p->vector, bytes);
+            memcpy(best, p->vector, sizeof p->best);
         }
     }
     if (!isfinite(highest))
         return false;
-    memcpy(p->vector, best, bytes);
+    memcpy(p->vector, best, sizeof p->best);
     for (int j = 0; j < p->n; j += is_pair(p, j) ? 2 : 1)
         store_columns(p, j);
     return true;
@@ -574,97 +522,61 @@ static bool solve_from(problem *p, const number *start, double *K, candidate *c)
 /* The vectors of the solution are left in p->best. */
 static stance_error solve(problem *p, double *K, candidate *c, stance_message *message)
 {
-    const size_t bytes = (size_t)p->n * (size_t)p->m * sizeof *K;
-    const size_t vectors = (size_t)p->n * (size_t)p->n * sizeof *p->best;
     candidate mirrored = {0};
+    double other[N * N];
     int before = 0;
-    double *other = malloc(bytes);
-    stance_error error = other ? STANCE_OK : STANCE_NO_MEMORY;
-    if (error == STANCE_OK) {
-        error = screen(p, &before) ? finish(p, K, c, message) : not_independent(message);
-        memcpy(p->best, p->vector, vectors);
-    }
+    const stance_error error =
+        screen(p, &before) ? finish(p, K, c, message) : not_independent(message);
+    memcpy(p->best, p->vector, sizeof p->best);
     if (error == STANCE_OK && reflect(p) && finish(p, other, &mirrored, NULL) == STANCE_OK) {
         const double higher = mirrored.height - c->height;
         if (higher > EQUAL_HEIGHT || (higher >= -EQUAL_HEIGHT && mirrored.norm > c->norm)) {
             mirrored.sweeps += c->sweeps;
             *c = mirrored;
-            memcpy(K, other, bytes);
-            memcpy(p->best, p->vector, vectors);
+            memcpy(K, other, (size_t)(p->n * p->m) * sizeof *K);
+            memcpy(p->best, p->vector, sizeof p->best);
         }
     }
     c->sweeps += before;
-    free(other);
     return error;
 }
 
-/* Fills *p with all but a solution; frees its memory where that fails. */
-static stance_error prepare(problem *p, int n, int m, const double *A, const double *B,
-                            const double *re, const double *im, stance_message *message)
+/* Fills *p with all but a solution. */
+static stance_error prepare(problem *p, const placement *of, stance_message *message)
 {
-    stance_error error = problem_make(p, n, m, A, B);
+    const stance_plant *const plant = of->plant;
+    stance_error error = stance_check_plant(plant, message);
+    if (error != STANCE_OK)
+        return error;
+    *p = (problem){.n = plant->states, .m = plant->inputs, .A = plant->A, .B = plant->B};
+    error = stance_pair_poles(p->n, of->poles, p->pole, message);
     if (error == STANCE_OK)
-        error = stance_pair_poles(n, re, im, p->pole, message);
-    if (error == STANCE_OK)
-        error = split_inputs(p, message);
+        error = stance_input_range(p->n, p->m, p->B, p->range, p->pseudo, &p->r);
+    if (error == STANCE_OK && p->r == 0)
+        return stance_refuse(message, STANCE_UNCONTROLLABLE,
+                             "the inputs have no effect: the matrix B is zero");
     if (error == STANCE_OK)
         error = check_multiplicity(p, message);
     if (error == STANCE_OK)
-        error = stance_check_controllable(n, m, A, B, message);
-    if (error == STANCE_OK)
-        error = find_spaces(p);
-    if (error != STANCE_OK)
-        free(p->memory);
-    return error;
+        error = stance_check_controllable(plant, message);
+    return error == STANCE_OK ? find_spaces(p) : error;
 }
 
-static stance_error hand_over(stance_error error, const candidate *c, int *sweeps,
-                              double *condition, stance_message *message)
+stance_error stance_place_robust(const placement *wanted, const placement *near, double *K,
+                                 stance_robustness *robustness, stance_message *message)
 {
-    if (error == STANCE_OK && sweeps)
-        *sweeps = c->sweeps;
-    if (error == STANCE_OK && condition)
-        *condition = c->condition;
-    if (error == STANCE_NO_MEMORY || error == STANCE_NUMERICAL)
-        stance_refuse(message, error, "pole placement: %s", stance_error_text(error));
-    return error;
-}
-
-stance_error stance_place(int n, int m, const double *A, const double *B, const double *re,
-                          const double *im, double *K, int *sweeps, double *condition,
-                          stance_message *message)
-{
-    problem p;
-    candidate c = {0};
-    stance_error error = stance_check_plant(n, m, A, B, message);
-    if (error != STANCE_OK)
-        return error;
-    error = prepare(&p, n, m, A, B, re, im, message);
-    if (error == STANCE_OK) {
-        error = solve(&p, K, &c, message);
-        free(p.memory);
-    }
-    return hand_over(error, &c, sweeps, condition, message);
-}
-
-stance_error stance_place_following(int n, int m, const linear_model *near,
-                                    const linear_model *wanted, double *K, int *sweeps,
-                                    double *condition, stance_message *message)
-{
-    if (n < 1 || m < 1)
-        return STANCE_BAD_ARGUMENT;
     problem p, q;
     candidate c = {0}, ignored = {0};
-    stance_error error = prepare(&p, n, m, wanted->A, wanted->B, wanted->re, wanted->im, message);
+    stance_error error = prepare(&p, wanted, message);
     if (error == STANCE_OK) {
-        bool followed = false;
-        if (prepare(&q, n, m, near->A, near->B, near->re, near->im, NULL) == STANCE_OK) {
-            followed = q.r == p.r && solve(&q, K, &ignored, NULL) == STANCE_OK &&
-                       solve_from(&p, q.best, K, &c);
-            free(q.memory);
-        }
+        const bool followed = near && prepare(&q, near, NULL) == STANCE_OK && q.r == p.r &&
+                              solve(&q, K, &ignored, NULL) == STANCE_OK &&
+                              solve_from(&p, q.best, K, &c);
         error = followed ? STANCE_OK : solve(&p, K, &c, message);
-        free(p.memory);
     }
-    return hand_over(error, &c, sweeps, condition, message);
+    if (error == STANCE_OK)
+        *robustness = (stance_robustness){c.sweeps, c.condition};
+    if (error == STANCE_NUMERICAL)
+        stance_refuse(message, error, "pole placement: %s", stance_error_text(error));
+    return error;
 }

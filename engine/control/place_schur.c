@@ -46,69 +46,62 @@ static bool sort_schur(int n, double *a, double *Z, double *re, double *im)
     return true;
 }
 
-/* K from paired poles. */
-static stance_error assign(int n, int m, const double *A, const double *B,
-                           const double complex *pole, double *K, stance_message *message)
+/* C[n][m] = T' B, of T by columns. */
+static void turn_by(int n, int m, const double *T, const double *B, double *C)
 {
-    const size_t nn = (size_t)n * (size_t)n, nm = (size_t)n * (size_t)m;
-    const int work = 10 * (n > m ? n : m) + 16;
-    double *a = matrix_room(3 * nn + 3 * nm + 2 * (size_t)n + (size_t)work);
-    if (!a)
-        return STANCE_NO_MEMORY;
-    double *z = a + nn, *turn = z + nn, *b = turn + nn, *f = b + nm, *own = f + nm, *re = own + nm,
-           *im = re + n, *dwork = im + n;
+    for (int j = 0; j < m; j++)
+        for (int i = 0; i < n; i++) {
+            C[j * n + i] = 0;
+            for (int k = 0; k < n; k++)
+                C[j * n + i] += T[i * n + k] * B[k * m + j];
+        }
+}
+
+/* K from paired poles. */
+static stance_error assign(const stance_plant *plant, const double complex *pole, double *K,
+                           stance_message *message)
+{
+    enum { N = STANCE_PLANT_MOST };
+    const int n = plant->states, m = plant->inputs, work = 10 * (n > m ? n : m) + 16;
+    double a[N * N], z[N * N], turn[N * N], b[N * N], f[N * N], re[N], im[N], dwork[10 * N + 16];
     const double none_stays = -1e300, tolerance = 0;
     int stay = 0, assigned = 0, unreached = 0, warnings = 0, info = 0;
-
-    matrix_transpose(n, n, A, a);
-    if (!sort_schur(n, a, turn, re, im)) {
-        free(a);
+    matrix_transpose(n, n, plant->A, a);
+    if (!sort_schur(n, a, turn, re, im))
         return STANCE_NUMERICAL;
-    }
-    for (int j = 0; j < m; j++) /* turn'B */
-        for (int i = 0; i < n; i++) {
-            b[j * n + i] = 0;
-            for (int k = 0; k < n; k++)
-                b[j * n + i] += turn[i * n + k] * B[k * m + j];
-        }
+    turn_by(n, m, turn, plant->B, b);
     for (int i = 0; i < n; i++) {
         re[i] = creal(pole[i]);
         im[i] = cimag(pole[i]);
     }
     sb01bd_("C", &n, &m, &n, &none_stays, a, &n, b, &n, re, im, &stay, &assigned, &unreached, f, &m,
             z, &n, &tolerance, dwork, &work, &warnings, &info, 1);
-    for (int i = 0; i < n; i++)
-        for (int j = 0; j < m; j++) {
-            own[j * n + i] = 0;
+    for (int j = 0; j < m; j++)
+        for (int i = 0; i < n; i++) {
+            K[j * n + i] = 0;
             for (int k = 0; k < n; k++)
-                own[j * n + i] -= f[k * m + j] * turn[k * n + i];
+                K[j * n + i] -= f[k * m + j] * turn[k * n + i];
         }
-    memcpy(K, own, nm * sizeof *K);
-    stance_error error = info == 0 && matrix_finite(nm, K) ? STANCE_OK : STANCE_NUMERICAL;
-    if (error == STANCE_OK && assigned < n) {
-        error = stance_refuse(message, STANCE_BAD_POLES,
-                              "the Schur method placed %d of the %d poles only", assigned, n);
-    }
-    free(a);
-    return error;
+    if (info != 0 || !matrix_finite((size_t)(n * m), K))
+        return STANCE_NUMERICAL;
+    return assigned == n
+               ? STANCE_OK
+               : stance_refuse(message, STANCE_BAD_POLES,
+                               "the Schur method placed %d of the %d poles only", assigned, n);
 }
 
-stance_error stance_place_schur(int n, int m, const double *A, const double *B, const double *re,
-                                const double *im, double *K, stance_message *message)
+stance_error stance_place_schur(const placement *wanted, double *K, stance_message *message)
 {
-    stance_error error = stance_check_plant(n, m, A, B, message);
+    double complex pole[STANCE_PLANT_MOST];
+    stance_error error = stance_check_plant(wanted->plant, message);
     if (error != STANCE_OK)
         return error;
-    double complex *const pole = calloc((size_t)n, sizeof *pole);
-    error = pole ? STANCE_OK : STANCE_NO_MEMORY;
+    error = stance_pair_poles(wanted->plant->states, wanted->poles, pole, message);
     if (error == STANCE_OK)
-        error = stance_pair_poles(n, re, im, pole, message);
+        error = stance_check_controllable(wanted->plant, message);
     if (error == STANCE_OK)
-        error = stance_check_controllable(n, m, A, B, message);
-    if (error == STANCE_OK)
-        error = assign(n, m, A, B, pole, K, message);
-    if (error == STANCE_NO_MEMORY || error == STANCE_NUMERICAL)
+        error = assign(wanted->plant, pole, K, message);
+    if (error == STANCE_NUMERICAL)
         stance_refuse(message, error, "pole placement: %s", stance_error_text(error));
-    free(pole);
     return error;
 }

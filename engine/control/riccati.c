@@ -37,89 +37,57 @@ void sb02od_(const char *dico, const char *jobb, const char *fact, const char *u
              size_t dico_length, size_t jobb_length, size_t fact_length, size_t uplo_length,
              size_t jobl_length, size_t sort_length);
 
+enum { N = STANCE_PLANT_MOST, SIDE = 3 * N };
+
 /* The regulator of one model: continuous (S all zero), or discrete. */
 typedef struct regulator {
     int n, m;
     bool discrete;
-    double *A, *B;     /* [n][n], [n][m] */
-    double *Q, *R, *S; /* [n][n], [m][m], [n][m] */
-    double *X;         /* [n][n] */
-    double *scratch;
-    int *integers;
+    double A[N * N], B[N * N];           /* [n][n], [n][m] */
+    double Q[N * N], R[N * N], S[N * N]; /* [n][n], [m][m], [n][m] */
+    double X[N * N];                     /* [n][n] */
 } regulator;
-
-static void regulator_free(regulator *g)
-{
-    free(g->A);
-    free(g->integers);
-}
-
-static int work_size(int n, int m)
-{
-    return 16 * (2 * n + m + 1) + 32;
-}
-
-static stance_error regulator_make(regulator *g, int n, int m, bool discrete)
-{
-    const size_t N = (size_t)n, M = (size_t)m, side = 2 * N + M;
-    *g = (regulator){.n = n, .m = m, .discrete = discrete};
-    g->A = matrix_room(3 * N * N + 2 * N * M + M * M + 2 * side * side + 4 * N * N + 6 * N +
-                       2 * (N * N + N * M) + (size_t)work_size(n, m));
-    g->integers = calloc(4 * N + M, sizeof *g->integers);
-    if (!g->A || !g->integers) {
-        regulator_free(g);
-        return STANCE_NO_MEMORY;
-    }
-    g->B = g->A + N * N;
-    g->Q = g->B + N * M;
-    g->R = g->Q + N * N;
-    g->S = g->R + M * M;
-    g->X = g->S + N * M;
-    g->scratch = g->X + N * N;
-    return STANCE_OK;
-}
 
 /* X; a failure of the library means that the pencil has eigenvalues on the border of stability, or
  * so near that rounding cannot tell. */
 static stance_error solve_riccati(regulator *g)
 {
-    const int n = g->n, m = g->m, side = 2 * n + m, two = 2 * n, work = work_size(n, m), none = 0;
-    double *s = g->scratch, *t = s + side * side, *u = t + side * side, *alpha = u + two * two,
-           *a = alpha + 6 * n, *b = a + n * n, *l = b + n * m, *dwork = l + n * m;
-    double rcond = 0;
+    const int n = g->n, m = g->m, side = 2 * n + m, two = 2 * n, none = 0;
+    const int work = 16 * (side + 1) + 32;
+    double s[SIDE * SIDE], t[SIDE * SIDE], u[4 * N * N], alpha[3][2 * N],
+        dwork[16 * (SIDE + 1) + 32];
+    double a[N * N], b[N * N], l[N * N], rcond = 0;
     const double tolerance = 0;
-    int info = 0;
+    int integers[SIDE], unused[2 * N], info = 0;
 
     matrix_transpose(n, n, g->A, a);
     matrix_transpose(n, m, g->B, b);
     matrix_transpose(n, m, g->S, l);
     sb02od_(g->discrete ? "D" : "C", "B", "N", "U", g->discrete ? "N" : "Z", "S", &n, &m, &none, a,
-            &n, b, &n, g->Q, &n, g->R, &m, l, &n, &rcond, g->X, &n, alpha, alpha + two,
-            alpha + 2 * two, s, &side, t, &side, u, &two, &tolerance, g->integers, dwork, &work,
-            g->integers + two + m, &info, 1, 1, 1, 1, 1, 1);
-    const bool good = info == 0 && matrix_finite((size_t)n * (size_t)n, g->X);
+            &n, b, &n, g->Q, &n, g->R, &m, l, &n, &rcond, g->X, &n, alpha[0], alpha[1], alpha[2], s,
+            &side, t, &side, u, &two, &tolerance, integers, dwork, &work, unused, &info, 1, 1, 1, 1,
+            1, 1);
+    const bool good = info == 0 && matrix_finite((size_t)(n * n), g->X);
     return good ? STANCE_OK : STANCE_NUMERICAL;
 }
 
 /* K = (R + B' X B)^-1 (S + A' X B)', or R^-1 (X B)' where time is continuous. */
-static stance_error feedback(regulator *g, double *K)
+static stance_error feedback(const regulator *g, double *K)
 {
     const int n = g->n, m = g->m;
-    double *XB = g->scratch, *left = XB + n * m, *right = left + m * m, *BT = right + n * m;
-
+    double XB[N * N], left[N * N], right[N * N], turned[N * N];
     matrix_multiply(n, n, m, g->X, g->B, XB);
-    matrix_transpose(n, m, g->B, BT);
-    memcpy(left, g->R, (size_t)(m * m) * sizeof *left);
     if (g->discrete) {
-        matrix_multiply(m, n, m, BT, XB, left);
+        matrix_transpose(n, m, g->B, turned);
+        matrix_multiply(m, n, m, turned, XB, left);
         for (int i = 0; i < m * m; i++)
             left[i] += g->R[i];
-        double *AT = BT + n * m;
-        matrix_transpose(n, n, g->A, AT);
-        matrix_multiply(n, n, m, AT, XB, right);
+        matrix_transpose(n, n, g->A, turned);
+        matrix_multiply(n, n, m, turned, XB, right);
         for (int i = 0; i < n * m; i++)
             right[i] += g->S[i];
     } else {
+        memcpy(left, g->R, (size_t)(m * m) * sizeof *left);
         memcpy(right, XB, (size_t)(n * m) * sizeof *right);
     }
     /* Row-major [n][m] is the right-hand side, column-major [m][n], that Fortran wants; and so is
@@ -127,17 +95,16 @@ static stance_error feedback(regulator *g, double *K)
     if (LAPACKE_dposv(LAPACK_COL_MAJOR, 'U', m, n, left, m, right, m) != 0)
         return STANCE_NUMERICAL;
     matrix_transpose(n, m, right, K);
-    return matrix_finite((size_t)n * (size_t)m, K) ? STANCE_OK : STANCE_NUMERICAL;
+    return matrix_finite((size_t)(n * m), K) ? STANCE_OK : STANCE_NUMERICAL;
 }
 
-static stance_error is_stable(regulator *g, const double *K, bool *stable)
+static stance_error is_stable(const regulator *g, const double *K, bool *stable)
 {
-    const int n = g->n;
-    double *loop = g->scratch, *re = loop + n * n, *im = re + n;
-    matrix_close(n, g->m, g->A, g->B, K, loop);
-    const stance_error error = stance_eigenvalues(n, loop, re, im);
+    double loop[N * N], re[N], im[N];
+    matrix_close(g->n, g->m, g->A, g->B, K, loop);
+    const stance_error error = stance_eigenvalues(g->n, loop, re, im);
     *stable = true;
-    for (int i = 0; error == STANCE_OK && i < n; i++)
+    for (int i = 0; error == STANCE_OK && i < g->n; i++)
         *stable = *stable && (g->discrete ? hypot(re[i], im[i]) < 1 : re[i] < 0);
     return error;
 }
@@ -146,8 +113,7 @@ static stance_error is_stable(regulator *g, const double *K, bool *stable)
 static stance_error refine(regulator *g, const double *K)
 {
     const int n = g->n, m = g->m;
-    double *F = g->scratch, *C = F + n * n, *RK = C + n * n;
-
+    double F[N * N], C[N * N], RK[N * N];
     matrix_close(n, m, g->A, g->B, K, F);
     matrix_multiply(m, m, n, g->R, K, RK);
     for (int i = 0; i < n; i++) {
@@ -168,8 +134,9 @@ static stance_error check_stabilisable(const regulator *g, stance_message *messa
     double complex mode = 0;
     bool reached = true;
     char text[64];
-    const stance_error error = stance_hautus(
-        g->n, g->m, g->A, g->B, g->discrete ? EXPANDING_MODES : GROWING_MODES, &mode, &reached);
+    const stance_plant plant = {g->n, g->m, g->A, g->B};
+    const stance_error error =
+        stance_hautus(&plant, g->discrete ? EXPANDING_MODES : GROWING_MODES, &mode, &reached);
     if (error != STANCE_OK || reached)
         return error;
     return stance_refuse(message, STANCE_UNCONTROLLABLE,
@@ -195,7 +162,7 @@ static stance_error regulate(regulator *g, double *K, stance_message *message)
         if (error == STANCE_OK)
             error = feedback(g, K);
     }
-    if (error == STANCE_NO_MEMORY || (error == STANCE_OK && stable))
+    if (error == STANCE_OK && stable)
         return error;
     return stance_refuse(message, STANCE_NUMERICAL,
                          "the Riccati equation of the regulator has no stabilising solution to "
@@ -203,23 +170,19 @@ static stance_error regulate(regulator *g, double *K, stance_message *message)
 }
 
 /* Detectability of the cost: every mode that does not decay must cost something. */
-static stance_error check_seen(int n, const double *A, const double *states,
+static stance_error check_seen(const stance_plant *plant, const double *states,
                                stance_message *message)
 {
-    const size_t nn = (size_t)n * (size_t)n;
-    double *transposed = matrix_room(2 * nn);
+    const int n = plant->states;
+    double transposed[N * N], root[N * N] = {0};
     double complex mode = 0;
     bool seen = true;
     char text[64];
-
-    if (!transposed)
-        return STANCE_NO_MEMORY;
-    double *root = transposed + nn;
-    matrix_transpose(n, n, A, transposed);
+    matrix_transpose(n, n, plant->A, transposed);
     for (int i = 0; i < n; i++)
         root[i * n + i] = sqrt(states[i]);
-    const stance_error error = stance_hautus(n, n, transposed, root, GROWING_MODES, &mode, &seen);
-    free(transposed);
+    const stance_error error =
+        stance_hautus(&(stance_plant){n, n, transposed, root}, GROWING_MODES, &mode, &seen);
     return error != STANCE_OK || seen
                ? error
                : stance_refuse(message, STANCE_BAD_ARGUMENT,
@@ -228,47 +191,33 @@ static stance_error check_seen(int n, const double *A, const double *states,
                                stance_complex_text(mode, text));
 }
 
-static stance_error check_weights(int n, int m, const double *A, const double *B,
-                                  const double *states, const double *torques,
-                                  stance_message *message)
+static stance_error check_weights(const stance_plant *plant, const double *states,
+                                  const double *torques, stance_message *message)
 {
-    if (n < 1 || m < 1 || !matrix_finite((size_t)n * (size_t)n, A) ||
-        !matrix_finite((size_t)n * (size_t)m, B)) {
-        return stance_refuse(message, STANCE_BAD_ARGUMENT,
-                             "a regulator needs finite A and B with at least one state and input");
-    }
-    for (int i = 0; i < n; i++) {
-        if (!isfinite(states[i]) || states[i] < 0) {
+    for (int i = 0; i < plant->states; i++)
+        if (!isfinite(states[i]) || states[i] < 0)
             return stance_refuse(message, STANCE_BAD_ARGUMENT,
                                  "weight %d of the states is %.6g: it must be finite and not "
                                  "negative",
                                  i, states[i]);
-        }
-    }
-    for (int j = 0; j < m; j++) {
-        if (!isfinite(torques[j]) || torques[j] <= 0) {
+    for (int j = 0; j < plant->inputs; j++)
+        if (!isfinite(torques[j]) || torques[j] <= 0)
             return stance_refuse(message, STANCE_BAD_ARGUMENT,
                                  "weight %d of the torques is %.6g: it must be finite and "
                                  "positive",
                                  j, torques[j]);
-        }
-    }
-    return check_seen(n, A, states, message);
+    return check_seen(plant, states, message);
 }
 
 /* Fills g with Ad, Bd, Qd, Sd, Rd. */
-static stance_error sample_cost(regulator *g, const double *A, const double *B, double T,
+static stance_error sample_cost(regulator *g, const stance_plant *plant, double T,
                                 const double *states, const double *torques)
 {
     const int n = g->n, m = g->m, side = n + m, twice = 2 * side;
-    const size_t block = (size_t)side * (size_t)side;
-    double *pencil = matrix_room(8 * block + 2 * block);
-    if (!pencil)
-        return STANCE_NO_MEMORY;
-    double *E = pencil + 4 * block, *transposed = E + 4 * block, *W = transposed + block;
+    double pencil[16 * N * N] = {0}, E[16 * N * N], transposed[4 * N * N], W[4 * N * N];
     for (int i = 0; i < n; i++) {
         for (int j = 0; j < side; j++) {
-            const double f = j < n ? A[i * n + j] : B[i * m + j - n];
+            const double f = j < n ? plant->A[i * n + j] : plant->B[i * m + j - n];
             pencil[j * twice + i] = -f;
             pencil[(side + i) * twice + side + j] = f;
         }
@@ -298,54 +247,34 @@ static stance_error sample_cost(regulator *g, const double *A, const double *B, 
             }
         }
     }
-    free(pencil);
     return error;
 }
 
-/* T NULL: of continuous time. */
-static stance_error design(int n, int m, const double *A, const double *B, const double *T,
-                           const double *states, const double *torques, double *K,
-                           stance_message *message)
-{
-    regulator g;
-    stance_error error = check_weights(n, m, A, B, states, torques, message);
-    if (error == STANCE_OK && T && (!isfinite(*T) || *T <= 0))
-        return stance_refuse(message, STANCE_BAD_ARGUMENT,
-                             "a sampled regulator needs a sample time above 0, not %.6g s", *T);
-    if (error == STANCE_OK)
-        error = regulator_make(&g, n, m, T != NULL);
-    if (error == STANCE_OK) {
-        if (T) {
-            error = sample_cost(&g, A, B, *T, states, torques);
-        } else {
-            memcpy(g.A, A, (size_t)(n * n) * sizeof *A);
-            memcpy(g.B, B, (size_t)(n * m) * sizeof *B);
-            for (int i = 0; i < n; i++)
-                g.Q[i * n + i] = states[i];
-            for (int j = 0; j < m; j++)
-                g.R[j * m + j] = torques[j];
-        }
-        if (error == STANCE_OK)
-            error = regulate(&g, K, message);
-        else
-            stance_refuse(message, error, "discretisation over %.6g s: %s", T ? *T : 0,
-                          stance_error_text(error));
-        regulator_free(&g);
-    }
-    if (error == STANCE_NO_MEMORY)
-        stance_refuse(message, error, "linear quadratic regulator: %s", stance_error_text(error));
-    return error;
-}
-
-stance_error stance_lqr(int n, int m, const double *A, const double *B, const double *states,
+stance_error stance_lqr(const stance_plant *plant, double T, const double *states,
                         const double *torques, double *K, stance_message *message)
 {
-    return design(n, m, A, B, NULL, states, torques, K, message);
-}
-
-stance_error stance_lqr_sampled(int n, int m, const double *A, const double *B, double T,
-                                const double *states, const double *torques, double *K,
-                                stance_message *message)
-{
-    return design(n, m, A, B, &T, states, torques, K, message);
+    stance_error error = stance_check_plant(plant, message);
+    if (error == STANCE_OK)
+        error = check_weights(plant, states, torques, message);
+    if (error != STANCE_OK)
+        return error;
+    if (!isfinite(T) || T < 0)
+        return stance_refuse(message, STANCE_BAD_ARGUMENT, "a design cannot sample every %.6g s",
+                             T);
+    const int n = plant->states, m = plant->inputs;
+    regulator g = {.n = n, .m = m, .discrete = T > 0};
+    if (T > 0) {
+        error = sample_cost(&g, plant, T, states, torques);
+        if (error != STANCE_OK)
+            return stance_refuse(message, error, "discretisation over %.6g s: %s", T,
+                                 stance_error_text(error));
+    } else {
+        memcpy(g.A, plant->A, (size_t)(n * n) * sizeof *g.A);
+        memcpy(g.B, plant->B, (size_t)(n * m) * sizeof *g.B);
+        for (int i = 0; i < n; i++)
+            g.Q[i * n + i] = states[i];
+        for (int j = 0; j < m; j++)
+            g.R[j * m + j] = torques[j];
+    }
+    return regulate(&g, K, message);
 }

@@ -25,13 +25,15 @@
 #define SMALL 1e-3 /* of the largest: how large the larger is taken to be at least */
 #define OFF 1e-9   /* of the state: what is not 0 along a vector */
 
+enum { N = STANCE_PLANT_MOST };
+
 /* Matrices of this file are by columns, LAPACK's way: A by rows is A'. */
-struct plant {
-    int n, r;        /* states, rank of B */
-    double norm;     /* of A */
-    double *A, *U;   /* A' balanced, [n][n]; range of B, [n][r] */
-    double *T, *Z;   /* A' Z = Z T, real Schur form */
-    double *re, *im; /* eigenvalues */
+struct balanced {
+    int n, r;                  /* states, rank of B */
+    double norm;               /* of A */
+    double A[N * N], U[N * N]; /* A' balanced, [n][n]; range of B, [n][r] */
+    double T[N * N], Z[N * N]; /* A' Z = Z T, real Schur form */
+    double re[N], im[N];       /* eigenvalues */
 };
 
 /* C[n][p] = A[n][m] B[m][p] or (flip) A[m][n]' B[m][p]. */
@@ -47,49 +49,43 @@ static void multiply(bool flip, int n, int m, int p, const double *A, const doub
 }
 
 /* Orthonormal V[k][*left] of what M[rows][k] maps to 0, singular values up to `zero` counting as
- * it; at least `least` of them. M is spent. */
-static stance_error null_space(int rows, int k, double *M, double zero, int least, double *V,
-                               int *left)
+ * it. M is spent. */
+static stance_error null_space(int rows, int k, double *M, double zero, double *V, int *left)
 {
     const int values = rows < k ? rows : k;
-    double *const room = matrix_room(2 * (size_t)values + (size_t)k * (size_t)k + 2);
-    if (!room)
-        return STANCE_NO_MEMORY;
-    double *const sv = room, *const work = sv + values, *const VT = work + values + 1;
+    double sv[N], unused[N], VT[N * N];
     int rank = 0;
     if (rows == 0) /* LAPACK takes none */
-        for (int i = 0; i < k; i++)
-            VT[i * k + i] = 1;
-    const int info = rows == 0 ? 0
-                               : LAPACKE_dgesvd(LAPACK_COL_MAJOR, 'N', 'A', rows, k, M, rows, sv,
-                                                NULL, 1, VT, k, work);
-    while (rank < values && sv[rank] > zero && rank < k - least)
+        for (int i = 0; i < k * k; i++)
+            VT[i] = i % (k + 1) == 0;
+    else if (LAPACKE_dgesvd(LAPACK_COL_MAJOR, 'N', 'A', rows, k, M, rows, sv, NULL, 1, VT, k,
+                            unused) != 0)
+        return STANCE_NUMERICAL;
+    while (rank < values && sv[rank] > zero)
         rank++;
     *left = k - rank;
     for (int j = 0; j < *left; j++)
         for (int i = 0; i < k; i++)
             V[j * k + i] = VT[i * k + rank + j];
-    free(room);
-    return info == 0 ? STANCE_OK : STANCE_NUMERICAL;
+    return STANCE_OK;
 }
 
-/* N[k][*d], orthonormal: what C[r][k] maps to 0 and T[k][k] into itself. room: 4 k k. */
-static stance_error stay_unreached(int r, int k, double *C, const double *T, double norm, double *N,
-                                   int *d, double *room)
+/* V[k][*d], orthonormal: what C[r][k] maps to 0 and T[k][k] into itself. */
+static stance_error stay_unreached(const struct balanced *b, int k, double *C, const double *T,
+                                   double *V, int *d)
 {
-    const size_t kk = (size_t)k * (size_t)k;
-    double *const S = room, *const P = S + kk, *const V = P + kk, *const next = V + kk;
-    stance_error error = null_space(r, k, C, UNREACHED, 0, N, d);
+    double S[N * N], P[N * N], W[N * N], next[N * N];
+    stance_error error = null_space(b->r, k, C, UNREACHED, V, d);
     for (int before = k; error == STANCE_OK && *d > 0 && *d < before;) {
         before = *d;
-        multiply(false, k, k, before, T, N, S); /* what leaves: (1 - N N') T N */
-        multiply(true, before, k, before, N, S, P);
-        multiply(false, k, before, before, N, P, next);
+        multiply(false, k, k, before, T, V, S); /* what leaves: (1 - V V') T V */
+        multiply(true, before, k, before, V, S, P);
+        multiply(false, k, before, before, V, P, next);
         for (int i = 0; i < k * before; i++)
             S[i] -= next[i];
-        error = null_space(k, before, S, UNREACHED * norm, 0, V, d);
-        multiply(false, k, before, *d, N, V, next);
-        memcpy(N, next, (size_t)k * (size_t)*d * sizeof *N);
+        error = null_space(k, before, S, UNREACHED * b->norm, W, d);
+        multiply(false, k, before, *d, V, W, next);
+        memcpy(V, next, (size_t)(k * *d) * sizeof *V);
     }
     return error;
 }
@@ -98,7 +94,7 @@ static stance_error stay_unreached(int r, int k, double *C, const double *T, dou
 static stance_error to_front(int n, const lapack_logical *takes, double *T, double *Q, double *re,
                              double *im, int *count)
 {
-    double s, sep, work[UNREACHED_MOST];
+    double s, sep, work[N];
     lapack_int m = 0, whole; /* LAPACKE's own wrapper writes where `whole` is not */
     const int info = LAPACKE_dtrsen_work(LAPACK_COL_MAJOR, 'N', 'V', takes, n, T, n, Q, n, re, im,
                                          &m, &s, &sep, work, n, &whole, 1);
@@ -114,19 +110,17 @@ static stance_error schur(int n, double *T, double *Q, double *re, double *im)
     return info == 0 ? STANCE_OK : STANCE_NUMERICAL;
 }
 
-/* Which eigenvalues of H = Q T Q' do not decay; what is nothing but rounding in them becomes 0.
- * room: 2 d d + 2 d. */
+/* Which eigenvalues of H = Q T Q' do not decay; what is nothing but rounding in them becomes 0. */
 static stance_error select_lasting(int d, double norm, const double *T, double *re, double *im,
-                                   lapack_logical *lasts, double *room)
+                                   lapack_logical *lasts)
 {
-    double *const left = room, *const right = left + d * d, *const s = right + d * d,
-                  *const sep = s + d;
+    double left[N * N], right[N * N], s[N], sep[N];
     lapack_int m = 0;
     int info = LAPACKE_dtrevc(LAPACK_COL_MAJOR, 'B', 'A', NULL, d, T, d, left, d, right, d, d, &m);
     if (info == 0)
         info = LAPACKE_dtrsna(LAPACK_COL_MAJOR, 'E', 'A', NULL, d, T, d, left, d, right, d, s, sep,
                               d, &m);
-    for (int i = 0; i < d; i++) {
+    for (int i = 0; i < d && info == 0; i++) {
         const double rounding = rounding_of_eigenvalue(norm, s[i]);
         lasts[i] = re[i] >= -rounding;
         re[i] = fabs(re[i]) <= rounding ? 0 : re[i];
@@ -136,62 +130,62 @@ static stance_error select_lasting(int d, double norm, const double *T, double *
 }
 
 /* Of the group of eigenvalues that are selected: adds rows to `out`, of balanced states. */
-static stance_error look_at_group(const struct plant *p, const lapack_logical *group,
-                                  struct unreached *out, double *room)
+static stance_error look_at_group(const struct balanced *b, const lapack_logical *group,
+                                  struct unreached *out)
 {
-    const int n = p->n;
-    const size_t nn = (size_t)n * (size_t)n;
-    double *const T = room, *const Z = T + nn, *const L = Z + nn, *const N = L + nn,
-                  *const H = N + nn, *const Q = H + nn, *const C = Q + nn, *const re = C + nn,
-                  *const im = re + n, *const more = im + n;
-    lapack_logical lasts[UNREACHED_MOST];
+    const int n = b->n;
+    double T[N * N], Z[N * N], L[N * N], V[N * N], H[N * N], Q[N * N], C[N * N], re[N], im[N];
+    double moved[2][N];
+    lapack_logical lasts[N];
     int k, d = 0, count = 0;
-    memcpy(T, p->T, nn * sizeof *T);
-    memcpy(Z, p->Z, nn * sizeof *Z);
+    memcpy(T, b->T, sizeof T);
+    memcpy(Z, b->Z, sizeof Z);
     stance_error error = to_front(n, group, T, Z, re, im, &k);
     for (int j = 0; j < k; j++)
         memcpy(L + j * k, T + j * n, (size_t)k * sizeof *L);
-    multiply(true, p->r, n, k, p->U, Z, C);
+    multiply(true, b->r, n, k, b->U, Z, C);
     if (error == STANCE_OK)
-        error = stay_unreached(p->r, k, C, L, p->norm, N, &d, more);
+        error = stay_unreached(b, k, C, L, V, &d);
     if (error != STANCE_OK || d == 0)
         return error;
-    multiply(false, k, k, d, L, N, C); /* H = N' L N */
-    multiply(true, d, k, d, N, C, H);
+    multiply(false, k, k, d, L, V, C); /* H = V' L V */
+    multiply(true, d, k, d, V, C, H);
     error = schur(d, H, Q, re, im);
     if (error == STANCE_OK)
-        error = select_lasting(d, p->norm, H, re, im, lasts, more);
+        error = select_lasting(d, b->norm, H, re, im, lasts);
     if (error == STANCE_OK)
-        error = to_front(d, lasts, H, Q, more, more + d, &count);
-    multiply(false, k, d, count, N, Q, C);
+        error = to_front(d, lasts, H, Q, moved[0], moved[1], &count);
+    if (error != STANCE_OK)
+        return error;
+    multiply(false, k, d, count, V, Q, C);
     multiply(false, n, k, count, Z, C, out->row + out->count * n);
-    for (int i = 0; error == STANCE_OK && i < d; i++) {
+    for (int i = 0; i < d; i++) {
         if (lasts[i]) {
             out->re[out->count] = re[i];
             out->im[out->count++] = im[i];
         }
     }
-    return error;
+    return STANCE_OK;
 }
 
-/* Eigenvalues a and b belong together. */
-static bool near(const struct plant *p, double largest, int a, int b)
+/* Eigenvalues i and j belong together. */
+static bool near(const struct balanced *b, double largest, int i, int j)
 {
-    const double size = fmax(hypot(p->re[a], p->im[a]), hypot(p->re[b], p->im[b]));
-    return hypot(p->re[a] - p->re[b], fabs(p->im[a]) - fabs(p->im[b])) <=
+    const double size = fmax(hypot(b->re[i], b->im[i]), hypot(b->re[j], b->im[j]));
+    return hypot(b->re[i] - b->re[j], fabs(b->im[i]) - fabs(b->im[j])) <=
            NEAR * fmax(size, SMALL / NEAR * largest);
 }
 
-static stance_error look_at_groups(const struct plant *p, struct unreached *out, double *room)
+static stance_error look_at_groups(const struct balanced *b, struct unreached *out)
 {
-    const int n = p->n;
-    bool seen[UNREACHED_MOST] = {false};
+    const int n = b->n;
+    bool seen[N] = {false};
     double largest = 0;
     stance_error error = STANCE_OK;
     for (int i = 0; i < n; i++)
-        largest = fmax(largest, hypot(p->re[i], p->im[i]));
+        largest = fmax(largest, hypot(b->re[i], b->im[i]));
     for (int first = 0; first < n && error == STANCE_OK; first++) {
-        lapack_logical group[UNREACHED_MOST] = {0};
+        lapack_logical group[N] = {0};
         if (seen[first])
             continue;
         group[first] = 1;
@@ -199,51 +193,45 @@ static stance_error look_at_groups(const struct plant *p, struct unreached *out,
             grew = false;
             for (int i = 0; i < n; i++)
                 for (int j = 0; j < n && !group[i]; j++)
-                    if (group[j] && near(p, largest, i, j))
+                    if (group[j] && near(b, largest, i, j))
                         group[i] = grew = true;
         }
         for (int i = 0; i < n; i++)
             seen[i] = seen[i] || group[i];
-        error = look_at_group(p, group, out, room);
+        error = look_at_group(b, group, out);
     }
     return error;
 }
 
 /* A' balanced and its Schur form, the range of B; scale[n]: balanced states are scale x. */
-static stance_error make_plant(struct plant *p, int m, const double *A, const double *B,
-                               double *scale)
+static stance_error balance(const stance_plant *plant, struct balanced *b, double *scale)
 {
-    const int n = p->n;
+    const int n = plant->states, m = plant->inputs;
     lapack_int low, high;
-    double *const scaled = matrix_room((size_t)n * (size_t)m);
-    if (!scaled)
-        return STANCE_NO_MEMORY;
-    memcpy(p->A, A, (size_t)n * (size_t)n * sizeof *A);
-    int info = LAPACKE_dgebal(LAPACK_COL_MAJOR, 'S', n, p->A, n, &low, &high, scale);
+    double scaled[N * N];
+    *b = (struct balanced){.n = n};
+    memcpy(b->A, plant->A, (size_t)(n * n) * sizeof *b->A);
+    if (LAPACKE_dgebal(LAPACK_COL_MAJOR, 'S', n, b->A, n, &low, &high, scale) != 0)
+        return STANCE_NUMERICAL;
     for (int i = 0; i < n; i++)
         for (int j = 0; j < m; j++)
-            scaled[i * m + j] = scale[i] * B[i * m + j];
-    p->norm = matrix_norm(n * n, p->A);
-    memcpy(p->T, p->A, (size_t)n * (size_t)n * sizeof *A);
-    stance_error error = info == 0 ? schur(n, p->T, p->Z, p->re, p->im) : STANCE_NUMERICAL;
-    if (error == STANCE_OK)
-        error = stance_input_range(n, m, scaled, p->U, &p->r);
-    free(scaled);
-    return error;
+            scaled[i * m + j] = scale[i] * plant->B[i * m + j];
+    b->norm = matrix_norm(n * n, b->A);
+    memcpy(b->T, b->A, sizeof b->T);
+    const stance_error error = schur(n, b->T, b->Z, b->re, b->im);
+    return error == STANCE_OK ? stance_input_range(n, m, scaled, b->U, NULL, &b->r) : error;
 }
 
 /* The plant of the states without a part along the rows, in an orthonormal basis of theirs. */
-static stance_error make_rest(const struct plant *p, struct unreached *out, double *room)
+static stance_error make_rest(const struct balanced *b, struct unreached *out)
 {
-    const int n = p->n, rest = n - out->count;
-    const size_t nn = (size_t)n * (size_t)n;
-    double *const rows = room, *const V = rows + nn, *const AV = V + nn;
+    const int n = b->n, rest = n - out->count;
+    double rows[N * N], V[N * N], AV[N * N];
     int left;
-    for (int i = 0; i < out->count; i++)
-        for (int j = 0; j < n; j++)
-            rows[j * out->count + i] = out->row[i * n + j];
-    const stance_error error = null_space(out->count, n, rows, -1, rest, V, &left);
-    multiply(true, n, n, rest, p->A, V, AV); /* A' by columns, flipped: A V */
+    matrix_transpose(out->count, n, out->row, rows);
+    /* The rows are independent: none of their singular values is 0. */
+    const stance_error error = null_space(out->count, n, rows, -1, V, &left);
+    multiply(true, n, n, rest, b->A, V, AV); /* A' by columns, flipped: A V */
     multiply(true, rest, n, rest, V, AV, rows);
     matrix_transpose(rest, rest, rows, out->A);
     for (int i = 0; i < rest; i++)
@@ -252,43 +240,14 @@ static stance_error make_rest(const struct plant *p, struct unreached *out, doub
     return error;
 }
 
-stance_error stance_unreached_find(int n, int m, const double *A, const double *B,
-                                   struct unreached *out)
+stance_error stance_unreached_find(const stance_plant *plant, struct unreached *out)
 {
-    const size_t nn = (size_t)n * (size_t)n, side = (size_t)n;
-    *out = (struct unreached){.n = n};
-    if (n > UNREACHED_MOST)
-        return STANCE_BAD_ARGUMENT;
-    out->row = matrix_room(3 * nn + 3 * side);
-    double *const room = matrix_room(16 * nn + 4 * side);
-    stance_error error = out->row && room ? STANCE_OK : STANCE_NO_MEMORY;
-    if (error == STANCE_OK) {
-        out->rest = out->row + nn;
-        out->A = out->rest + nn;
-        out->scale = out->A + nn;
-        out->re = out->scale + side;
-        out->im = out->re + side;
-        double *const work = room + 4 * nn + 2 * side;
-        struct plant p = {
-            .n = n, .A = room, .U = room + nn, .T = room + 2 * nn, .Z = room + 3 * nn};
-        p.re = room + 4 * nn;
-        p.im = p.re + side;
-        error = make_plant(&p, m, A, B, out->scale);
-        if (error == STANCE_OK)
-            error = look_at_groups(&p, out, work);
-        if (error == STANCE_OK && out->count > 0)
-            error = make_rest(&p, out, work);
-    }
-    if (error != STANCE_OK)
-        stance_unreached_free(out);
-    free(room);
-    return error;
-}
-
-void stance_unreached_free(struct unreached *out)
-{
-    free(out->row);
-    *out = (struct unreached){0};
+    struct balanced b;
+    *out = (struct unreached){.n = plant->states};
+    stance_error error = balance(plant, &b, out->scale);
+    if (error == STANCE_OK)
+        error = look_at_groups(&b, out);
+    return error == STANCE_OK && out->count > 0 ? make_rest(&b, out) : error;
 }
 
 bool stance_unreached_has(const struct unreached *out, const double *x)

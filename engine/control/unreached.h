@@ -6,15 +6,15 @@
 
 #include "control.h"
 
-enum { UNREACHED_MOST = 64 }; /* states */
-
 struct unreached {
     int n, count; /* states, directions */
-    double *scale,
-        *row;         /* [n], [count][n]: a part of x is the sum over j of row[j] scale[j] x[j] */
-    double *re, *im;  /* [count]: eigenvalues, of pairs both */
-    double *rest, *A; /* the states without such a part, if there are any: y = rest x */
-                      /* [n - count][n], with y' = A y + ... [n - count][n - count] */
+    double scale[STANCE_PLANT_MOST];
+    double row[STANCE_PLANT_MOST * STANCE_PLANT_MOST]; /* [count][n]: a part of x is the sum over j
+                                                        * of row[j] scale[j] x[j] */
+    double re[STANCE_PLANT_MOST], im[STANCE_PLANT_MOST]; /* eigenvalues, of pairs both */
+    /* The states without such a part, if there are any: y = rest x, [n - count][n], with
+     * y' = A y + ... [n - count][n - count] */
+    double rest[STANCE_PLANT_MOST * STANCE_PLANT_MOST], A[STANCE_PLANT_MOST * STANCE_PLANT_MOST];
 };
 
 /* How far rounding may move an eigenvalue of a matrix with this norm, s the reciprocal condition
@@ -25,10 +25,7 @@ static inline double rounding_of_eigenvalue(double norm, double s)
     return norm * (s > exact / most ? exact / s : most);
 }
 
-/* *out: to be freed. */
-stance_error stance_unreached_find(int n, int m, const double *A, const double *B,
-                                   struct unreached *out);
-void stance_unreached_free(struct unreached *out);
+stance_error stance_unreached_find(const stance_plant *plant, struct unreached *out);
 
 /* Whether x[n] has a part in them, beyond rounding. */
 bool stance_unreached_has(const struct unreached *out, const double *x);

@@ -10,11 +10,9 @@
  *
  *   H' dlambda = A Z y'' - [ dQ/dq + d(H' lambda)/dq ] Z y - dQ/dq' Z y' - B dtorque.
  */
+#include "engine/matrix.h"
+#include "engine/rows.h"
 #include "engine/scenes/mechanism_pose.h"
-#include "engine/scenes/rows.h"
-
-#include <math.h>
-#include <string.h>
 
 enum { N = STANCE_MAX_COORDINATES, P = STANCE_MAX_POSTURE, M = STANCE_MAX_ACTUATORS };
 
@@ -52,9 +50,7 @@ static double condition(const stance_scene *scene, int p, const double Z[][P])
             a[j][k] = Z[scene->posture[k]][j];
     stance_rows_turn(p, scene->postures, scene->postures, a);
     for (int j = 0; j < p; j++) {
-        double square = 0;
-        for (int k = 0; k < scene->postures; k++)
-            square += a[j][k] * a[j][k];
+        const double square = matrix_dot(scene->postures, a[j], a[j]);
         longest = fmax(longest, sqrt(square));
         shortest = fmin(shortest, sqrt(square));
     }

@@ -2,8 +2,7 @@
  * mechanism_pose.h. */
 #include "engine/scenes/mechanism_pose.h"
 
-#include <math.h>
-#include <string.h>
+#include "engine/matrix.h"
 
 void stance_mechanism_expand(const stance_mechanism *m, const double *robot,
                              stance_mechanism_numbers *numbers)
@@ -297,14 +296,6 @@ void stance_mechanism_gaps(const stance_scene *scene, const double *robot, const
         gap[c] = touch.gap;
 }
 
-static double rate(const stance_pose *pose, const double *row, const double *velocity)
-{
-    double sum = 0;
-    for (int i = 0; i < pose->coordinates; i++)
-        sum += row[i] * velocity[i];
-    return sum;
-}
-
 void stance_mechanism_contact_point(const stance_scene *scene, const double *robot,
                                     const double *position, const double *velocity, int contact,
                                     double point[2], double speed[2])
@@ -315,8 +306,8 @@ void stance_mechanism_contact_point(const stance_scene *scene, const double *rob
     if (!stance_pose_contact(&pose, contact, &touch))
         return;
     memcpy(point, touch.point, sizeof touch.point);
-    speed[0] = rate(&pose, touch.row[1], velocity);
-    speed[1] = rate(&pose, touch.row[0], velocity);
+    speed[0] = matrix_dot(pose.coordinates, touch.row[1], velocity);
+    speed[1] = matrix_dot(pose.coordinates, touch.row[0], velocity);
 }
 
 /* The lowest of the contacts `supports`; the first of them in *first. */
@@ -358,7 +349,8 @@ void stance_mechanism_stand(const stance_scene *scene, const double *robot, uint
         position[1] = fmax(nextafter(position[1], INFINITY), position[1] + step);
     }
     velocity[0] = velocity[1] = 0;
-    const double up = rate(&pose, first.row[0], velocity), on = rate(&pose, first.row[1], velocity);
+    const double up = matrix_dot(pose.coordinates, first.row[0], velocity),
+                 on = matrix_dot(pose.coordinates, first.row[1], velocity);
     for (int k = 0; k < 2; k++)
         velocity[k] = 0 - (up * pose.normal[k] + on * pose.tangent[k]);
 }
@@ -390,8 +382,9 @@ double stance_mechanism_energy(const stance_scene *scene, const double *robot,
         const stance_body_numbers *const body = &pose.number.body[b];
         stance_pose_point(&pose, b, body->centre, centre);
         stance_pose_jacobian(&pose, b, centre, J, turn);
-        const double speed[2] = {rate(&pose, J[0], velocity), rate(&pose, J[1], velocity)};
-        const double spin = rate(&pose, turn, velocity);
+        const double speed[2] = {matrix_dot(pose.coordinates, J[0], velocity),
+                                 matrix_dot(pose.coordinates, J[1], velocity)};
+        const double spin = matrix_dot(pose.coordinates, turn, velocity);
         sum += body->mass * (0.5 * along(speed, speed) + pose.gravity * centre[1]) +
                0.5 * body->inertia * (spin * spin);
         if (pose.own[b] >= 0 && m->body[b].joint != STANCE_FREE) {

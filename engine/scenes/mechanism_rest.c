@@ -16,9 +16,10 @@
  * the least are taken. Newton begins with all angles in line and from angles spread evenly; what it
  * finds are the branches.
  */
+#include "engine/matrix.h"
 #include "engine/refuse.h"
+#include "engine/rows.h"
 #include "engine/scenes/mechanism_pose.h"
-#include "engine/scenes/rows.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -57,6 +58,12 @@ struct trial {
     stance_sticking sticking;
     int unknowns, conditions;
     double c[CONDITIONS], J[CONDITIONS][UNKNOWNS];
+};
+
+/* Basis of null(J): rows of Z. */
+struct freedoms {
+    int count;
+    double Z[UNKNOWNS][STANCE_ROWS_STRIDE];
 };
 
 /* ---- the conditions -------------------------------------------------------------------------- */
@@ -126,10 +133,17 @@ static void try_at(const struct search *s, const double *u, struct trial *t)
 
 static double hurt(const struct trial *t)
 {
-    double sum = 0;
-    for (int i = 0; i < t->conditions; i++)
-        sum += t->c[i] * t->c[i];
-    return sqrt(sum);
+    return sqrt(matrix_dot(t->conditions, t->c, t->c));
+}
+
+/* The rows of (J, -c), turned; returns the rank of J. */
+static int turn(const struct trial *t, double a[][STANCE_ROWS_STRIDE])
+{
+    for (int k = 0; k < t->conditions; k++) {
+        memcpy(a[k], t->J[k], sizeof t->J[k]);
+        a[k][t->unknowns] = -t->c[k];
+    }
+    return stance_rows_turn(t->conditions, t->unknowns, t->unknowns + 1, a);
 }
 
 /* What part of a step turns nothing further than it may. */
@@ -149,11 +163,7 @@ static bool satisfy(const struct search *s, double *u, struct trial *t)
     try_at(s, u, t);
     double left = hurt(t);
     for (int i = 0; i < STEPS && left > 0; i++) {
-        for (int k = 0; k < t->conditions; k++) {
-            memcpy(a[k], t->J[k], sizeof t->J[k]);
-            a[k][t->unknowns] = -t->c[k];
-        }
-        stance_rows_turn(t->conditions, t->unknowns, t->unknowns + 1, a);
+        turn(t, a);
         stance_rows_solve(t->conditions, t->unknowns, a, step);
         double part = part_of(s, step), now = left;
         const int halvings = left > solved ? HALVINGS : 1; /* the last digits as they come */
@@ -197,9 +207,9 @@ static void multipliers(const struct search *s, const double *u, const struct tr
     stance_rows_solve(t->unknowns, t->conditions, a, mu);
 }
 
-/* out[f] = Z J(u + way)' mu. */
+/* out = Z J(u + length way)' mu. */
 static void pulled(const struct search *s, const double *u, const double *way, double length,
-                   const double *mu, int f, double Z[][STANCE_ROWS_STRIDE], double *out)
+                   const double *mu, const struct freedoms *free, double *out)
 {
     struct trial t;
     double at[UNKNOWNS] = {0}, force[UNKNOWNS] = {0};
@@ -210,24 +220,22 @@ static void pulled(const struct search *s, const double *u, const double *way, d
     for (int k = 0; k < n; k++)
         for (int i = 0; i < t.conditions; i++)
             force[k] += t.J[i][k] * mu[i];
-    for (int j = 0; j < f; j++) {
-        out[j] = 0;
-        for (int k = 0; k < n; k++)
-            out[j] += Z[j][k] * force[k];
-    }
+    for (int j = 0; j < free->count; j++)
+        out[j] = matrix_dot(n, free->Z[j], force);
 }
 
-/* A step of Newton's for the least effort in the space of Z[f]. */
-static void ease(const struct search *s, const double *u, const struct trial *t, int f,
-                 double Z[][STANCE_ROWS_STRIDE], double *step)
+/* A step of Newton's for the least effort in the space of Z. */
+static void ease(const struct search *s, const double *u, const struct trial *t,
+                 const struct freedoms *free, double *step)
 {
     static const double difference = 1e-5;
-    const int first = s->free, m = s->m->actuators;
+    const int first = s->free, m = s->m->actuators, f = free->count;
+    const double(*const Z)[STANCE_ROWS_STRIDE] = free->Z;
     double mu[CONDITIONS], a[UNKNOWNS][STANCE_ROWS_STRIDE], plus[UNKNOWNS], minus[UNKNOWNS];
     multipliers(s, u, t, mu);
     for (int j = 0; j < f; j++) {
-        pulled(s, u, Z[j], difference, mu, f, Z, plus);
-        pulled(s, u, Z[j], -difference, mu, f, Z, minus);
+        pulled(s, u, Z[j], difference, mu, free, plus);
+        pulled(s, u, Z[j], -difference, mu, free, minus);
         for (int i = 0; i < f; i++)
             a[i][j] = (plus[i] - minus[i]) / (2 * difference);
     }
@@ -247,11 +255,7 @@ static void ease(const struct search *s, const double *u, const struct trial *t,
     for (int row = 0; row < f; row++) {
         /* A symmetric matrix's rows, turned, are its eigenvectors: where one is curved downwards
          * Newton goes up, towards a maximum, and its opposite is taken. */
-        double square = 0, part = 0;
-        for (int i = 0; i < f; i++) {
-            square += a[row][i] * a[row][i];
-            part += a[row][i] * down[i];
-        }
+        const double square = matrix_dot(f, a[row], a[row]), part = matrix_dot(f, a[row], down);
         if (square == 0)
             continue;
         const double along = a[row][f] / square * (a[row][f] * part < 0 ? -1 : 1);
@@ -261,27 +265,19 @@ static void ease(const struct search *s, const double *u, const struct trial *t,
     }
 }
 
-/* Basis of null(J): rows of Z; returns its number. */
-static int freedoms_of(const struct trial *t, double Z[][STANCE_ROWS_STRIDE])
-{
-    double a[CONDITIONS][STANCE_ROWS_STRIDE];
-    for (int k = 0; k < t->conditions; k++)
-        memcpy(a[k], t->J[k], sizeof t->J[k]);
-    stance_rows_turn(t->conditions, t->unknowns, t->unknowns, a);
-    return stance_rows_null(t->conditions, t->unknowns, a, Z);
-}
-
 /* From a solution to the one of least effort that can be reached. */
 static void least_effort(const struct search *s, double *u, struct trial *t)
 {
-    double Z[UNKNOWNS][STANCE_ROWS_STRIDE], step[UNKNOWNS], next[UNKNOWNS] = {0};
+    double a[CONDITIONS][STANCE_ROWS_STRIDE], step[UNKNOWNS], next[UNKNOWNS] = {0};
+    struct freedoms free;
     struct trial further;
     for (int i = 0; i < STEPS; i++) {
-        const int f = freedoms_of(t, Z);
+        turn(t, a);
+        free.count = stance_rows_null(t->conditions, t->unknowns, a, free.Z);
         const double now = effort(s, u);
-        if (f == 0 || now == 0)
+        if (free.count == 0 || now == 0)
             return;
-        ease(s, u, t, f, Z, step);
+        ease(s, u, t, &free, step);
         double part = part_of(s, step), length = 0;
         for (int k = 0; k < t->unknowns; k++)
             length = fmax(length, fabs(step[k]));
@@ -325,12 +321,9 @@ static int undetermined(const struct search *s, const struct trial *t)
 {
     double a[CONDITIONS][STANCE_ROWS_STRIDE], b[N][STANCE_ROWS_STRIDE];
     const int forces = t->unknowns - s->free;
-    for (int k = 0; k < t->conditions; k++)
-        memcpy(a[k], t->J[k], sizeof t->J[k]);
     for (int i = 0; i < s->coordinates; i++)
         memcpy(b[i], &t->J[i][s->free], (size_t)forces * sizeof(double));
-    return s->free - stance_rows_turn(t->conditions, t->unknowns, t->unknowns, a) +
-           stance_rows_turn(s->coordinates, forces, forces, b);
+    return s->free - turn(t, a) + stance_rows_turn(s->coordinates, forces, forces, b);
 }
 
 /* Of the centre of mass, in units of size. */
@@ -583,9 +576,7 @@ static bool too_many(const struct search *s)
     for (int k = s->free; k < UNKNOWNS; k++)
         u[k] = 0.1 * (k + 1);
     try_at(s, u, &t);
-    for (int k = 0; k < t.conditions; k++)
-        memcpy(a[k], t.J[k], sizeof t.J[k]);
-    return stance_rows_turn(t.conditions, t.unknowns, t.unknowns, a) < t.conditions;
+    return turn(&t, a) < t.conditions;
 }
 
 stance_error stance_mechanism_equilibria(const stance_scene *scene, const double *robot,

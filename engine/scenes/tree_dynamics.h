@@ -139,13 +139,22 @@ HOT lanes tree_add(bool less, lanes a, lanes b, lanes c)
     return lanes_fma(a, b, c);
 }
 
-/* residual = A(u) change - h (forces without contact), evaluated at the place s with angles `trig`
- * and velocity w; change = velocity at the end minus velocity before the step. NULL: the forces
- * alone, whatever h is. */
-HOT void scene_residual(const scene_body *b, lanes h, lanes t, const lanes *s,
-                        const scene_trig *trig, const lanes *w, const lanes *change,
-                        const lanes *torque, lanes *residual)
+/* A step's equation at a guess: over h, about the time t, at the place s with angles `trig` and
+ * velocity w; change = velocity at the end minus velocity before the step. NULL: the forces alone,
+ * whatever h is. */
+typedef struct scene_guess {
+    lanes h, t;
+    const lanes *s;
+    const scene_trig *trig;
+    const lanes *w, *change;
+} scene_guess;
+
+/* residual = A(u) change - h (forces without contact). */
+HOT void scene_residual(const scene_body *b, const scene_guess *at, const lanes *torque,
+                        lanes *residual)
 {
+    const lanes h = at->h, *const w = at->w, *const change = at->change;
+    const scene_trig *const trig = at->trig;
     const bool step = change != NULL; /* then forces count less */
     tree_pad(residual);
     lanes pull[2], sum[2] = {lanes_of(0), lanes_of(0)}, turned[TREE_SLOTS(TREE_ANGLES)];
@@ -214,11 +223,11 @@ HOT void scene_residual(const scene_body *b, lanes h, lanes t, const lanes *s,
         residual[0] =
             tree_add(!step, b->mass, along, lanes_fma(b->rail[0], sum[0], b->rail[1] * sum[1]));
     }
-    tree_resist(b, step ? h : lanes_of(-1), s, w, torque, residual);
+    tree_resist(b, step ? h : lanes_of(-1), at->s, w, torque, residual);
     TREE_UNROLL
     for (int p = 0; p < tree_pushes; p++) {
         lanes force[2];
-        tree_push_force(b, p, t, force);
+        tree_push_force(b, p, at->t, force);
         tree_push_add(b, trig, p, force, step ? -h : lanes_of(1), residual);
     }
 }
@@ -445,10 +454,11 @@ HOT void scene_solve(const scene_matrix *m, bool coupled, const lanes *b, lanes 
 
 /* Where the columns of angles have more for the joints that slide in their frames, and rows and
  * columns what is bent. */
-HOT void tree_factor_slides(const scene_body *b, lanes h, lanes twice, lanes lever,
-                            const scene_trig *trig, const lanes *w, const lanes *change,
+HOT void tree_factor_slides(const scene_body *b, const scene_guess *at, lanes twice, lanes lever,
                             const lanes *bend, lanes *pivot, scene_matrix *m)
 {
+    const scene_trig *const trig = at->trig;
+    const lanes h = at->h, *const w = at->w, *const change = at->change;
     lanes rush[TREE_SLOTS(TREE_ANGLES)], twist[TREE_SLOTS(TREE_ANGLES)];
     TREE_UNROLL
     for (int k = 0; k < tree_slide_count; k++) {
@@ -496,18 +506,26 @@ HOT void tree_factor_slides(const scene_body *b, lanes h, lanes twice, lanes lev
     }
 }
 
-/* Factors J = d residual / d velocity. `rate`: d(evaluation velocity)/d(velocity) = the method's
- * theta; `lever`: d(evaluation angle)/d(velocity), s; `contact_lever` the same for the angles that
- * the contact directions are taken at, with `contact_trig` there and the impulses r[contact][2] of
- * the last iterate. torque_rate[i][j] = d torque_i / d(rate of posture j) in all, read when
- * `coupled` only. */
-HOT void
-scene_factor(const scene_body *b, lanes h, double rate, lanes lever, lanes contact_lever,
-             const scene_trig *trig, const scene_trig *contact_trig, const lanes *w,
-             const lanes *change, const lanes r[TREE_SLOTS(TREE_CONTACTS)][2], bool coupled,
-             const lanes torque_rate[TREE_SLOTS(TREE_ACTUATORS)][TREE_SLOTS(SCENE_POSTURE)],
-             scene_matrix *m)
+/* How a step's equation answers: d(evaluation velocity)/d(velocity) = the method's theta;
+ * d(evaluation angle)/d(velocity), s; the same for the angles that the contact directions are taken
+ * at, with the angles there and the impulses r[contact][2] of the last iterate; and
+ * torque_rate[i][j] = d torque_i / d(rate of posture j) in all, of a law that acts inside the step.
+ */
+typedef struct scene_slopes {
+    double rate;
+    lanes lever, contact_lever;
+    const scene_trig *contact_trig;
+    const lanes (*r)[2];
+    const lanes (*torque_rate)[TREE_SLOTS(SCENE_POSTURE)];
+} scene_slopes;
+
+/* Factors J = d residual / d velocity; `coupled`: a law acts inside the step. */
+HOT void scene_factor(const scene_body *b, const scene_guess *at, const scene_slopes *by,
+                      bool coupled, scene_matrix *m)
 {
+    const scene_trig *const trig = at->trig;
+    const lanes h = at->h, lever = by->lever, *const w = at->w, *const change = at->change;
+    const double rate = by->rate;
     const lanes twice = 2 * rate * h;
     lanes pivot[TREE_SLOTS(TREE_ANGLES)], along[TREE_SLOTS(TREE_ANGLES)],
         across[TREE_SLOTS(TREE_ANGLES)], bend[TREE_SLOTS(TREE_ANGLES)], pull[2], base[2][2];
@@ -571,13 +589,13 @@ scene_factor(const scene_body *b, lanes h, double rate, lanes lever, lanes conta
             if (tree_path[c][j] < 0)
                 continue;
             lanes reach[2], grip[2];
-            tree_reach(b, contact_trig, c, j, false, reach);
-            tree_reach(b, contact_trig, c, j, true, grip);
-            lanes turned = reach[1] * r[c][0];
+            tree_reach(b, by->contact_trig, c, j, false, reach);
+            tree_reach(b, by->contact_trig, c, j, true, grip);
+            lanes turned = reach[1] * by->r[c][0];
             if (scene_grip[c] == c)
-                turned = lanes_fma(grip[0], r[c][1], turned);
+                turned = lanes_fma(grip[0], by->r[c][1], turned);
             lanes *const bj = tree_slides(j) ? &bend[j] : &pivot[j];
-            *bj = lanes_fma(contact_lever, turned, *bj);
+            *bj = lanes_fma(by->contact_lever, turned, *bj);
         }
     }
     for (int j = 0; j < 2; j++)
@@ -624,10 +642,10 @@ scene_factor(const scene_body *b, lanes h, double rate, lanes lever, lanes conta
         }
     }
     if (tree_slide_count > 0)
-        tree_factor_slides(b, h, twice, lever, trig, w, change, bend, pivot, m);
+        tree_factor_slides(b, at, twice, lever, bend, pivot, m);
     tree_eliminate(NULL, pivot, base, m);
     if (coupled)
-        tree_close_loop(h, torque_rate, m);
+        tree_close_loop(h, by->torque_rate, m);
 }
 
 /* J = A, the inertia alone. */
@@ -671,17 +689,9 @@ HOT void scene_inertia(const scene_body *b, const scene_trig *trig, scene_matrix
     tree_eliminate(b, pivot, base, m);
 }
 
-/* Generalised forces without contact: centrifugal, gravity, torques, springs. */
-HOT void scene_forces(const scene_body *b, lanes t, const lanes *s, const scene_trig *trig,
-                      const lanes *w, const lanes *torque, lanes *force)
-{
-    scene_residual(b, lanes_of(1), t, s, trig, w, NULL, torque, force);
-}
-
 /* x = A^-1 B e_i for a unit of torque i, of m from scene_inertia. */
-HOT void scene_actuator_response(const scene_body *b, const scene_matrix *m, int i, lanes *x)
+HOT void scene_actuator_response(const scene_matrix *m, int i, lanes *x)
 {
-    (void)b;
     lanes load[SCENE_COORDINATES];
     for (int k = 0; k < SCENE_COORDINATES; k++)
         load[k] = lanes_of(0);

@@ -185,31 +185,30 @@ static void put_keys(const struct say_key *key, bool inner, FILE *out)
 {
     const char *const line = inner ? ", " : "\n    ", *before = inner ? "" : "    ";
     for (; key->name || key->text; key++) {
-        if (key->name && !key->text)
+        const bool consists = key->text && (key->text[0] == '[' || key->text[0] == '{');
+        if (!key->text)
             continue;
-        const bool consists = key->text[0] == '[' || key->text[0] == '{';
         if (!key->name) {
-            fprintf(out, "%s  %s", before[0] == ' ' ? "" : "\n", key->text);
-        } else if (key->of) {
-            fprintf(out, "%s%s%s[{", before[0] == ',' ? line : before, key->name,
-                    inner ? ": " : "    ");
-            put_keys(key->of, true, out);
-            fprintf(out, "}]%s%s", key->text[0] ? "; " : "", key->text);
-        } else {
-            fprintf(out, "%s%s%s%s%s", before, key->name,
-                    consists       ? ": "
-                    : key->text[0] ? " ("
-                                   : "",
-                    key->text, consists || !key->text[0] ? "" : ")");
+            fprintf(out, key->text[0] ? "  %s\n" : "", key->text);
+            say_keys(key->of, out);
+            continue;
         }
-        before = key->of || !key->name ? line : ", ";
+        fprintf(out, "%s%s", key->of && before[0] == ',' ? line : before, key->name);
+        if (key->of) {
+            fputs(inner ? ": {" : "    [{", out);
+            put_keys(key->of, true, out);
+            fprintf(out, "}%s%s%s", inner ? "" : "]", key->text[0] ? "; " : "", key->text);
+        } else {
+            fprintf(out, consists ? ": %s" : key->text[0] ? " (%s)" : "", key->text);
+        }
+        before = key->of ? line : ", ";
     }
 }
 
 void say_keys(const struct say_key *key, FILE *out)
 {
     put_keys(key, false, out);
-    putc('\n', out);
+    fputs(key->name ? "\n" : "", out);
 }
 
 /* ---- JSON --------------------------------------------------------------------------------- */

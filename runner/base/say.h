@@ -26,10 +26,11 @@
 
 /* A key of what programs get, for -h, which lists these where `struct command` names them. */
 struct say_key {
-    const char *name;         /* NULL: a line of its own, which says of what the next ones are */
+    const char *name;         /* NULL: `text` says in a line of its own what has the keys `of` */
     const char *text;         /* "what it is", "[low, high]" of what it consists; "": its name says
                                * it; NULL: it is not told, as columns of CSV alone */
-    const struct say_key *of; /* it is a list of objects with these keys; `text` goes behind */
+    const struct say_key *of; /* it is a list of objects with these keys, within such a list one
+                               * object; `text` goes behind */
 };
 /* Up to one without both: "a, b (what it is), c: [low, high]", lists in lines of their own. */
 void say_keys(const struct say_key *key, FILE *out);

@@ -282,31 +282,33 @@ void cma_free(struct cma *s)
 
 /* ---- asking ---------------------------------------------------------------------------------- */
 
-/* z[n]: the odd multiples of 2^-53 through the inverse of the normal distribution. */
-static void deviates(const struct cma *s, int candidate, double *z)
+/* y = matrix x. */
+static void multiply(int n, const double *matrix, const double *x, double *y)
 {
+    for (int i = 0; i < n; i++) {
+        y[i] = 0;
+        for (int k = 0; k < n; k++)
+            y[i] += matrix[i * n + k] * x[k];
+    }
+}
+
+/* Candidate i, in coordinates without bounds. Deviates are the odd multiples of 2^-53 through the
+ * inverse of the normal distribution. */
+static void draw(const struct cma *s, int i, double *u)
+{
+    double z[CMA_MAX_COORDINATES] = {0};
     const philox4x64_key_t key = {{s->seed, 0x636d61}};
     philox4x64_ctr_t random = {{0}};
     for (int j = 0; j < s->n; j++) {
         const philox4x64_ctr_t counter = {
-            {s->restart, s->generation, (uint64_t)candidate, (uint64_t)j / 4}};
+            {s->restart, s->generation, (uint64_t)i, (uint64_t)j / 4}};
         if (j % 4 == 0)
             random = philox4x64(counter, key);
         z[j] = gsl_cdf_ugaussian_Pinv((double)(random.v[j % 4] >> 11 | 1) * 0x1p-53);
     }
-}
-
-/* Candidate i, in coordinates without bounds. */
-static void draw(const struct cma *s, int i, double *u)
-{
-    double z[CMA_MAX_COORDINATES];
-    deviates(s, i, z);
-    for (int j = 0; j < s->n; j++) {
-        double y = 0;
-        for (int k = 0; k < s->n; k++)
-            y += s->root[j * s->n + k] * z[k];
-        u[j] = s->centre[j] + s->step * y;
-    }
+    multiply(s->n, s->root, z, u);
+    for (int j = 0; j < s->n; j++)
+        u[j] = s->centre[j] + s->step * u[j];
 }
 
 void cma_ask(const struct cma *s, double *x)
@@ -328,19 +330,6 @@ static int better_first(const void *a, const void *b)
     return p->candidate < q->candidate ? -1 : 1;
 }
 
-/* The square of y's length in the metric of C. */
-static double length_squared(const struct cma *s, const double *y)
-{
-    double sum = 0;
-    for (int i = 0; i < s->n; i++) {
-        double z = 0;
-        for (int j = 0; j < s->n; j++)
-            z += s->back[i * s->n + j] * y[j];
-        sum += z * z;
-    }
-    return sum;
-}
-
 /* C += weight y y'. */
 static void add(struct cma *s, double weight, const double *y)
 {
@@ -355,12 +344,10 @@ static bool follow(struct cma *s, const double *y)
     const int n = s->n;
     const double c = s->c_step, of_step = sqrt(c * (2 - c) * s->mu);
     const double of_path = sqrt(s->c_path * (2 - s->c_path) * s->mu);
-    double length = 0;
+    double length = 0, z[CMA_MAX_COORDINATES] = {0};
+    multiply(n, s->back, y, z);
     for (int i = 0; i < n; i++) {
-        double z = 0;
-        for (int j = 0; j < n; j++)
-            z += s->back[i * n + j] * y[j];
-        s->path_step[i] = (1 - c) * s->path_step[i] + of_step * z;
+        s->path_step[i] = (1 - c) * s->path_step[i] + of_step * z[i];
         length += square(s->path_step[i]);
     }
     length = sqrt(length) / s->chi;
@@ -384,8 +371,11 @@ static void adapt(struct cma *s, bool h)
     for (int i = 0; i < s->lambda; i++) {
         const double *const y = s->y + (size_t)s->rank[i].candidate * s->n;
         double weight = s->c_mu * s->weight[i];
-        if (weight < 0) {
-            const double length = length_squared(s, y);
+        if (weight < 0) { /* by the square of y's length in the metric of C */
+            double length = 0, z[CMA_MAX_COORDINATES] = {0};
+            multiply(s->n, s->back, y, z);
+            for (int k = 0; k < s->n; k++)
+                length += z[k] * z[k];
             weight *= length > 0 ? s->n / length : 0;
         }
         add(s, weight, y);

@@ -2,6 +2,7 @@
 #include "trials.h"
 
 #include "engine/control/design.h"
+#include "engine/mechanism.h"
 #include "runner/base/message.h"
 #include "runner/base/units.h"
 #include "runner/plan/allowed.h"
@@ -9,10 +10,13 @@
 #include "runner/run/work.h"
 
 #include <math.h>
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
 #define MOST_SHORT 1e3
+enum { MOST_STARTS = 8192 }; /* elsewhere */
+static const double mass_error = 0.05, less_friction = 0.5;
 
 /* ---- making --------------------------------------------------------------------------------- */
 
@@ -108,22 +112,25 @@ static void look_at_loop(const struct trials *t, uint64_t index, struct scenario
 {
     const double asked = t->scenario->search.critical;
     stance_message ignored;
-    *loop = (struct trials_loop){.critical = NAN, .exists = 1, .stable = 1, .tried = 1};
+    *loop = (struct trials_loop){.critical = NAN, .tried = 1};
     scenario_case_values(t->at, index, &one->base);
+    const double sample_time = one->base.sample_time;
     if (!scenario_law(&one->base)->designed)
         return;
-    loop->exists = design_loop(report, one, NULL, &ignored);
-    loop->stable = loop->exists && report->stable;
-    loop->tried = loop->stable;
-    loop->short_of = !loop->exists ? MOST_SHORT : loop->stable ? 0 : 1 + instability(report);
-    if (!loop->tried || one->base.sample_time <= 0)
+    const bool exists = design_loop(report, one, NULL, &ignored);
+    loop->tried = exists && report->stable;
+    if (!loop->tried)
+        loop->short_of = exists ? 1 + instability(report) : MOST_SHORT;
+    if (!loop->tried || sample_time <= 0)
         return;
-    const double least = isnan(asked) ? 2 * one->base.sample_time : asked;
-    if (stance_critical_sample_time(report->states, report->inputs, report->A, report->B, report->K,
-                                    0, DESIGN_LONGEST, &loop->critical) != STANCE_OK)
+    const double least = isnan(asked) ? 2 * sample_time : asked;
+    const stance_plant plant = {report->states, report->inputs, report->A, report->B};
+    if (stance_critical_sample_time(&plant, &(stance_sampling){.K = report->K}, DESIGN_LONGEST,
+                                    &loop->critical) != STANCE_OK)
         loop->critical = NAN;
     loop->tried = least <= 0 || loop->critical >= least;
-    loop->short_of = loop->tried ? 0 : isnan(loop->critical) ? 1 : 1 - loop->critical / least;
+    if (!loop->tried)
+        loop->short_of = isnan(loop->critical) ? 1 : 1 - loop->critical / least;
 }
 
 /* Each rank a block of them. */
@@ -335,17 +342,113 @@ void linear_limit_shares(struct trials *t, double *value, uint64_t starts, doubl
     free(inside);
 }
 
-double linear_limit_overall(bool worst, size_t circumstances, const double *share, size_t *least)
+/* ---- elsewhere ------------------------------------------------------------------------------- */
+
+enum { CONTACTS, FRICTION, LATER, SLOWER, HEAVIER, LIGHTER };
+static const char *const name[ELSEWHERE_MOST] = {
+    [CONTACTS] = "with every contact on the ground",
+    [FRICTION] = "with half the friction",
+    [LATER] = "one sample later",
+    [SLOWER] = "with twice the sample time",
+    [HEAVIER] = "with masses 5 % larger than the controller knows",
+    [LIGHTER] = "with masses 5 % smaller than the controller knows"};
+
+/* Whether anything swept or varied lies in [offset, offset + size) of the values. */
+static bool moves(const struct scenario *s, size_t offset, size_t size)
 {
-    double sum = 0;
-    *least = circumstances;
-    for (size_t c = 0; c < circumstances; c++) {
-        sum += share[c];
-        if (!isnan(share[c]) && (*least == circumstances || share[c] < share[*least]))
-            *least = c;
+    for (int a = 0; a <= s->axes; a++) {
+        const struct scenario_axis *const axis = a < s->axes ? &s->axis[a] : &s->search.axis;
+        for (int k = 0; k < axis->paths; k++)
+            if (axis->offset[k] >= offset && axis->offset[k] < offset + size)
+                return true;
     }
-    if (worst && circumstances > 1)
-        return *least < circumstances ? share[*least] : NAN;
-    *least = circumstances;
-    return sum / (double)circumstances;
+    return false;
+}
+#define MOVES(s, member) moves(s, offsetof(struct scenario_values, member), sizeof(s)->base.member)
+
+/* The robot's masses, and the model's where they were the robot's. */
+static bool change_masses(const struct scenario *s, double factor, struct scenario_values *to)
+{
+    const stance_carried *const carried = s->scene->mechanism->carried;
+    bool any = false;
+    for (int i = 0; carried && i < carried->parameters; i++) {
+        if (strcmp(s->scene->robot[i].unit, "kg") != 0)
+            continue;
+        any = true;
+        to->model[i] = isnan(to->model[i]) ? to->robot[i] : to->model[i];
+        to->robot[i] *= factor;
+    }
+    return any && !MOVES(s, robot) && !MOVES(s, model);
+}
+
+/* The values there; false: the scenario says nothing of it, or is there itself. */
+static bool change(const struct scenario *s, int where, struct scenario_values *to)
+{
+    const struct scenario_values *const base = &s->base;
+    *to = *base;
+    switch (where) {
+    case CONTACTS:
+        to->contacts = (1 << s->scene->contacts) - 1;
+        return base->contacts != to->contacts;
+    case FRICTION:
+        to->friction *= less_friction;
+        return base->friction > 0 && base->contacts && !MOVES(s, friction);
+    case LATER:
+        to->delay++;
+        return base->sample_time > 0 && base->delay < STANCE_MAX_DELAY && !MOVES(s, delay);
+    case SLOWER:
+        to->sample_time *= 2;
+        return base->sample_time > 0 && !MOVES(s, sample_time);
+    default:
+        return change_masses(s, 1 + (where == HEAVIER ? mass_error : -mass_error), to);
+    }
+}
+
+const char *elsewhere_name(const struct scenario *s, int where)
+{
+    struct scenario_values ignored;
+    return change(s, where, &ignored) ? name[where] : NULL;
+}
+
+uint64_t elsewhere_starts(const struct scenario *s)
+{
+    return s->search.confirm < MOST_STARTS ? s->search.confirm : MOST_STARTS;
+}
+
+enum trials_end elsewhere_run(const struct trials *with, int where, size_t candidates,
+                              double *value, double *share, stance_message *message)
+{
+    const struct scenario *const s = with->scenario;
+    const uint64_t starts = elsewhere_starts(s);
+    struct scenario *const there = malloc(sizeof *there);
+    struct trials trials = {0};
+    enum trials_end end = TRIALS_BROKEN;
+    if (there) {
+        *there = *s; /* what it points to stays the scenario's */
+        change(s, where, &there->base);
+        there->axis[0] = s->axis[s->axes - 1];
+        there->axes = 1;
+        there->cases = there->axis[0].count;
+        there->search.grow[there->search.stages - 1] = 1;
+        there->search.confirm = starts;
+        there->search.critical = 0;
+    }
+    const bool good = (there && trials_make(&trials, there, with->parallel)) || no_memory(message);
+    if (parallel_agree(with->parallel, good, message->text, sizeof message->text)) {
+        trials.has_kernels = true; /* those of `with` */
+        trials.attend = with->attend;
+        trials.context = with->context;
+        trials.until = with->until;
+        trials.beats = with->beats;
+        end = trials_run(&trials, candidates, value, TRIALS_FRESH, starts, message);
+    }
+    for (size_t c = 0; end == TRIALS_DONE && c < candidates; c++) {
+        uint64_t recovered = 0;
+        for (uint64_t i = 0; i < starts; i++)
+            recovered += trials_recovered(trials.label[c * starts + i]);
+        share[c] = (double)recovered / (double)starts;
+    }
+    trials_free(&trials);
+    free(there);
+    return end;
 }

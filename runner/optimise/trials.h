@@ -23,7 +23,7 @@ enum trials_end { TRIALS_DONE, TRIALS_STOPPED, TRIALS_BROKEN };
 struct trials_loop {
     double critical; /* s, critical sample time without delay; INFINITY; NAN: not known */
     double short_of; /* by how much a loop that is not tried falls short, the less the nearer */
-    uint8_t exists, stable, tried;
+    uint8_t tried;
 };
 
 struct trials {
@@ -98,9 +98,18 @@ bool linear_limit_add(const struct scenario *s, size_t circumstance, double *ins
  * share[circumstances]; NAN: linear theory sets no bound there. */
 void linear_limit_shares(struct trials *trials, double *value, uint64_t starts, double *share);
 
-/* What these allow a search as it counts: no more than in the circumstance *least, that with the
- * smallest share, if it is of the worst of several; else their mean, *least is `circumstances`.
- * NAN: they set no bound. */
-double linear_limit_overall(bool worst, size_t circumstances, const double *share, size_t *least);
+/* ---- elsewhere ------------------------------------------------------------------------------- */
+
+/* What an optimum costs where it was not sought: with contacts that the scenario leaves out, on
+ * less friction, later, with other masses. */
+enum { ELSEWHERE_MOST = 6 };
+/* The name of such a place beside the scenario; NULL: it says nothing of that itself. */
+const char *elsewhere_name(const struct scenario *s, int where);
+/* Fresh starts that are tried there. */
+uint64_t elsewhere_starts(const struct scenario *s);
+/* Collective: share[candidates] of these that recover, value[candidates][paths]; `with` has the
+ * kernels. */
+enum trials_end elsewhere_run(const struct trials *with, int where, size_t candidates,
+                              double *value, double *share, stance_message *message);
 
 #endif

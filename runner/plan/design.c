@@ -32,6 +32,11 @@ const char *design_supports(const stance_scene *scene, const stance_equilibrium 
     return buffer;
 }
 
+static stance_plant plant_of(const struct design_report *r)
+{
+    return (stance_plant){r->states, r->inputs, r->A, r->B};
+}
+
 static bool open_loop(struct design_report *r, stance_message *message)
 {
     const stance_scene *scene = r->scenario->scene;
@@ -47,9 +52,10 @@ static bool open_loop(struct design_report *r, stance_message *message)
     stance_error error = scene->linearise(scene, r->model, &r->equilibrium, r->A, r->B);
     if (error != STANCE_OK)
         return refuse(message, "linearisation", error);
+    const stance_plant plant = plant_of(r);
     error = stance_eigenvalues(r->states, r->A, r->open_re, r->open_im);
     if (error == STANCE_OK)
-        error = stance_kalman(r->states, r->inputs, r->A, r->B, r->singular, &r->rank);
+        error = stance_kalman(&plant, r->singular, &r->rank);
     return error == STANCE_OK || refuse(message, "eigenvalues and Kalman rank", error);
 }
 
@@ -66,7 +72,8 @@ stance_null_set *design_null_set(const struct design_report *r, stance_message *
         low[i] = -limit[i] - r->equilibrium.torque[i];
         high[i] = limit[i] - r->equilibrium.torque[i];
     }
-    stance_null_set_make(r->states, r->inputs, r->A, r->B, low, high, &set, message);
+    const stance_plant plant = plant_of(r);
+    stance_null_set_make(&plant, low, high, &set, message);
     return set;
 }
 
@@ -150,10 +157,11 @@ static bool gains(struct design_report *r, const struct resolved_design *known,
     const double begin[STANCE_MAX_COORDINATES] = {0};
     stance_case c = {0};
 
-    r->how = (struct resolved_gains){0, NAN};
+    const stance_plant plant = plant_of(r);
+    r->how = (stance_robustness){0, NAN};
     const stance_law *const law = scenario_law(values);
     if (law->designed && !known &&
-        !resolve_gains(scene, values, &r->equilibrium, r->A, r->B, r->K, &r->how, message))
+        !resolve_gains(scene, values, &r->equilibrium, &plant, r->K, &r->how, message))
         return false;
     if (!law->designed && r->states < 2 * scene->postures)
         return complain(message, "a law that is not designed acts on what the contacts hold, too: "
@@ -176,24 +184,23 @@ static bool gains(struct design_report *r, const struct resolved_design *known,
     return true;
 }
 
-/* The plant behind its actuators, as torques are commanded. */
+/* The plant behind its actuators, as torques are commanded, and how that samples. */
 struct acting {
-    int n;
+    stance_plant plant;
+    stance_sampling loop;
     double A[DESIGN_PLANT * DESIGN_PLANT], B[DESIGN_PLANT * DESIGN_INPUTS];
     double K[DESIGN_INPUTS * DESIGN_PLANT];
 };
 
-static void act(const struct design_report *r, double lag, struct acting *p)
+static void act(const struct design_report *r, double lag, int delay, struct acting *p)
 {
-    const size_t n = (size_t)r->states, m = (size_t)r->inputs;
-    p->n = r->states + (lag > 0 ? r->inputs : 0);
-    if (lag > 0) {
-        stance_lagged(r->states, r->inputs, r->A, r->B, r->K, lag, p->A, p->B, p->K);
+    p->plant = plant_of(r);
+    p->loop = (stance_sampling){r->K, r->scenario->base.sample_time, delay};
+    if (lag <= 0)
         return;
-    }
-    memcpy(p->A, r->A, n * n * sizeof *p->A);
-    memcpy(p->B, r->B, n * m * sizeof *p->B);
-    memcpy(p->K, r->K, m * n * sizeof *p->K);
+    stance_lagged(&p->plant, r->K, lag, p->A, p->B, p->K);
+    p->plant = (stance_plant){r->states + r->inputs, r->inputs, p->A, p->B};
+    p->loop.K = p->K;
 }
 
 /* Its spectral radius, with the eigenvalues in re and im. */
@@ -201,11 +208,10 @@ static stance_error radius_of(const struct design_report *r, double lag, int del
                               double *re, double *im)
 {
     struct acting p;
-    act(r, lag, &p);
+    act(r, lag, delay, &p);
     *radius = 0;
-    const stance_error error = stance_sampled_loop(p.n, r->inputs, p.A, p.B, p.K,
-                                                   r->scenario->base.sample_time, delay, re, im);
-    for (int i = 0; error == STANCE_OK && i < p.n + delay * r->inputs; i++)
+    const stance_error error = stance_sampled_loop(&p.plant, &p.loop, re, im);
+    for (int i = 0; error == STANCE_OK && i < p.plant.states + delay * r->inputs; i++)
         *radius = fmax(*radius, hypot(re[i], im[i]));
     return error;
 }
@@ -271,10 +277,9 @@ static stance_error find_wander(struct design_report *r)
         const double half = i < r->states / 2 ? values->angle_noise : values->rate_noise;
         measured[i] = half * half / 3;
     }
-    act(r, r->lag, &p);
+    act(r, r->lag, r->delay, &p);
     const stance_error error =
-        stance_sampled_wander(p.n, r->inputs, p.A, p.B, p.K, values->sample_time, r->delay,
-                              measured, values->noise * values->noise / 3, rms);
+        stance_sampled_wander(&p.plant, &p.loop, measured, values->noise * values->noise / 3, rms);
     memcpy(r->wander, rms, sizeof r->wander);
     for (int k = 0; k < r->inputs; k++) {
         double variance = values->noise * values->noise / 3;
@@ -290,11 +295,10 @@ static stance_error margins(struct design_report *r)
     double re[DESIGN_LOOP], im[DESIGN_LOOP], radius = 0;
     stance_error error = STANCE_OK;
     struct acting p;
-    act(r, r->lag, &p);
-    for (int late = 0; late < 2 && error == STANCE_OK; late++)
-        error = stance_critical_sample_time(p.n, r->inputs, p.A, p.B, p.K,
-                                            late ? (r->delay > 1 ? r->delay : 1) : 0,
-                                            DESIGN_LONGEST, &r->critical[late]);
+    for (int late = 0; late < 2 && error == STANCE_OK; late++) {
+        act(r, r->lag, late ? (r->delay > 1 ? r->delay : 1) : 0, &p);
+        error = stance_critical_sample_time(&p.plant, &p.loop, DESIGN_LONGEST, &r->critical[late]);
+    }
     if (error != STANCE_OK || !r->sampled || !r->stable)
         return error;
     for (int d = 0; d <= STANCE_MAX_DELAY && error == STANCE_OK && radius < 1; d++) {
@@ -374,8 +378,8 @@ static bool sublevel(struct design_report *r, stance_message *message)
         const double tolerance = i < n / 2 ? values->settle_angle : values->settle_rate;
         weight[i] = 1 / (tolerance * tolerance);
     }
-    stance_error error =
-        resolve_loop(n, m, r->A, r->B, r->K, r->sampled ? values->sample_time : 0, loop);
+    const stance_plant plant = plant_of(r);
+    stance_error error = resolve_loop(&plant, r->K, r->sampled ? values->sample_time : 0, loop);
     if (error == STANCE_OK &&
         stance_lyapunov(n, loop, r->sampled > 0, weight, set->P, message) != STANCE_OK) {
         set->exists = false; /* on the border of stability */
@@ -387,8 +391,7 @@ static bool sublevel(struct design_report *r, stance_message *message)
     if (error == STANCE_OK) {
         memcpy(&a[(2 * m + 3) * n], r->plane, (size_t)n * sizeof *a);
         d[2 * m + 3] = 1;
-        error = stance_sublevel(n, set->P, 2 * m + 3 + r->bends, a, d, &set->level, &set->binding,
-                                set->alone, set->extent);
+        error = stance_sublevel(n, set->P, &(stance_bounds){2 * m + 3 + r->bends, a, d}, &set->of);
     }
     return error == STANCE_OK || refuse(message, "Lyapunov function", error);
 }
@@ -397,7 +400,8 @@ static bool sublevel(struct design_report *r, stance_message *message)
 static bool loop(struct design_report *r, const struct resolved_design *known,
                  stance_message *message)
 {
-    const int n = r->states, m = r->inputs;
+    const int n = r->states;
+    const stance_plant plant = plant_of(r);
     double matrix[DESIGN_STATES * DESIGN_STATES];
 
     const stance_program *const program = r->scenario->base.program;
@@ -410,13 +414,13 @@ static bool loop(struct design_report *r, const struct resolved_design *known,
         return true;
     if (!gains(r, known, message))
         return false;
-    stance_error error = resolve_loop(n, m, r->A, r->B, r->K, 0, matrix);
+    stance_error error = resolve_loop(&plant, r->K, 0, matrix);
     if (error == STANCE_OK)
         error = stance_eigenvalues(n, matrix, r->closed_re, r->closed_im);
     if (error == STANCE_OK && r->bends) {
         double beyond[DESIGN_INPUTS * DESIGN_STATES];
         design_beyond(r, beyond);
-        error = resolve_loop(n, m, r->A, r->B, beyond, 0, matrix);
+        error = resolve_loop(&plant, beyond, 0, matrix);
         if (error == STANCE_OK)
             error = stance_eigenvalues(n, matrix, r->beyond_re, r->beyond_im);
     }

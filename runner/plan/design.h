@@ -5,8 +5,6 @@
 
 #include "resolve.h"
 
-#include "engine/control/design.h"
-
 #include <jansson.h>
 
 enum {
@@ -26,10 +24,8 @@ enum {
 struct design_set {
     bool exists;
     const char *absent; /* why not */
-    double P[DESIGN_STATES * DESIGN_STATES], level;
-    int binding; /* which bound; -1: none */
-    /* How far a state reaches in the set when all others are 0, and when they are free. */
-    double alone[DESIGN_STATES], extent[DESIGN_STATES];
+    double P[DESIGN_STATES * DESIGN_STATES];
+    stance_sublevel_set of;
 };
 
 /* The states from which linear theory allows any controller to recover, while the contacts stand:
@@ -64,7 +60,7 @@ struct design_report {
     bool closed; /* there is a law: the rest is valid */
     double K[DESIGN_INPUTS * DESIGN_STATES];
     double closed_re[DESIGN_STATES], closed_im[DESIGN_STATES];
-    struct resolved_gains how;
+    stance_robustness how;
     /* Of a bimodal law: the plane, and the loop that it makes beyond. */
     bool bends;
     double plane[DESIGN_STATES], push[DESIGN_INPUTS];
@@ -126,6 +122,9 @@ const char *design_late(int delay, const char *verb, char buffer[64]);
 /* What a bound of the set is. */
 const char *design_bound_name(const struct design_report *r, int bound, char name[64]);
 
+/* Puts complex numbers among facts, [[re, im], ...]; with a dot before the key, which it has, for
+ * people. */
+void design_put_complex(json_t *facts, const char *key, int n, const double *re, const double *im);
 /* What `stance design` says (runner/base/say.h): a new reference, and for people its text. */
 json_t *design_facts(const struct design_report *r);
 extern const char design_text[];

@@ -8,6 +8,8 @@
 #ifndef STANCE_PLAN_RESOLVE_H
 #define STANCE_PLAN_RESOLVE_H
 
+#include "engine/control/design.h"
+
 #include "runner/scenario/scenario.h"
 
 /* What depends on fields marked `design` in the schema only (robot.*, initial.equilibrium.*,
@@ -54,27 +56,21 @@ bool resolve_keep_design_inputs(const stance_scene *scene, struct scenario_value
 bool resolve_equilibrium(const stance_scene *scene, const struct scenario_values *values,
                          double *model, stance_equilibrium *equilibrium, stance_message *message);
 
-/* How the gains came about. */
-struct resolved_gains {
-    int sweeps;       /* of robust pole placement; 0: another design */
-    double condition; /* of its eigenvectors; NAN: another design */
-};
-
 /* Which of the posture's 2 postures angles and rates is a state of the linear model about an
  * equilibrium, whose contacts may leave it fewer. */
 int resolve_state(const stance_scene *scene, const stance_equilibrium *equilibrium, int state);
 /* column[2 postures]: whether it is one of them. Gains of the others are 0. */
 void resolve_free(const stance_scene *scene, const stance_equilibrium *equilibrium, bool *column);
 
-/* K[actuators][states] of a state-feedback law for x' = A x + B u: designed, or as given. `how`
- * may be NULL. */
+/* K[actuators][states] of a state-feedback law for the plant: designed, or as given. `how` may be
+ * NULL. */
 bool resolve_gains(const stance_scene *scene, const struct scenario_values *values,
-                   const stance_equilibrium *equilibrium, const double *A, const double *B,
-                   double *K, struct resolved_gains *how, stance_message *message);
+                   const stance_equilibrium *equilibrium, const stance_plant *plant, double *K,
+                   stance_robustness *how, stance_message *message);
 
 /* loop[n][n] = A - B K; with interval > 0 of the model sampled so, torques held in between. */
-stance_error resolve_loop(int n, int m, const double *A, const double *B, const double *K,
-                          double interval, double *loop);
+stance_error resolve_loop(const stance_plant *plant, const double *K, double interval,
+                          double *loop);
 
 /* Where a case starts, whether it may or not: position and velocity[coordinates]. */
 void resolve_start(const stance_scene *scene, const struct scenario_values *values,

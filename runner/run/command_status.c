@@ -4,17 +4,16 @@
 #include "runner/base/command.h"
 #include "runner/base/message.h"
 #include "runner/base/sandbox.h"
+#include "runner/base/say.h"
 #include "runner/base/units.h"
 #include "runner/store/search_file.h"
 #include "runner/store/store.h"
 
 #include <inttypes.h>
-#include <jansson.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
 
 extern const struct command command_status; /* below */
@@ -81,6 +80,8 @@ static bool read_state(const char *file, struct state *state, stance_message *me
     return true;
 }
 
+/* ---- what is said ------------------------------------------------------------------------- */
+
 static json_t *number_or_null(double number)
 {
     return number < 0 ? json_null() : json_real(number);
@@ -91,136 +92,85 @@ static json_t *objective_or_null(double objective)
     return isfinite(objective) ? json_real(objective) : json_null();
 }
 
-/* Writes what there is in the file, which it releases, and what is known of the job. */
-static void print_json(json_t *root, const struct state *state)
+static json_t *seconds_text(double seconds)
 {
-    const struct heartbeat_note *note = &state->note;
-    const bool known = note->exists && note->running;
-    json_object_update_new(root,
-                           json_pack("{s:b, s:o, s:o, s:o, s:o, s:o, s:o}", "running",
-                                     note->running, "seconds_left", number_or_null(state->left),
-                                     "ranks", known ? json_integer(note->ranks) : json_null(),
-                                     "ranks_alive", known ? json_integer(note->alive) : json_null(),
-                                     "host", note->exists ? json_string(note->host) : json_null(),
-                                     "doing", known ? json_string(note->doing) : json_null(),
-                                     "last_sign", number_or_null(note->exists ? note->age : -1)));
-    json_dumpf(root, stdout, JSON_INDENT(2));
-    putchar('\n');
-    json_decref(root);
+    char text[32];
+    text_of_seconds(text, sizeof text, seconds);
+    return seconds < 0 ? json_null() : json_string(text);
 }
 
-static json_t *run_json(const char *file, const struct state *state)
+static json_t *run_facts(const char *file, const struct state *state)
 {
     const struct store_counts *c = &state->counts;
     const struct heartbeat_note *note = &state->note;
-    const bool known = note->exists && note->running;
     char shard[SHARD_TEXT];
     shard_text(&state->shard, shard);
-    return json_pack("{s:s, s:o, s:I, s:I, s:I, s:o, s:o, s:o, s:o}", "file", file, "shard",
-                     state->shard.count > 0 ? json_string(shard) : json_null(), "cases",
-                     (json_int_t)c->cases, "done", (json_int_t)c->done, "failed",
-                     (json_int_t)c->failed, "pending",
-                     state->refined ? json_null() : json_integer((json_int_t)count_pending(state)),
-                     "rate", number_or_null(state->rate), "mean_rate", number_or_null(state->mean),
-                     "round", known && note->round > 0 ? json_integer(note->round) : json_null());
+    return json_pack(
+        "{s:o, s:o, s:I, s:I, s:I, s:o, s:o, s:o, s:o, s:b, s:b, s:s}", "file",
+        json_string_nocheck(file), "shard",
+        state->shard.count > 0 ? json_string(shard) : json_null(), "cases", (json_int_t)c->cases,
+        "done", (json_int_t)c->done, "failed", (json_int_t)c->failed, "pending",
+        state->refined ? json_null() : json_integer((json_int_t)count_pending(state)), "rate",
+        number_or_null(state->rate), "mean_rate", number_or_null(state->mean), "round",
+        note->running && note->exists && note->round > 0 ? json_integer(note->round) : json_null(),
+        ".refined", state->refined, ".complete", count_pending(state) == 0, ".command", "run");
 }
 
-static json_t *search_json(const char *file, const struct state *state)
+static const char run_text[] =
+    "{file}: [shard:shard {shard}, ]{done} of {cases} cases done, {failed} failed, "
+    "[.refined:others to be simulated or inferred as the map is refined|{pending} pending]; ";
+
+static json_t *search_facts(const char *file, const struct state *state)
 {
     const struct search_file *f = &state->search;
     const size_t last = f->length[SEARCH_GENERATION] - 1;
-    return json_pack("{s:s, s:b, s:I, s:I, s:I, s:I, s:I, s:o, s:o}", "file", file, "finished",
-                     f->finished, "generations", (json_int_t)last + 1, "most_generations",
-                     (json_int_t)f->most_generations, "candidates",
+    const double best = f->objective[f->best[last]],
+                 chosen = f->chosen < 0 ? NAN : f->confirmed_objective[f->chosen];
+    return json_pack("{s:s, s:b, s:I, s:I, s:I, s:I, s:I, s:o, s:o, s:f, s:b, s:I, s:s, s:b, s:s}",
+                     "file", file, "finished", f->finished, "generations", (json_int_t)last + 1,
+                     "most_generations", (json_int_t)f->most_generations, "candidates",
                      (json_int_t)f->length[SEARCH_CANDIDATE], "starts", (json_int_t)f->starts[last],
-                     "best", (json_int_t)f->best[last], "best_objective",
-                     objective_or_null(f->objective[f->best[last]]), "chosen_objective",
-                     objective_or_null(f->chosen < 0 ? NAN : f->confirmed_objective[f->chosen]));
+                     "best", (json_int_t)f->best[last], "best_objective", objective_or_null(best),
+                     "chosen_objective", objective_or_null(chosen), ".best",
+                     f->chosen < 0 ? best : chosen, ".chosen", f->chosen >= 0, ".fresh",
+                     (json_int_t)f->length[SEARCH_START], ".note", f->note, ".complete",
+                     f->finished, ".command", "optimise");
 }
 
-static void print_running(const struct state *state)
+static const char search_text[] =
+    "{file}: generation {generations} of at most {most_generations}, {candidates} candidates, "
+    "best {.best%.4g} of [.chosen:{.fresh} fresh|{starts}] starts; ";
+
+/* What is known of the job. */
+static json_t *job_facts(const struct state *state)
 {
     const struct heartbeat_note *note = &state->note;
-    char time[32];
-
-    fputs("running", stdout);
-    if (note->exists) {
-        printf(" on %d rank%s", note->ranks, note->ranks == 1 ? "" : "s");
-        if (!note->here)
-            printf(" of %s", note->host);
-        if (note->alive < note->ranks && note->age < HEARTBEAT_SILENCE) {
-            printf(", of which %d gave no sign of life for %g s", note->ranks - note->alive,
-                   HEARTBEAT_SILENCE);
-        } else if (note->age >= HEARTBEAT_SILENCE) {
-            text_of_seconds(time, sizeof time, note->age);
-            printf(", no sign of life for %s", time);
-        }
-        if (strcmp(note->doing, "computing") != 0 && strncmp(note->doing, "generation", 10) != 0)
-            printf(", %s", note->doing);
-    }
-    if (state->rate >= 0)
-        printf(", %.0f cases/s", state->rate);
-    if (state->left >= 0) {
-        text_of_seconds(time, sizeof time, state->left);
-        printf(", %s left", time);
-    }
+    const bool known = note->exists && note->running, silent = note->age >= HEARTBEAT_SILENCE;
+    const bool usual =
+        strcmp(note->doing, "computing") == 0 || strncmp(note->doing, "generation", 10) == 0;
+    return json_pack("{s:b, s:o, s:o, s:o, s:o, s:o, s:o, s:b, s:b, s:b, s:i, s:i, s:o, s:b, s:o}",
+                     "running", note->running, "seconds_left", number_or_null(state->left), "ranks",
+                     known ? json_integer(note->ranks) : json_null(), "ranks_alive",
+                     known ? json_integer(note->alive) : json_null(), "host",
+                     note->exists ? json_string(note->host) : json_null(), "doing",
+                     known ? json_string(note->doing) : json_null(), "last_sign",
+                     number_or_null(note->exists ? note->age : -1), ".here", note->here, ".silent",
+                     silent, ".unusual", !usual, ".lost", silent ? 0 : note->ranks - note->alive,
+                     ".patience", (int)HEARTBEAT_SILENCE, ".age",
+                     seconds_text(note->exists ? note->age : -1), ".rated", state->rate >= 0,
+                     ".left", seconds_text(state->left));
 }
 
-/* Why nothing writes the file that is not complete. */
-static void print_stopped(const struct heartbeat_note *note, const char *command)
-{
-    char time[32];
-    fputs("not running", stdout);
-    if (note->exists) { /* it did not end by itself: it would have taken its note along */
-        text_of_seconds(time, sizeof time, note->age);
-        printf(" (the last sign of life was %s ago, on %s)", time, note->host);
-    }
-    printf(" (stance %s --resume goes on)", command);
-}
-
-static void print_search(const char *file, const struct state *state)
-{
-    const struct search_file *f = &state->search;
-    const size_t last = f->length[SEARCH_GENERATION] - 1;
-    printf("%s: generation %zu of at most %" PRId64 ", %zu candidates, best %.4g of ", file,
-           last + 1, f->most_generations, f->length[SEARCH_CANDIDATE],
-           f->chosen < 0 ? f->objective[f->best[last]] : f->confirmed_objective[f->chosen]);
-    if (f->chosen < 0)
-        printf("%" PRId64 " starts; ", f->starts[last]);
-    else
-        printf("%zu fresh starts; ", f->length[SEARCH_START]);
-    if (state->note.running)
-        print_running(state);
-    else if (f->finished)
-        printf("finished: %s", f->note);
-    else
-        print_stopped(&state->note, "optimise");
-    putchar('\n');
-}
-
-static void print_text(const char *file, const struct state *state)
-{
-    const struct store_counts *c = &state->counts;
-    const struct heartbeat_note *note = &state->note;
-    const uint64_t pending = count_pending(state);
-
-    printf("%s: ", file);
-    if (state->shard.count > 0)
-        printf("shard %" PRIu64 "/%" PRIu64 ", ", state->shard.number, state->shard.count);
-    printf("%" PRIu64 " of %" PRIu64 " cases done, %" PRIu64 " failed, ", c->done, c->cases,
-           c->failed);
-    if (state->refined)
-        fputs("others to be simulated or inferred as the map is refined; ", stdout);
-    else
-        printf("%" PRIu64 " pending; ", pending);
-    if (note->running)
-        print_running(state);
-    else if (pending == 0)
-        fputs("complete", stdout);
-    else
-        print_stopped(note, "run");
-    putchar('\n');
-}
+/* A job that ended by itself took its note along. */
+static const char job_text[] =
+    "[running:running"
+    "[ranks: on {ranks} rank{ranks#s}[!.here: of {host}]"
+    "[.lost>0:, of which {.lost} gave no sign of life for {.patience} s]"
+    "[.silent:, no sign of life for {.age}][.unusual:, {doing}]]"
+    "[.rated:, {rate%.0f} cases/s][.left:, {.left} left]"
+    "|[.complete:[.note:finished: {.note}|complete]|not running"
+    "[host: (the last sign of life was {.age} ago, on {host})] (stance {.command} --resume goes on)"
+    "]]\n";
 
 struct request {
     struct option_texts files;
@@ -245,13 +195,14 @@ static int say(void *context)
         fprintf(stderr, "stance status: %s\n", message.text);
         return EXIT_IO;
     }
-    if (request->json)
-        print_json((state.searches ? search_json : run_json)(request->file, &state), &state);
-    else
-        (state.searches ? print_search : print_text)(request->file, &state);
+    json_t *facts = (state.searches ? search_facts : run_facts)(request->file, &state);
+    char text[1000];
+    json_object_update_new(facts, job_facts(&state));
+    snprintf(text, sizeof text, "%s%s", state.searches ? search_text : run_text, job_text);
+    good = say_facts(facts, request->json, text, stdout);
     if (state.searches)
         search_file_free(&state.search);
-    return request->watch && state.note.running ? STILL_RUNNING : EXIT_DONE;
+    return !good ? EXIT_IO : request->watch && state.note.running ? STILL_RUNNING : EXIT_DONE;
 }
 
 /* All files, once; STILL_RUNNING: at least one is being written. */

@@ -15,6 +15,7 @@
 
 #include <errno.h>
 #include <inttypes.h>
+#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -218,44 +219,58 @@ bool run_old_open(struct run *run)
                                            : true;
 }
 
-bool run_extend_designs(struct run *run)
+/* ---- what it holds -------------------------------------------------------------------------- */
+
+bool run_old_designs(struct run *run)
 {
     if (!adopt_open(&run->old, &run->message))
         return run_fail_io(run);
+    if (run->succeed && !changed_scenario_may_follow(&run->old, &run->plan, &run->message))
+        return run_fail(run, EXIT_USAGE, "stance run: %s", run->message.text);
     adopt_designs(&run->old, &run->plan, NULL);
     return true;
 }
 
-bool run_extend_copy(struct run *run)
+struct taking {
+    const struct adopted *old;
+    struct adopted_rows rows;
+};
+
+static bool take_rows(void *context, struct store *store, stance_message *message)
 {
-    struct adopted_rows rows = {0}; /* a stop comes after this */
-    if (!adopt_rows(&run->old, run->store, &rows, &run->message))
-        return run_fail_io(run);
-    if (rows.damaged > 0)
-        fprintf(stderr,
-                "stance run: %s: %" PRIu64 " case%s not as the checksum says: computed again\n",
-                run->old.file, rows.damaged, rows.damaged == 1 ? " is" : "s are");
-    return true;
+    struct taking *const taking = context;
+    return adopt_rows(taking->old, store, &taking->rows, message);
 }
 
-/* ---- another scenario ----------------------------------------------------------------------- */
-
-void run_succeed(struct run *run, const char *hosts)
+void run_old_rows(struct run *run, const char *hosts)
 {
-    struct adopted_rows rows;
-    bool refused;
-    if (changed_scenario_make(&run->old, &run->plan, run->parallel.size, hosts, &rows, &refused,
-                              &run->message)) {
+    struct taking taking = {.old = &run->old};
+    const struct adopted_filling filling = {
+        take_rows, &taking, run->succeed ? &run->old.origin : NULL, run->parallel.size, hosts};
+    char real[PATH_MAX]; /* a file that is gone on with through a link is the one that it names */
+    const bool link = run->succeed && realpath(run->file, real);
+    const bool good = adopt_make(link ? real : run->file, &run->plan, &filling, &run->message);
+    const uint64_t damaged = taking.rows.damaged;
+    if (taking.rows.stopped)
+        run_stop_early(run, run->succeed
+                                ? "stopped before the file could go on with another scenario"
+                                : "stopped before it had the old file's cases: nothing is "
+                                  "stored");
+    else if (!good)
+        run_fail_io(run);
+    else if (run->succeed)
         fprintf(stderr,
                 "stance run: %.200s goes on with another scenario; %" PRIu64 " of its %" PRIu64
                 " cases are done and stay as they are",
-                run->file, rows.copied, run->plan.rows);
-        if (rows.damaged > 0)
-            fprintf(stderr, ", %" PRIu64 " did not verify", rows.damaged);
+                run->file, taking.rows.copied, run->plan.rows);
+    if (good && run->succeed && damaged > 0)
+        fprintf(stderr, ", %" PRIu64 " did not verify", damaged);
+    else if (good && damaged > 0)
+        fprintf(stderr,
+                "stance run: %s: %" PRIu64 " case%s not as the checksum says: computed again",
+                run->old.file, damaged, damaged == 1 ? " is" : "s are");
+    if (good && (run->succeed || damaged > 0))
         fputc('\n', stderr);
-    } else if (run->message.text[0]) {
-        run_fail(run, refused ? EXIT_USAGE : EXIT_IO, "stance run: %s", run->message.text);
-    } else {
-        run_stop_early(run, "stopped before the file could go on with another scenario");
-    }
+    adopt_close(&run->old);
+    lock_release(&run->old_lock);
 }

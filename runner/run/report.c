@@ -2,6 +2,7 @@
 #include "report.h"
 
 #include "runner/base/checksum.h"
+#include "runner/base/say.h"
 #include "runner/base/units.h"
 #include "runner/base/words.h"
 #include "runner/plan/kernels.h"
@@ -10,7 +11,6 @@
 #include "runner/store/store.h"
 
 #include <inttypes.h>
-#include <jansson.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -112,123 +112,57 @@ static json_t *sample_json(const struct plan *plan)
         for (int k = 0; k < f->paths; k++)
             json_array_append_new(paths, json_string(axis->path[f->first + k]));
         factor_text(axis, f, text, sizeof text);
-        json_array_append_new(factors, json_pack("{s:o, s:s}", "paths", paths, "range", text));
-    }
-    return json_pack("{s:s, s:I, s:I, s:I, s:o}", "method", doe_words[design->method], "count",
-                     (json_int_t)design->count, "block", (json_int_t)doe_block(design), "points",
-                     (json_int_t)doe_points(design), "factors", factors);
-}
-
-static void report_sample(const struct scenario *s)
-{
-    static const char *const blocks[] = {[DOE_SALTELLI] = "blocks", [DOE_MORRIS] = "trajectories"};
-    const struct doe *design = &s->sample.design;
-    const struct scenario_axis *axis = &s->axis[s->axes - 1];
-    const uint64_t block = doe_block(design);
-
-    printf("  %-32s %8zu  points, %s: ", axis->name, axis->count, doe_words[design->method]);
-    if (block > 1)
-        printf("%" PRIu64 " %s of %" PRIu64 ", ", design->count, blocks[design->method], block);
-    printf("%zu factor%s\n", design->factors, design->factors == 1 ? "" : "s");
-    for (size_t j = 0; j < design->factors; j++) {
-        const struct scenario_factor *f = &s->sample.factor[j];
-        char text[400];
-        int used = 0;
-        factor_text(axis, f, text, sizeof text);
-        printf("    ");
+        json_t *const factor = json_pack("{s:o, s:s}", "paths", paths, "range", text);
         for (int k = 0; k < f->paths; k++)
-            used += printf("%s%s", k ? ", " : "", axis->path[f->first + k]);
-        printf("%*s  %s\n", used < 39 ? 39 - used : 0, "", text);
+            say_add(factor, ".paths", "%s%s", k ? ", " : "", axis->path[f->first + k]);
+        json_array_append_new(factors, factor);
     }
-}
-
-static json_t *law_json(const struct scenario *s)
-{
-    char hash[CHECKSUM_SHA256_TEXT];
-    if (!s->law.source)
-        return json_null();
-    const bool trusted = law_is_trusted(s, hash);
-    return json_pack("{s:s, s:s, s:b}", "file", s->law.name, "sha256", hash, "trusted", trusted);
-}
-
-static void report_json(const struct estimate *e)
-{
-    const struct plan *const plan = e->plan;
-    const struct scenario *s = plan->scenario;
-    json_t *dimensions = json_array();
-    const int axes = plan->single ? 0 : s->axes;
-    for (int a = 0; a < axes; a++)
-        json_array_append_new(dimensions, json_pack("{s:s, s:I}", "name", s->axis[a].name, "count",
-                                                    (json_int_t)s->axis[a].count));
-    if (axes == 0)
-        json_array_append_new(dimensions, json_pack("{s:s, s:i}", "name", "case", "count", 1));
-    json_t *root = json_pack(
-        "{s:s, s:s, s:s, s:I, s:o, s:I, s:I, s:I, s:I, s:s, s:I, s:i, s:o, s:b, s:f, s:o, "
-        "s:o, s:o}",
-        "scenario", s->file, "title", s->title, "scene", s->scene->name, "cases",
-        (json_int_t)plan->rows, "dimensions", dimensions, "designs", (json_int_t)plan->designs,
-        "designs_computed", (json_int_t)(plan->designs - plan->pending), "designs_failed",
-        (json_int_t)e->designs_failed, "recorded_cases", (json_int_t)plan->record_cases, "file",
-        e->file, "file_bytes", (json_int_t)e->size, "ranks", e->ranks, "seconds_on_one_rank",
-        e->seconds >= 0 ? json_real(e->seconds) : json_null(), "seconds_is_upper_bound", e->bound,
-        "compile_seconds", e->compiling, "refine",
-        e->coarse ? json_pack("{s:I, s:I, s:I}", "coarse_cases", (json_int_t)e->coarse, "probes",
-                              (json_int_t)llround(e->probes), "most_cases", (json_int_t)plan->rows)
-                  : json_null(),
-        "sample", sample_json(plan), "law", law_json(s));
-    json_dumpf(root, stdout, JSON_INDENT(2));
-    putchar('\n');
-    json_decref(root);
-}
-
-static void report_designs(const struct estimate *e)
-{
-    const size_t designs = e->plan->designs, computed = designs - e->plan->pending;
-    const stance_law *const law = scenario_law(&e->plan->scenario->base);
-    if (!law->designed && designs == 1) {
-        printf("controller  %s", law->name);
-        return;
-    }
-    printf("%s %zu distinct", law->designed ? "designs    " : "equilibria ", designs);
-    if (computed == designs) {
-        if (e->designs_failed > 0)
-            printf(", of which %zu do not exist: their cases will fail", e->designs_failed);
-        return;
-    }
-    printf(", %zu of them computed: ", computed);
-    if (e->designs_failed > 0 && e->designs_failed < computed)
-        printf("%zu do not exist and their cases will fail", e->designs_failed);
-    else
-        fputs(e->designs_failed == 0 ? "all exist" : "none exists", stdout);
-    printf("\nunchecked   the other %zu and the initial states of their cases", e->plan->pending);
+    return json_pack("{s:s, s:I, s:I, s:I, s:o, s:I}", "method", doe_words[design->method], "count",
+                     (json_int_t)design->count, "block", (json_int_t)doe_block(design), "points",
+                     (json_int_t)doe_points(design), "factors", factors, ".factors",
+                     (json_int_t)design->factors);
 }
 
 /* A law of the user's own, which a stranger's scenario may bring. */
-static void report_law(const struct scenario *s)
+static json_t *law_json(const struct scenario *s)
 {
-    char hash[CHECKSUM_SHA256_TEXT];
+    char hash[CHECKSUM_SHA256_TEXT], begin[13];
     if (!s->law.source)
-        return;
+        return json_null();
     const bool trusted = law_is_trusted(s, hash);
-    printf("\nlaw         %s, C code, SHA-256 %.12s...: %s", s->law.name, hash,
-           trusted ? "trusted" : "not trusted yet, `run` asks for --trust");
+    snprintf(begin, sizeof begin, "%.12s", hash);
+    return json_pack("{s:s, s:s, s:b, s:s}", "file", s->law.name, "sha256", hash, "trusted",
+                     trusted, ".begin", begin);
 }
 
-static void report_axis(const struct scenario_axis *axis)
+static json_t *dimensions_json(const struct plan *plan)
 {
-    char first[64], last[64];
-    size_t ends[2];
-    const bool sorted =
-        scenario_ends(axis->words ? NULL : axis->value, axis->count, (size_t)axis->paths, ends);
-    scenario_axis_text(axis, ends[0], 0, first, sizeof first);
-    scenario_axis_text(axis, ends[1], 0, last, sizeof last);
-    printf("  %-32s %8zu  %s ... %s %s%s\n", axis->name, axis->count, first, last,
-           axis->words || strcmp(axis->unit, "1") == 0 ? "" : axis->unit,
-           sorted ? "" : " (not sorted)");
+    const struct scenario *s = plan->scenario;
+    json_t *dimensions = json_array();
+    for (int a = 0; !plan->single && a < s->axes; a++) {
+        const struct scenario_axis *const axis = &s->axis[a];
+        json_t *const one = json_pack("{s:s, s:I, s:b}", "name", axis->name, "count",
+                                      (json_int_t)axis->count, ".axis", true);
+        if (!axis->sample) {
+            char first[64], last[64];
+            size_t ends[2];
+            const bool sorted = scenario_ends(axis->words ? NULL : axis->value, axis->count,
+                                              (size_t)axis->paths, ends);
+            scenario_axis_text(axis, ends[0], 0, first, sizeof first);
+            scenario_axis_text(axis, ends[1], 0, last, sizeof last);
+            say_add(one, ".range", "%s ... %s %s%s", first, last,
+                    axis->words || strcmp(axis->unit, "1") == 0 ? "" : axis->unit,
+                    sorted ? "" : " (not sorted)");
+        }
+        json_array_append_new(dimensions, one);
+    }
+    if (json_array_size(dimensions) == 0)
+        json_array_append_new(dimensions, json_pack("{s:s, s:i}", "name", "case", "count", 1));
+    return dimensions;
 }
 
 /* What becomes of a sample time that is no whole number of steps, where neither is swept. */
-static void report_step(const struct scenario *s)
+static void add_step(json_t *facts, const struct scenario *s)
 {
     const double interval = s->base.sample_time, step = s->base.step;
     const double pieces = fmax(1, ceil(interval / step - 1e-9));
@@ -237,85 +171,117 @@ static void report_step(const struct scenario *s)
         scenario_axis_of(s, offsetof(struct scenario_values, sample_time), &k) ||
         scenario_axis_of(s, offsetof(struct scenario_values, step), &k))
         return;
-    printf("\nstep        %.9g s: a sample of %.9g s is cut into %.0f step%s of at most %.9g s",
-           interval / pieces, interval, pieces, pieces > 1 ? "s" : "", step);
+    say_add(facts, ".step", "%.9g s: a sample of %.9g s is cut into %.0f step%s of at most %.9g s",
+            interval / pieces, interval, pieces, pieces > 1 ? "s" : "", step);
 }
 
-static void report_cost(const struct estimate *e)
+/* What stance optimise makes of the scenario. */
+static void add_search(json_t *facts, const struct estimate *e)
 {
-    const double all = e->seconds / e->ranks,
-                 share = ((double)e->coarse + e->probes) / (double)e->plan->rows;
+    const struct scenario_search *const search = &e->plan->scenario->search;
+    char text[40];
+    if (!search->given)
+        return;
+    text_of_seconds(text, sizeof text, e->searching / e->ranks);
+    say_add(facts, ".search",
+            "%d numbers, %" PRIu64 " candidates from %" PRIu64 " to %" PRIu64 " starts, %" PRIu64
+            " fresh ones",
+            search_numbers(e->plan->scenario), search->candidates, search->grow[0],
+            search->grow[search->stages - 1], search->confirm);
+    if (e->seconds >= 0)
+        say_add(facts, ".search", "; %s %s", e->bound ? "at most about" : "at first guess", text);
+}
+
+static void add_cost(json_t *facts, const struct estimate *e)
+{
+    const double share = ((double)e->coarse + e->probes) / (double)e->plan->rows;
     char text[40], first[40];
-    text_of_seconds(text, sizeof text, all);
+    text_of_seconds(text, sizeof text, e->seconds / e->ranks);
     text_of_seconds(first, sizeof first, share * e->seconds / e->ranks);
     if (!plan_simulates(e->plan))
-        puts("cost        unknown: nothing is run by a law that is not trusted");
+        say_add(facts, ".cost", "unknown: nothing is run by a law that is not trusted");
     else if (!(e->seconds >= 0))
-        printf("cost        unknown: %s\n", isnan(e->seconds)
-                                                ? "the cases tried take too long to tell"
-                                                : "none of the cases tried can be computed");
+        say_add(facts, ".cost", "unknown: %s",
+                isnan(e->seconds) ? "the cases tried take too long to tell"
+                                  : "none of the cases tried can be computed");
     else if (e->coarse > 0)
-        printf("cost        about %s for lattice and probes, %s for all, on %d rank%s\n", first,
-               text, e->ranks, e->ranks == 1 ? "" : "s");
+        say_add(facts, ".cost", "about %s for lattice and probes, %s for all, on %d rank%s", first,
+                text, e->ranks, e->ranks == 1 ? "" : "s");
     else
-        printf("cost        %s %s on %d rank%s%s\n", e->bound ? "at most about" : "about", text,
-               e->ranks, e->ranks == 1 ? "" : "s",
-               e->compiling > 0 ? ", with the kernel that run compiles for this robot" : "");
-}
-
-static void report_text(const struct estimate *e)
-{
-    const struct plan *const plan = e->plan;
-    const struct scenario *s = plan->scenario;
-    const int axes = plan->single ? 0 : s->axes;
-    char text[40];
-
-    printf("%s\nscene %s, %" PRIu64 " case%s", s->title[0] ? s->title : s->name, s->scene->name,
-           plan->rows, plan->rows == 1 ? "" : "s");
-    for (int a = 0; a < axes; a++)
-        printf("%s%zu", a ? " x " : ": ", s->axis[a].count);
-    putchar('\n');
-    for (int a = 0; a < axes; a++)
-        if (s->axis[a].sample)
-            report_sample(s);
-        else
-            report_axis(&s->axis[a]);
-    if (plan->shard.count > 0)
-        printf("shard       %" PRIu64 "/%" PRIu64 ", %" PRIu64 " cases\n", plan->shard.number,
-               plan->shard.count, plan_share(plan).count);
-    report_designs(e);
-    report_law(s);
-    report_step(s);
-    if (plan->record_cases > 0)
-        printf("\nrecorded    %" PRIu64 " trajectories of %" PRId64 " instants", plan->record_cases,
-               plan->record_rows);
-    if (e->coarse > 0)
-        printf("\nrefine      %" PRIu64 " cases of a coarse lattice and about %.0f probes, then "
-               "those where outcomes differ: at most all",
-               e->coarse, e->probes);
-    text_of_bytes(text, sizeof text, (double)e->size);
-    printf("\nfile        %s, about %s\n", e->file, text);
+        say_add(facts, ".cost", "%s %s on %d rank%s%s", e->bound ? "at most about" : "about", text,
+                e->ranks, e->ranks == 1 ? "" : "s",
+                e->compiling > 0 ? ", with the kernel that run compiles for this robot" : "");
     if (e->compiling > 0) {
         const double unit = pow(10, floor(log10(e->compiling))); /* more is not known */
         text_of_seconds(text, sizeof text, round(e->compiling / unit) * unit);
-        printf("compiling   about %s, once for robots of this structure; till then kernels that "
-               "are built in compute\n",
-               text);
+        say_add(facts, ".compiling", "%s", text);
     }
-    report_cost(e);
-    if (!s->search.given)
-        return;
-    /* What stance optimise makes of the scenario. */
-    text_of_seconds(text, sizeof text, e->searching / e->ranks);
-    printf("optimise    %d numbers, %" PRIu64 " candidates from %" PRIu64 " to %" PRIu64
-           " starts, %" PRIu64 " fresh ones%s%s: stance optimise %s\n",
-           search_numbers(s), s->search.candidates, s->search.grow[0],
-           s->search.grow[s->search.stages - 1], s->search.confirm,
-           !(e->seconds >= 0) ? ""
-           : e->bound         ? "; at most about "
-                              : "; at first guess ",
-           e->seconds >= 0 ? text : "", s->file);
 }
+
+static json_t *facts_of(const struct estimate *e)
+{
+    const struct plan *const plan = e->plan;
+    const struct scenario *s = plan->scenario;
+    const stance_law *const law = scenario_law(&s->base);
+    const size_t computed = plan->designs - plan->pending;
+    char size[40], shard[SHARD_TEXT];
+    text_of_bytes(size, sizeof size, (double)e->size);
+    shard_text(&plan->shard, shard);
+    json_t *facts = json_pack(
+        "{s:o, s:s, s:s, s:I, s:o, s:I, s:I, s:I, s:I, s:o, s:I, s:i, s:o, s:b, s:f, s:o, "
+        "s:o, s:o}",
+        "scenario", json_string_nocheck(s->file), "title", s->title, "scene", s->scene->name,
+        "cases", (json_int_t)plan->rows, "dimensions", dimensions_json(plan), "designs",
+        (json_int_t)plan->designs, "designs_computed", (json_int_t)computed, "designs_failed",
+        (json_int_t)e->designs_failed, "recorded_cases", (json_int_t)plan->record_cases, "file",
+        json_string_nocheck(e->file), "file_bytes", (json_int_t)e->size, "ranks", e->ranks,
+        "seconds_on_one_rank", e->seconds >= 0 ? json_real(e->seconds) : json_null(),
+        "seconds_is_upper_bound", e->bound, "compile_seconds", e->compiling, "refine",
+        e->coarse ? json_pack("{s:I, s:I, s:I}", "coarse_cases", (json_int_t)e->coarse, "probes",
+                              (json_int_t)llround(e->probes), "most_cases", (json_int_t)plan->rows)
+                  : json_null(),
+        "sample", sample_json(plan), "law", law_json(s));
+    json_t *const more =
+        json_pack("{s:o, s:s*, s:b, s:b, s:I, s:I, s:I, s:s, s:s, s:b}", ".name",
+                  json_string_nocheck(s->title[0] ? s->title : s->name), ".shard",
+                  plan->shard.count > 0 ? shard : NULL, ".axes", !plan->single && s->axes > 0,
+                  ".designed", law->designed, ".share", (json_int_t)plan_share(plan).count,
+                  ".pending", (json_int_t)plan->pending, ".instants", (json_int_t)plan->record_rows,
+                  ".size", size, ".law", law->name, ".alone", !law->designed && plan->designs == 1);
+    json_object_update_new(facts, more);
+    json_object_set_new(facts, ".some_failed",
+                        json_boolean(e->designs_failed > 0 && e->designs_failed < computed));
+    add_step(facts, s);
+    add_cost(facts, e);
+    add_search(facts, e);
+    return facts;
+}
+
+static const char report_text[] =
+    "{.name}\nscene {scene}, {cases} case{cases#s}"
+    "[.axes:: [dimensions* x :{count}]\n"
+    "[dimensions*:  {name%-32s} {count%8d}  [.range:{.range}|points, {sample/method}: "
+    "[sample/block>1:{sample/count} [sample/method=morris:trajectories|blocks] of {sample/block}, ]"
+    "{sample/.factors} factor{sample/.factors#s}"
+    "[sample/factors*:\n    {.paths%-39s}  {range}]]\n]|\n]"
+    "[.shard:shard       {.shard}, {.share} cases\n]"
+    "[.alone:controller  {.law}|[.designed:designs    |equilibria ] {designs} distinct"
+    "[.pending:, {designs_computed} of them computed: "
+    "[.some_failed:{designs_failed} do not exist and their cases will fail"
+    "|[designs_failed:none exists|all exist]]\n"
+    "unchecked   the other {.pending} and the initial states of their cases"
+    "|[designs_failed:, of which {designs_failed} do not exist: their cases will fail]]]"
+    "[law:\nlaw         {file}, C code, SHA-256 {.begin}...: "
+    "[trusted:trusted|not trusted yet, `run` asks for --trust]]"
+    "[.step:\nstep        {.step}]"
+    "[recorded_cases:\nrecorded    {recorded_cases} trajectories of {.instants} instants]"
+    "[refine:\nrefine      {coarse_cases} cases of a coarse lattice and about {probes} probes, "
+    "then those where outcomes differ: at most all]"
+    "\nfile        {file}, about {.size}\n"
+    "[.compiling:compiling   about {.compiling}, once for robots of this structure; till then "
+    "kernels that are built in compute\n]"
+    "cost        {.cost}\n"
+    "[.search:optimise    {.search}: stance optimise {scenario}\n]";
 
 /* A file or a time that hardly anybody wants. */
 static void warn_of_size(const struct estimate *e, const char *who)
@@ -349,7 +315,7 @@ void report_plan(const struct plan *plan, int ranks, const char *file, bool json
     for (size_t d = 0; d < plan->designs; d++)
         e.designs_failed += plan->design_status[d] == STANCE_FAILED;
     measure(&e);
-    (json ? report_json : report_text)(&e);
+    say_facts(facts_of(&e), json, report_text, stdout);
     fflush(stdout);
     warn_of_size(&e, who);
 }

@@ -1,6 +1,6 @@
-/* run.h - what the parts of `stance run` share: run.c (the stages), run_options.c, old.c (the file
- * there was), run_end.c (what is said at the end), and claim.c, whose functions `stance optimise`
- * shares, too. */
+/* run.h - what the parts of `stance run` share: run.c (the stages, what is said at the end),
+ * run_options.c, old.c (the file there was), and claim.c, whose functions `stance optimise` shares,
+ * too. */
 #ifndef STANCE_RUN_RUN_H
 #define STANCE_RUN_RUN_H
 
@@ -94,6 +94,8 @@ struct scenario *run_read_scenario(struct run *run, size_t sets);
 /* Collective: rank 0's scenario is read from its text by the others. false: it has none, or this
  * rank cannot, and fails; then there is none. */
 bool run_share_scenario(struct run *run);
+/* The name of the file, of the scenario's unless -o gives it; fails where it is too long. */
+void run_name_file(struct run *run);
 /* Rank 0: the file may be written, --force replaces one that exists, --resume goes on with it, and
  * nobody else writes it: the lock is taken, signs of life are given. Without -o its directory is
  * `results`, which is made. */
@@ -102,20 +104,16 @@ bool run_claim_file(struct run *run, bool *exists);
 /* old.c, on rank 0, each fails where that cannot be. What --resume goes on with, or --extend from
  * (which is locked): whether it is of the scenario, which takes over its axes. */
 bool run_old_open(struct run *run);
-/* Whether a scenario can be extended; the old file's designs into the plan; its rows into the open
- * file. */
+/* Whether a scenario can be extended. */
 bool run_extend_check(struct run *run, const struct scenario *s);
-bool run_extend_designs(struct run *run);
-bool run_extend_copy(struct run *run);
-/* The file goes on with a scenario that is not its own. */
-void run_succeed(struct run *run, const char *hosts);
+/* The old file's designs into the plan, where it takes rows over; makes the file of its rows. */
+bool run_old_designs(struct run *run);
+void run_old_rows(struct run *run, const char *hosts);
 /* A stop before there is a file. */
 void run_stop_early(struct run *run, const char *what);
 
 /* On rank 0: that the run stopped, and the command that goes on with it. */
 void run_say_stopped(const struct run *run, const char *what);
-/* Collective: adds up over the ranks, says what came out, and returns the exit code. */
-int run_conclude(struct run *run);
 
 /* Ends one, which can be released. */
 void run_drop(struct run *run);

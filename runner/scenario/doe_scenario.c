@@ -10,7 +10,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define MOST_CASES 0x1p53
 #define MOST_NUMBERS 0x1p25 /* that a rank keeps: 256 MB */
 
 /* ---- where a factor leads -------------------------------------------------------------------- */
@@ -73,71 +72,35 @@ bool scenario_resample(struct scenario *s, uint64_t count, uint64_t seed)
 
 /* ---- factors --------------------------------------------------------------------------------- */
 
-static bool read_listed(struct axis_reader *a, struct scenario_factor *f,
-                        const struct tree_node *values, bool rows)
+static bool read_range(struct axis_reader *a, struct scenario_factor *f)
 {
-    bool good = true;
-    f->listed = true;
-    if (!field_list(&a->r->problems, a->name, "a list of values", values))
-        return false;
-    f->points = values->count;
-    f->value = calloc(f->points * (size_t)f->paths, sizeof *f->value);
+    f->points = 2;
+    f->value = calloc(2 * (size_t)f->paths, sizeof *f->value);
     if (!f->value)
         return problem_no_memory(&a->r->problems);
-    for (size_t i = 0; i < f->points; i++)
-        good = axis_read_row(a, NULL, values->item[i], f->first, rows,
-                             f->value + i * (size_t)f->paths) &&
-               good;
-    return good;
-}
-
-/* What the ends must be to each other. */
-static bool check_ends(struct axis_reader *a, const struct scenario_factor *f, bool rows)
-{
-    const double *from = f->value, *to = f->value + f->paths;
-    bool differ = false;
-
-    for (int k = 0; k < f->paths; k++) {
+    double *const from = f->value, *const to = f->value + f->paths;
+    bool good = axis_read_ends(a, "give from and to, or values", from, to), differ = false;
+    if (good && !tree_find(a->node, "to"))
+        return axis_complain(a, "to is missing");
+    good = axis_read_spacing(a, "sweep.sample.vary[].spacing", &f->log) && good;
+    for (int k = 0; good && k < f->paths; k++) {
         differ = differ || from[k] != to[k];
         if (f->log && a->axis->whole[f->first + k])
             return axis_complain(a, "spacing log is for numbers that need not be whole");
         if (f->log && (from[k] <= 0 || to[k] <= 0))
             return axis_complain(a, "spacing log needs from and to above 0");
     }
-    if (rows ? !differ : !(from[0] < to[0])) {
-        return axis_complain(a,
-                             rows ? "from and to are the same point" : "from must be less than to");
-    }
-    return true;
-}
-
-static bool read_range(struct axis_reader *a, struct scenario_factor *f, bool rows)
-{
-    const struct tree_node *from = tree_find(a->node, "from"), *to = tree_find(a->node, "to");
-
-    for (int k = 0; k < f->paths; k++)
-        if (a->axis->enumeration[f->first + k])
-            return axis_complain(a, "a field of words needs values");
-    if (!from || !to) {
-        return axis_complain(a, from ? "to is missing"
-                                : to ? "from is missing"
-                                     : "give from and to, or values");
-    }
-    f->points = 2;
-    f->value = calloc(2 * (size_t)f->paths, sizeof *f->value);
-    if (!f->value)
-        return problem_no_memory(&a->r->problems);
-    bool good = axis_read_row(a, "from", from, f->first, rows, f->value);
-    good = axis_read_row(a, "to", to, f->first, rows, f->value + f->paths) && good;
-    good = axis_read_spacing(a, "sweep.sample.vary[].spacing", &f->log) && good;
-    return good && check_ends(a, f, rows);
+    if (good && (a->rows ? !differ : !(from[0] < to[0])))
+        return axis_complain(a, a->rows ? "from and to are the same point"
+                                        : "from must be less than to");
+    return good;
 }
 
 static bool read_factor(struct axis_reader *a, struct scenario_factor *f)
 {
-    f->first = a->axis->paths;
     if (!axis_begin(a, "sweep.sample.vary[]", "a mapping with path, from, to"))
         return false;
+    f->first = a->first;
     f->paths = a->axis->paths - f->first;
     for (int k = f->first; k < a->axis->paths; k++) {
         struct scenario_meaning *meaning = &a->axis->meaning[k];
@@ -149,10 +112,9 @@ static bool read_factor(struct axis_reader *a, struct scenario_factor *f)
                   strdup(words_join(words, sizeof words, " ", field->words, field->word_count))))
             return problem_no_memory(&a->r->problems);
     }
-    const bool rows = tree_find(a->node, "paths") != NULL;
     const struct tree_node *values = tree_find(a->node, "values");
-    return axis_check_alone(a) &&
-           (values ? read_listed(a, f, values, rows) : read_range(a, f, rows));
+    f->listed = values != NULL;
+    return values ? axis_read_list(a, values, &f->value, &f->points) : read_range(a, f);
 }
 
 /* ---- the design ------------------------------------------------------------------------------ */

@@ -237,41 +237,43 @@ static bool is_robot(size_t offset)
            sizeof(double[STANCE_ROBOT_FALL_HEIGHT]);
 }
 
-/* The points of an axis where a path has its least and its largest value. */
+/* A point of an axis, with path k of it in mind. */
+struct corner {
+    const struct scenario_axis *axis;
+    int k;
+    size_t point;
+};
+
+/* The points of an axis where a path has its first and its last, or its least and its largest
+ * value. */
 static void find_ends(const struct scenario_axis *axis, int k, size_t end[2])
 {
-    end[0] = 0;
-    end[1] = axis->count - 1;
-    for (size_t i = 0; axis->value && i < axis->count; i++) {
-        const double value = scenario_axis_value(axis, i, k);
-        end[0] = value < scenario_axis_value(axis, end[0], k) ? i : end[0];
-        end[1] = value > scenario_axis_value(axis, end[1], k) ? i : end[1];
-    }
+    scenario_ends(axis->value ? axis->value + k : NULL, axis->count, (size_t)axis->paths, end);
 }
 
-/* What an axis makes of the robot at a point. */
-static void put_point(const struct scenario_axis *axis, size_t point, double *robot)
+/* The robot with what axes make of it at some points. False: a problem, reported of the last. */
+static bool check_corner(struct reader *r, const double *first, const struct corner *corner,
+                         int count)
 {
-    for (int i = 0; i < axis->paths; i++)
-        if (is_robot(axis->offset[i]))
-            robot[(axis->offset[i] - offsetof(struct scenario_values, robot)) / sizeof *robot] =
-                scenario_axis_value(axis, point, i);
-}
-
-/* The robot with what an axis makes of it at a point. False: a problem, reported of path k. */
-static bool check_point(struct reader *r, const double *first, int a, int k, size_t point)
-{
-    const struct scenario_axis *const axis = &r->s->axis[a];
+    const struct corner *const last = &corner[count - 1];
+    const size_t begin = offsetof(struct scenario_values, robot);
+    const int a = (int)(last->axis - r->s->axis);
     double robot[STANCE_MAX_ROBOT];
+    char with[300] = "", name[AXIS_NAME];
     struct fault fault;
     memcpy(robot, first, sizeof robot);
-    put_point(axis, point, robot);
-    if (!find_fault(r, robot, &fault))
-        return true;
-    char name[AXIS_NAME];
-    return problem_add(&r->problems, r->swept[a][k].mark, "%s: with %s = %.6g %s: %s",
-                       axis_key(r->s, a, name), axis->path[k], scenario_axis_value(axis, point, k),
-                       fault.path, fault.text);
+    for (int i = 0; i < count; i++) {
+        const struct scenario_axis *const axis = corner[i].axis;
+        for (int k = 0; k < axis->paths; k++)
+            if (is_robot(axis->offset[k]))
+                robot[(axis->offset[k] - begin) / sizeof *robot] =
+                    scenario_axis_value(axis, corner[i].point, k);
+        add_text(with, sizeof with, "%s%s = %.6g", i ? " and " : "", axis->path[corner[i].k],
+                 scenario_axis_value(axis, corner[i].point, corner[i].k));
+    }
+    return !find_fault(r, robot, &fault) ||
+           problem_add(&r->problems, r->swept[a][last->k].mark, "%s: with %s %s: %s",
+                       axis_key(r->s, a, name), with, fault.path, fault.text);
 }
 
 /* The ends of all paths of the robot, at the first point of all other axes. */
@@ -286,53 +288,28 @@ static bool check_axes(struct reader *r, const double *first)
                 continue;
             any = true;
             find_ends(axis, k, end);
-            if (!check_point(r, first, a, k, end[0]) || !check_point(r, first, a, k, end[1]))
-                return true;
+            for (int e = 0; e < 2; e++)
+                if (!check_corner(r, first, &(struct corner){axis, k, end[e]}, 1))
+                    return true;
         }
     }
     return any;
 }
 
 /* A number of two plates that both vary: the axes, and which path of each. */
-struct both {
-    const struct scenario_axis *axis[2];
-    int k[2];
-};
-
 static bool find_both(const struct reader *r, const int plate[2], const char *key,
-                      struct both *both)
+                      struct corner both[2])
 {
     for (int i = 0; i < 2; i++) {
         char path[96];
         snprintf(path, sizeof path, "ground.plates.%.31s.%s",
                  r->s->scene->mechanism->plate[plate[i]].name, key);
         const struct scenario_field *const field = schema_find(r->schema, path);
-        both->axis[i] = field ? scenario_axis_of(r->s, field->offset, &both->k[i]) : NULL;
-        if (!both->axis[i])
+        both[i].axis = field ? scenario_axis_of(r->s, field->offset, &both[i].k) : NULL;
+        if (!both[i].axis)
             return false;
     }
     return true;
-}
-
-/* The robot with what two axes make of it. False: a problem, reported of the second one. */
-static bool check_points(struct reader *r, const double *first, const struct both *both,
-                         const size_t point[2])
-{
-    double robot[STANCE_MAX_ROBOT], value[2];
-    struct fault fault;
-    memcpy(robot, first, sizeof robot);
-    for (int i = 0; i < 2; i++) {
-        put_point(both->axis[i], point[i], robot);
-        value[i] = scenario_axis_value(both->axis[i], point[i], both->k[i]);
-    }
-    if (!find_fault(r, robot, &fault))
-        return true;
-    char name[AXIS_NAME];
-    const int a = (int)(both->axis[1] - r->s->axis);
-    return problem_add(&r->problems, r->swept[a][both->k[1]].mark,
-                       "%s: with %s = %.6g and %s = %.6g %s: %s", axis_key(r->s, a, name),
-                       both->axis[0]->path[both->k[0]], value[0], both->axis[1]->path[both->k[1]],
-                       value[1], fault.path, fault.text);
 }
 
 /* The point of an axis where path l is least beyond path k; evenly between the ends of a range. */
@@ -351,18 +328,21 @@ static size_t nearest(const struct scenario_axis *axis, int k, int l)
 
 /* Where a number of two plates varies: on one axis where they are nearest to each other, on two at
  * all that their ends make. */
-static bool check_both(struct reader *r, const double *first, const struct both *both)
+static bool check_both(struct reader *r, const double *first, struct corner both[2])
 {
     size_t end[2][2];
-    if (both->axis[0] == both->axis[1]) {
-        const size_t near = nearest(both->axis[0], both->k[0], both->k[1]);
-        return check_points(r, first, both, (size_t[]){near, near});
+    if (both[0].axis == both[1].axis) {
+        both[0].point = both[1].point = nearest(both[0].axis, both[0].k, both[1].k);
+        return check_corner(r, first, both, 2);
     }
     for (int i = 0; i < 2; i++)
-        find_ends(both->axis[i], both->k[i], end[i]);
-    for (int c = 0; c < 4; c++)
-        if (!check_points(r, first, both, (size_t[]){end[0][c & 1], end[1][c >> 1]}))
+        find_ends(both[i].axis, both[i].k, end[i]);
+    for (int c = 0; c < 4; c++) {
+        both[0].point = end[0][c & 1];
+        both[1].point = end[1][c >> 1];
+        if (!check_corner(r, first, both, 2))
             return false;
+    }
     return true;
 }
 
@@ -372,10 +352,10 @@ static void check_order(struct reader *r, const double *first)
     static const char *const key[] = {"from", "footfall"};
     const stance_mechanism *const m = r->s->scene->mechanism;
     for (int i = 1; i < m->plates; i++) {
-        struct both both;
+        struct corner both[2];
         const int pair[2] = {plate_before(m, i), i};
         for (int k = 0; pair[0] >= 0 && k < 2; k++)
-            if (find_both(r, pair, key[k], &both) && !check_both(r, first, &both))
+            if (find_both(r, pair, key[k], both) && !check_both(r, first, both))
                 return;
     }
 }

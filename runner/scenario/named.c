@@ -5,7 +5,6 @@
  * contacts hold some states there is none.
  */
 #include "reader.h"
-#include "tree_nodes.h"
 
 #include "runner/base/words.h"
 
@@ -43,40 +42,40 @@ static int actuator_of(const stance_scene *scene, const char *name)
 
 /* ---- mappings -------------------------------------------------------------------------------- */
 
-/* What a list is made of: of so many places, of which those that are not named are `other`. */
-struct form {
-    place_of *place;
-    size_t count;
-    const char *other;
-};
+static size_t places(const struct reader *r, place_of *place)
+{
+    return (size_t)(place == state_of ? 2 * r->s->scene->postures : r->s->scene->actuators);
+}
 
-static struct tree_node *new_list(struct reader *r, const struct form *form, struct mark mark)
+/* A list of all places, which are `other` until they are named; NULL: mappings of nothing. */
+static struct tree_node *new_list(struct reader *r, place_of *place, const char *other,
+                                  struct mark mark)
 {
     struct tree_node *const list = tree_new(&r->tree, TREE_LIST, mark);
-    for (size_t i = 0; list && i < form->count; i++) {
-        struct tree_node *const item = tree_new(&r->tree, TREE_SCALAR, mark);
+    for (size_t i = 0; list && i < places(r, place); i++) {
+        struct tree_node *const item = tree_new(&r->tree, other ? TREE_SCALAR : TREE_MAP, mark);
         if (!item || !tree_append(&r->tree, list, NULL, item))
             return NULL;
-        item->text = form->other;
+        item->text = other;
     }
     return list;
 }
 
 /* The mapping at *node, if it is one, as a list. `path`: of its keys in the schema. */
-static bool make_list(struct reader *r, struct tree_node **node, const struct form *form,
+static bool make_list(struct reader *r, struct tree_node **node, place_of *place, const char *other,
                       const char *path)
 {
     const struct tree_node *const map = *node;
     if (map->kind != TREE_MAP)
         return true;
-    struct tree_node *const list = new_list(r, form, map->mark);
+    struct tree_node *const list = new_list(r, place, other, map->mark);
     if (!list)
         return problem_no_memory(&r->problems);
     reader_check_keys(r, map, path, path);
     for (size_t i = 0; i < map->count; i++) {
-        const int place = form->place(r->s->scene, map->key[i].name);
-        if (place >= 0)
-            list->item[place] = map->item[i];
+        const int at = place(r->s->scene, map->key[i].name);
+        if (at >= 0)
+            list->item[at] = map->item[i];
     }
     *node = list;
     return true;
@@ -84,62 +83,48 @@ static bool make_list(struct reader *r, struct tree_node **node, const struct fo
 
 static bool make_gains(struct reader *r, struct tree_node **gains)
 {
-    const stance_scene *const scene = r->s->scene;
-    const struct form rows = {actuator_of, (size_t)scene->actuators, NULL},
-                      row = {state_of, 2 * (size_t)scene->postures, "0"};
-    if (!make_list(r, gains, &rows, "controller.gains"))
-        return false;
+    bool good = make_list(r, gains, actuator_of, NULL, "controller.gains");
     const struct tree_node *const list = *gains;
-    for (size_t i = 0; list->kind == TREE_LIST && i < list->count; i++) {
+    for (size_t i = 0;
+         good && list->kind == TREE_LIST && i < list->count && i < places(r, actuator_of); i++) {
         char path[96];
-        snprintf(path, sizeof path, "controller.gains.%s",
-                 i < rows.count ? scene->actuator_name[i] : "");
-        if (!list->item[i]->text && list->item[i]->kind == TREE_SCALAR)
-            list->item[i] = new_list(r, &row, list->mark); /* that is not named */
-        if (!list->item[i])
-            return problem_no_memory(&r->problems);
-        if (i < rows.count && !make_list(r, &list->item[i], &row, path))
-            return false;
+        snprintf(path, sizeof path, "controller.gains.%s", r->s->scene->actuator_name[i]);
+        good = make_list(r, &list->item[i], state_of, "0", path);
     }
-    return true;
+    return good;
 }
 
 /* Names beside `states` and `torques`: they stand for a list of states. */
 static bool make_weights(struct reader *r, struct tree_node *weights)
 {
-    const stance_scene *const scene = r->s->scene;
-    const struct form states = {state_of, 2 * (size_t)scene->postures, "1"},
-                      torques = {actuator_of, (size_t)scene->actuators, "1"};
     struct tree_node *list = NULL;
     size_t kept = 0, index;
     for (size_t i = 0; i < weights->count; i++) {
         const struct tree_key key = weights->key[i];
         struct tree_node *const item = weights->item[i];
-        const int place = strcmp(key.name, "states") == 0 || strcmp(key.name, "torques") == 0
-                              ? -1
-                              : state_of(scene, key.name);
+        const bool own = strcmp(key.name, "states") == 0 || strcmp(key.name, "torques") == 0;
+        const int place = own ? -1 : state_of(r->s->scene, key.name);
         if (place < 0) {
             weights->key[kept] = key;
             weights->item[kept++] = item;
             continue;
         }
-        list = list ? list : new_list(r, &states, key.mark);
+        list = list ? list : new_list(r, state_of, "1", key.mark);
         if (!list)
             return problem_no_memory(&r->problems);
         list->item[place] = item;
     }
     weights->count = kept;
-    const struct tree_key key = {"states", list ? list->mark : weights->mark};
-    if (list && tree_place(weights, key.name, &index))
+    if (list && tree_find(weights, "states"))
         return problem_add(&r->problems, list->mark,
                            "controller.weights: weights of states stand in a list and by name; "
                            "give one of them");
-    if (list && !tree_append(&r->tree, weights, &key, list))
+    if (list && !tree_append(&r->tree, weights, &(struct tree_key){"states", list->mark}, list))
         return problem_no_memory(&r->problems);
-    struct tree_node **const given = tree_place(weights, "torques", &index),
-                             **const all = tree_place(weights, "states", &index);
-    return (!given || make_list(r, given, &torques, "controller.weights.torques")) &&
-           (!all || make_list(r, all, &states, "controller.weights"));
+    struct tree_node **const torques = tree_place(weights, "torques", &index),
+                             **const states = tree_place(weights, "states", &index);
+    return (!torques || make_list(r, torques, actuator_of, "1", "controller.weights.torques")) &&
+           (!states || make_list(r, states, state_of, "1", "controller.weights"));
 }
 
 static bool make_lists(struct reader *r)
@@ -165,88 +150,56 @@ bool named_waits(const char *set)
     return false;
 }
 
-/* Moves past the next name of a path, which goes to `name`; false: there is none. */
-static bool next_name(const char **at, char name[TREE_MAX_NAME])
-{
-    size_t index;
-    return **at == '.' && tree_path_step(at, false, name, &index) && name[0];
-}
-
-/* Where `count` items of `text` stand in the place of a list that is not given. */
-static void put_list(struct reader *r, const char *path, size_t count, const char *text, int set)
-{
-    char value[1024];
-    size_t used = (size_t)snprintf(value, sizeof value, "%s=[", path);
-    for (size_t i = 0; i < count && used < sizeof value; i++)
-        used += (size_t)snprintf(value + used, sizeof value - used, "%s%s", i ? ", " : "", text);
-    if (used + 1 < sizeof value) {
-        memcpy(value + used, "]", 2);
-        tree_set(&r->tree, value, set, &r->problems);
-    }
-}
-
-/* The path of a --set with indices in the place of names, of lists that are there then. What it is
- * no name of stays, and is refused where it is read. */
-static void put_indices(struct reader *r, const char *given, int set, char *out, size_t size)
+/* The path of a --set with indices in the place of names where a list is there; else mappings come
+ * of them, that become lists. What it is no name of stays, and is refused where it is read. */
+static void put_indices(const struct reader *r, const char *given, char *out, size_t size)
 {
     const stance_scene *const scene = r->s->scene;
-    const struct tree_node *const controller = tree_find(r->tree.root, "controller"),
-                                  *const weights =
-                                      controller ? tree_find(controller, "weights") : NULL,
-                                  *const poles = controller ? tree_find(controller, "poles") : NULL;
-    const size_t states = 2 * (size_t)scene->postures, inputs = (size_t)scene->actuators;
-    const char *at = given + strlen("controller.");
-    const char kind = *at;
-    char name[TREE_MAX_NAME], row[64] = "";
-    at += strcspn(at, ".[");
-    snprintf(out, size, "%s", given);
-    if (!next_name(&at, name))
-        return;
-    int i = kind == 'g' ? actuator_of(scene, name) : state_of(scene, name);
-    if (kind == 'p' && i >= 0 && poles && poles->kind == TREE_LIST && poles->count == states)
-        snprintf(out, size, "controller.poles[%d]%s", i, at);
-    if (kind == 'w') {
-        const bool torque = strcmp(name, "torques") == 0;
-        if (torque || strcmp(name, "states") == 0) {
-            if (!next_name(&at, name))
-                return;
-            i = torque ? actuator_of(scene, name) : state_of(scene, name);
+    const struct tree_node *node = tree_find(r->tree.root, "controller");
+    const char *at = given + strlen("controller");
+    char name[TREE_MAX_NAME], list[TREE_MAX_NAME] = "";
+    size_t index;
+    snprintf(out, size, "controller");
+    while (*at && *at != '=' && tree_path_step(&at, false, name, &index)) {
+        const bool named = name[0], states = strcmp(list, "weights") == 0 && named &&
+                                             state_of(scene, name) >= 0 && node &&
+                                             tree_find(node, "states");
+        if (states)
+            node = tree_find(node, "states");
+        if (states)
+            add_text(out, size, ".states");
+        const bool items = node && node->kind == TREE_LIST,
+                   inputs = strcmp(list, "gains") == 0 || strcmp(list, "torques") == 0;
+        const int place =
+            !named ? (int)index
+            : !items || (strcmp(list, "poles") == 0 && node->count != places(r, state_of))
+                ? -1
+                : (inputs ? actuator_of : state_of)(scene, name);
+        if (place >= 0) {
+            add_text(out, size, "[%d]", place);
+            node = items && (size_t)place < node->count ? node->item[place] : NULL;
+            list[0] = '\0';
+        } else {
+            add_text(out, size, ".%s", name);
+            node = node && node->kind == TREE_MAP ? tree_find(node, name) : NULL;
+            memcpy(list, name, sizeof list);
         }
-        const char *const list = torque ? "torques" : "states";
-        snprintf(row, sizeof row, "controller.weights.%s", list);
-        if (i >= 0 && (!weights || !tree_find(weights, list)))
-            put_list(r, row, torque ? inputs : states, "1", set);
-        if (i >= 0)
-            snprintf(out, size, "%s[%d]%s", row, i, at);
     }
-    if (kind == 'g' && i >= 0) {
-        const bool whole = !next_name(&at, name);
-        const int j = whole ? 0 : state_of(scene, name);
-        char zeros[3 * STANCE_MAX_POSTURE * 2 + 4];
-        size_t used = 0;
-        for (size_t k = 0; k < states; k++)
-            used += (size_t)snprintf(zeros + used, sizeof zeros - used, "%s0", k ? "," : "[");
-        snprintf(zeros + used, sizeof zeros - used, "]");
-        if (!controller || !tree_find(controller, "gains"))
-            put_list(r, "controller.gains", inputs, zeros, set);
-        snprintf(name, sizeof name, "[%d]", j);
-        if (j >= 0)
-            snprintf(out, size, "controller.gains[%d]%s%s", i, whole ? "" : name, at);
-    }
+    add_text(out, size, "%s", at);
 }
 
 bool named_read(struct reader *r, const char *const *sets, size_t set_count)
 {
     bool good = make_lists(r);
     for (size_t i = 0; i < set_count && good; i++) {
-        char *const text =
-            named_waits(sets[i]) ? tree_allocate(&r->tree, strlen(sets[i]) + 128) : NULL;
+        const size_t size = strlen(sets[i]) + 128;
+        char *const text = named_waits(sets[i]) ? tree_allocate(&r->tree, size) : NULL;
         if (!named_waits(sets[i]))
             continue;
         if (!text)
             return problem_no_memory(&r->problems);
         if (r->s->scene)
-            put_indices(r, sets[i], (int)i + 1, text, strlen(sets[i]) + 128);
+            put_indices(r, sets[i], text, size);
         tree_set(&r->tree, r->s->scene ? text : sets[i], (int)i + 1, &r->problems);
     }
     return good && make_lists(r);

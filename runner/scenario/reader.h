@@ -99,7 +99,10 @@ const char *reader_file(struct reader *r, const char *key, const struct tree_nod
 /* scenario_check.c: what the keys mean for each other; completes the base values. */
 void scenario_cross_check(struct reader *r);
 
-/* The axis being read: its place in the scenario and in the file. */
+#define MOST_CASES 0x1p53 /* exact as a double, and within what HDF5 can address */
+
+/* The axis being read, or one of the factors that are one: its place in the scenario and in the
+ * file. */
 enum { AXIS_NAME = 48 };
 struct axis_reader {
     struct reader *r;
@@ -108,22 +111,24 @@ struct axis_reader {
     const struct tree_node *node; /* the mapping */
     int number;                   /* of the axis */
     char name[AXIS_NAME];         /* sweep.grid[0], sweep.sample.vary[0], optimise.vary[0] */
+    int first;                    /* path of the mapping, ... */
+    bool rows;                    /* ... which may have several: then a point is a list */
 };
 
 /* sweep.c: the mapping itself, its keys those of the schema below `path`, and its path or paths,
- * behind those that the axis has. False: a problem. */
+ * behind those that the axis has; `values` stands without a range. False: a problem. */
 bool axis_begin(struct axis_reader *a, const char *path, const char *wanted);
 /* sweep.c: one more path of the axis, from a node. False: a problem. */
 bool axis_read_path(struct axis_reader *a, const struct tree_node *node);
-/* sweep.c: `values`, where it stands, stands alone. */
-bool axis_check_alone(struct axis_reader *a);
 /* No two points of an axis may be the same: those of a list, of a range (distinct.c). */
 bool axis_check_values(struct axis_reader *a, const struct tree_node *values);
 bool axis_check_points(struct axis_reader *a);
-/* sweep.c: values of the paths from `first` on of one point; of several (`rows`) a list. `key`, not
- * NULL: an end of a range, whose numbers are finite. False: a problem. */
-bool axis_read_row(struct axis_reader *a, const char *key, const struct tree_node *node, int first,
-                   bool rows, double *value);
+/* sweep.c: the points of a list, *value[*count][paths], to be freed; the ends of a range, each
+ * [paths], of which `to` is as `from` where it is not given; `wanted`: what else there is to give.
+ * False: a problem. */
+bool axis_read_list(struct axis_reader *a, const struct tree_node *values, double **value,
+                    size_t *count);
+bool axis_read_ends(struct axis_reader *a, const char *wanted, double *from, double *to);
 /* sweep.c: whether `spacing` is log. False: a problem. */
 bool axis_read_spacing(struct axis_reader *a, const char *path, bool *log);
 /* sweep.c: unit and text of path k. */

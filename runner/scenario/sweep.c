@@ -8,7 +8,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define MOST_CASES 0x1p53    /* exact as a double, and within what HDF5 can address */
 #define MOST_KEPT_POINTS 1e7 /* that are computed beforehand */
 
 const char *axis_key(const struct scenario *s, int axis, char name[AXIS_NAME])
@@ -45,19 +44,13 @@ static bool unknown_path(struct axis_reader *a, const struct tree_node *node)
     near = mend_path(node->text, known, n);
     near = near ? near : nearest_word(node->text, known, n);
     shown(word, node->text);
-    if (schema->scene && schema_scene_with(node->text)) {
-        problem_add(&a->r->problems, node->mark,
-                    "%s: the scene %s has no field '%s' (stance describe lists them)", a->name,
-                    schema->scene->name, word);
-    } else if (near) {
-        problem_add(&a->r->problems, node->mark,
-                    "%s: unknown field '%s'; did you mean '%s'? (stance describe lists them)",
-                    a->name, word, near);
-    } else {
-        problem_add(&a->r->problems, node->mark,
-                    "%s: unknown field '%s' (stance describe lists them)", a->name, word);
-    }
-    return false;
+    if (schema->scene && schema_scene_with(node->text))
+        return problem_add(&a->r->problems, node->mark,
+                           "%s: the scene %s has no field '%s' (stance describe lists them)",
+                           a->name, schema->scene->name, word);
+    return problem_add(&a->r->problems, node->mark,
+                       "%s: unknown field '%s'%s%s%s (stance describe lists them)", a->name, word,
+                       near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
 }
 
 static bool beyond_end(struct axis_reader *a, const struct tree_node *node,
@@ -173,15 +166,16 @@ static bool read_one(struct axis_reader *a, const char *key, const struct tree_n
            problem_add(&a->r->problems, node->mark, "%s: %s must be a number", a->name, key);
 }
 
-bool axis_read_row(struct axis_reader *a, const char *key, const struct tree_node *node, int first,
-                   bool rows, double *value)
+/* Values of the mapping's paths at one point. */
+static bool read_row(struct axis_reader *a, const char *key, const struct tree_node *node,
+                     double *value)
 {
-    const size_t paths = (size_t)(a->axis->paths - first);
+    const size_t paths = (size_t)(a->axis->paths - a->first);
     char wanted[80];
     bool good = true;
 
-    if (!rows)
-        return read_one(a, key, node, first, value);
+    if (!a->rows)
+        return read_one(a, key, node, a->first, value);
     snprintf(wanted, sizeof wanted, "a list of %zu values, one for each path", paths);
     if (node->kind != TREE_LIST)
         return field_mismatch(&a->r->problems, a->name, wanted, node);
@@ -190,51 +184,58 @@ bool axis_read_row(struct axis_reader *a, const char *key, const struct tree_nod
                            wanted, node->count);
     }
     for (size_t k = 0; k < paths; k++)
-        good = read_one(a, key, node->item[k], first + (int)k, &value[k]) && good;
+        good = read_one(a, key, node->item[k], a->first + (int)k, &value[k]) && good;
     return good;
 }
 
-static bool read_point(struct axis_reader *a, const struct tree_node *node, size_t point, bool rows)
+bool axis_read_list(struct axis_reader *a, const struct tree_node *values, double **value,
+                    size_t *count)
+{
+    const size_t paths = (size_t)(a->axis->paths - a->first);
+    bool good = true;
+    if (!field_list(&a->r->problems, a->name, "a list of values", values))
+        return false;
+    *count = values->count;
+    *value = calloc(*count * paths, sizeof **value);
+    if (!*value)
+        return problem_no_memory(&a->r->problems);
+    for (size_t i = 0; i < *count; i++)
+        good = read_row(a, NULL, values->item[i], *value + i * paths) && good;
+    return good;
+}
+
+bool axis_read_ends(struct axis_reader *a, const char *wanted, double *from, double *to)
+{
+    const struct tree_node *const first = tree_find(a->node, "from"), *const last =
+                                                                          tree_find(a->node, "to");
+    char text[160];
+    for (int k = a->first; k < a->axis->paths; k++) {
+        if (a->axis->enumeration[k]) {
+            snprintf(text, sizeof text, "%s takes words: list them as values", a->axis->path[k]);
+            return axis_complain(a, text);
+        }
+    }
+    if (!first)
+        return axis_complain(a, last || tree_find(a->node, "count") ? "from is missing" : wanted);
+    const bool good = read_row(a, "from", first, from);
+    memcpy(to, from, (size_t)(a->axis->paths - a->first) * sizeof *to);
+    return (!last || read_row(a, "to", last, to)) && good;
+}
+
+static bool read_values(struct axis_reader *a, const struct tree_node *values)
 {
     struct scenario_axis *axis = a->axis;
     const size_t paths = (size_t)axis->paths;
-    bool good = axis_read_row(a, NULL, node, 0, rows, &axis->value[point * paths]);
-
-    for (size_t k = 0; good && axis->word && k < paths; k++) {
-        const char *word = rows ? node->item[k]->text : node->text;
-        good = (axis->word[point * paths + k] = strdup(word)) != NULL ||
-               problem_no_memory(&a->r->problems);
+    bool good = axis_read_list(a, values, &axis->value, &axis->count);
+    if (good && axis->words) {
+        axis->word = calloc(axis->count * paths, sizeof *axis->word);
+        good = axis->word || problem_no_memory(&a->r->problems);
     }
-    return good;
-}
-
-bool axis_check_alone(struct axis_reader *a)
-{
-    static const char *const range_keys[] = {"from", "to", "count", "spacing"};
-    for (size_t i = 0; i < sizeof range_keys / sizeof range_keys[0]; i++) {
-        if (tree_find(a->node, "values") && tree_find(a->node, range_keys[i])) {
-            return problem_add(&a->r->problems, a->node->mark,
-                               "%s: values and %s exclude each other", a->name, range_keys[i]);
-        }
+    for (size_t i = 0; good && axis->word && i < axis->count * paths; i++) {
+        const struct tree_node *const point = values->item[i / paths];
+        axis->word[i] = strdup(a->rows ? point->item[i % paths]->text : point->text);
+        good = axis->word[i] || problem_no_memory(&a->r->problems);
     }
-    return true;
-}
-
-static bool read_values(struct axis_reader *a, const struct tree_node *values, bool rows)
-{
-    struct scenario_axis *axis = a->axis;
-    bool good = true;
-
-    if (!field_list(&a->r->problems, a->name, "a list of values", values))
-        return false;
-    axis->count = values->count;
-    size_t n = axis->count * (size_t)axis->paths;
-    axis->value = calloc(n, sizeof *axis->value);
-    axis->word = axis->words ? calloc(n, sizeof *axis->word) : NULL;
-    if (!axis->value || (axis->words && !axis->word))
-        return problem_no_memory(&a->r->problems);
-    for (size_t i = 0; i < values->count; i++)
-        good = read_point(a, values->item[i], i, rows) && good;
     return good && axis_check_values(a, values);
 }
 
@@ -303,32 +304,20 @@ static bool check_range(struct axis_reader *a, int k, double from, double to)
     return !wrong;
 }
 
-static bool read_range(struct axis_reader *a, bool rows)
+static bool read_range(struct axis_reader *a)
 {
     struct scenario_axis *axis = a->axis;
-    const struct tree_node *from = tree_find(a->node, "from"), *to = tree_find(a->node, "to"),
-                           *count = tree_find(a->node, "count");
+    const struct tree_node *const count = tree_find(a->node, "count");
     double first[SCENARIO_MAX_PATHS] = {0}, last[SCENARIO_MAX_PATHS] = {0};
-    char text[160];
+    char name[AXIS_NAME + 16];
     double number = 0;
 
-    for (int k = 0; k < axis->paths; k++) {
-        if (axis->enumeration[k]) {
-            snprintf(text, sizeof text, "%s takes words: list them as values", axis->path[k]);
-            return axis_complain(a, text);
-        }
-    }
-    if (!from)
-        return axis_complain(a, count || to ? "from is missing"
-                                            : "give from, to and count, or values");
-    bool good = axis_read_row(a, "from", from, 0, rows, first);
-    memcpy(last, first, sizeof last);
-    good = (!to || axis_read_row(a, "to", to, 0, rows, last)) && good;
+    bool good = axis_read_ends(a, "give from, to and count, or values", first, last);
     if (!count)
-        return axis_complain(a, "count is missing");
-    snprintf(text, sizeof text, "%s.count", a->name);
-    good = field_integer(&a->r->problems, schema_find(a->r->schema, "sweep.grid[].count"), text,
-                         count, &number) &&
+        return good && axis_complain(a, "count is missing");
+    snprintf(name, sizeof name, "%s.count", a->name);
+    good = field_number(&a->r->problems, schema_find(a->r->schema, "sweep.grid[].count"), name,
+                        count, &number) &&
            good;
     good = axis_read_spacing(a, "sweep.grid[].spacing", &axis->log) && good;
     if (!good)
@@ -358,12 +347,21 @@ void axis_describe(const struct axis_reader *a, int k, char unit[24], char text[
 
 bool axis_begin(struct axis_reader *a, const char *path, const char *wanted)
 {
+    static const char *const range_keys[] = {"from", "to", "count", "spacing"};
     struct problems *problems = &a->r->problems;
     const size_t before = problems->count + problems->lost;
     if (a->node->kind != TREE_MAP)
         return field_mismatch(problems, a->name, wanted, a->node);
     reader_check_keys(a->r, a->node, path, a->name);
-    return problems->count + problems->lost == before && read_paths(a);
+    a->first = a->axis->paths;
+    a->rows = tree_find(a->node, "paths") != NULL;
+    if (problems->count + problems->lost != before || !read_paths(a))
+        return false;
+    for (size_t i = 0; i < sizeof range_keys / sizeof range_keys[0]; i++)
+        if (tree_find(a->node, "values") && tree_find(a->node, range_keys[i]))
+            return problem_add(problems, a->node->mark, "%s: values and %s exclude each other",
+                               a->name, range_keys[i]);
+    return true;
 }
 
 static bool read_axis(struct axis_reader *a)
@@ -381,9 +379,8 @@ static bool read_axis(struct axis_reader *a)
         snprintf(axis->text + used, sizeof axis->text - used, "%s %s", k > 1 ? "," : "; with",
                  axis->path[k]);
     }
-    const bool rows = tree_find(a->node, "paths") != NULL;
     const struct tree_node *values = tree_find(a->node, "values");
-    return axis_check_alone(a) && (values ? read_values(a, values, rows) : read_range(a, rows));
+    return values ? read_values(a, values) : read_range(a);
 }
 
 void sweep_read(struct reader *r, const struct tree_node *grid)
@@ -549,15 +546,12 @@ void scenario_extent(const struct scenario *s, size_t offset, double *least, dou
     *largest = *least;
     if (!axis || axis->count == 0)
         return;
-    /* Ranges are monotonic: their ends will do. */
-    const size_t stride = (axis->value && !axis->log) || axis->count < 2 ? 1 : axis->count - 1;
-    *least = INFINITY;
-    *largest = -INFINITY;
-    for (size_t i = 0; i < axis->count; i += stride) {
-        const double value = scenario_axis_value(axis, i, k);
-        *least = fmin(*least, value);
-        *largest = fmax(*largest, value);
-    }
+    size_t ends[2];
+    scenario_ends(axis->value ? axis->value + k : NULL, axis->count, (size_t)axis->paths, ends);
+    const double first = scenario_axis_value(axis, ends[0], k),
+                 last = scenario_axis_value(axis, ends[1], k);
+    *least = fmin(first, last);
+    *largest = fmax(first, last);
 }
 
 void scenario_axis_text(const struct scenario_axis *axis, size_t i, int k, char *buffer,

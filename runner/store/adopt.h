@@ -31,8 +31,7 @@ struct adopted_rows {
     uint64_t damaged;     /* are not as their checksums say, and were left out */
     uint64_t conflicting; /* differ from what was there; left as they were */
     uint64_t conflict;    /* where the first of these is, in the file that is written */
-    bool stopped;         /* the new plan said to stop; the rest was left out where it `may_stop` */
-    bool may_stop;
+    bool stopped;         /* the new plan said to stop: not all was looked at, which failed */
 };
 
 /* The scenario of a text under the name of a file, by scenario_new; the first error is the message.
@@ -71,27 +70,34 @@ struct adopted_differences {
 void adopt_differ(const struct tree_node *before, const struct tree_node *after, const char *path,
                   const struct adopted_differences *differences);
 
+/* On rank 0, with the lock: makes a file, in the place of one that there may be. It is made beside
+ * it and takes its name when it is filled: a kill at any moment leaves one or the other. */
+struct adopted_filling {
+    bool (*fill)(void *context, struct store *store, stance_message *message);
+    void *context;
+    const struct store_origin *before; /* see store_create */
+    int ranks;
+    const char *hosts;
+};
+bool adopt_make(const char *file, const struct plan *plan, const struct adopted_filling *filling,
+                stance_message *message);
+/* Removes what an attempt which was killed has left beside a file. */
+void adopt_clear(const char *file);
+
 /* changed_scenario.c: a results file that goes on with another scenario than it was begun with.
  *
  * `run --resume --force-scenario`: what is done stays, what is pending is computed as the new
- * scenario says. The file never changes its structure: a new one is made beside it, with the same
- * axes, designs and answers, the old scenarios in group `history` and one more variable over the
- * cases, `scenario_number`; it adopts the rows; then it takes the old one's name. A kill at any
- * moment leaves one or the other. What would not fit together is refused: other axes, answers,
- * records or designs, and any other case of a map that is refined, which infers cases from each
- * other.
+ * scenario says. The file never changes its structure: a new one is made, with the same axes,
+ * designs and answers, the old scenarios in group `history` and one more variable over the cases,
+ * `scenario_number`, which adopts the rows. What would not fit together is refused, with the reason
+ * in *message: other axes, answers, records or designs, and any other case of a map that is
+ * refined, which infers cases from each other.
  *
  * Whether a scenario, whose axes are still its own and not the file's, has the axes and the sample
- * of the file's, which is read: false with the reason in *message. */
+ * of the file's, which is read; and of a file that is open, whether its plan may follow. */
 bool changed_scenario_check_sweep(struct adopted *old, const struct scenario *scenario,
                                   stance_message *message);
-/* On rank 0, with the lock, after that: puts the successor in the place of the old file; the
- * scenario is the plan's. Takes the plan's designs from the file, and sets plan->ancestors. False
- * with the reason in *message, which is empty where `plan->stop` said to stop; then the file is as
- * it was. *refused: this scenario cannot follow that one. */
-bool changed_scenario_make(struct adopted *old, struct plan *plan, int ranks, const char *hosts,
-                           struct adopted_rows *rows, bool *refused, stance_message *message);
-/* On rank 0, with the lock: removes a successor that an attempt which was killed has left. */
-void changed_scenario_clear(const char *file);
+bool changed_scenario_may_follow(const struct adopted *old, const struct plan *after,
+                                 stance_message *message);
 
 #endif

@@ -1,12 +1,16 @@
-/* adopt_rows.c - rows, trajectories and times of one results file into another. */
+/* adopt_rows.c - rows, trajectories and times of one results file into another, which is made. */
 #include "adopt.h"
 #include "store_private.h"
 
 #include "runner/base/message.h"
 
+#include <fcntl.h>
+#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 /* What earlier versions wrote where there was no count is one, too: such a row tells by its end,
  * which a case that was inferred from its neighbours does not have. */
@@ -146,10 +150,10 @@ bool adopt_rows(const struct adopted *a, struct store *to, struct adopted_rows *
             good = hdf_move(m.from->column[COLUMN_STATUS], H5T_STD_U8LE, r,
                             all - r < PIECE ? all - r : PIECE, HDF_READ, status) ||
                    store_failed(message, m.from->file, "read the results");
-        if (r % STORE_ROWS == 0 && plan->stop && plan->stop(plan->stop_context))
+        if (r % STORE_ROWS == 0 && plan->stop && plan->stop(plan->stop_context)) {
             told->stopped = true;
-        if (told->stopped && told->may_stop)
-            break;
+            return false;
+        }
         const uint64_t aim = adopt_row(a, r);
         if (!good || status[r % PIECE] == STANCE_PENDING || !has_all(&m, r, aim))
             continue;
@@ -197,4 +201,60 @@ bool store_annotate(struct store *store, const char *name, const char *text,
 {
     return put_attribute(store->id, name, KIND_text, text) ||
            store_failed(message, store->file, "write an attribute");
+}
+
+/* ---- the file that takes them over ---------------------------------------------------------- */
+
+/* What a file that is being made begins with, or nothing yet: whatever else has its name is
+ * somebody's own. */
+static bool is_ours(const char *file)
+{
+    static const char signature[8] = "\211HDF\r\n\032\n";
+    char begin[sizeof signature] = {0};
+    const int descriptor = open(file, O_RDONLY | O_NOFOLLOW | O_CLOEXEC);
+    struct stat found;
+    const bool regular =
+        descriptor >= 0 && fstat(descriptor, &found) == 0 && S_ISREG(found.st_mode);
+    const bool begun =
+        regular && (found.st_size == 0 || (read(descriptor, begin, sizeof begin) == sizeof begin &&
+                                           memcmp(begin, signature, sizeof begin) == 0));
+    if (descriptor >= 0)
+        close(descriptor);
+    return begun;
+}
+
+enum { MADE = PATH_MAX + 8 };
+static void name_next(char made[MADE], const char *file)
+{
+    snprintf(made, MADE, "%s.next", file);
+}
+
+void adopt_clear(const char *file)
+{
+    char real[PATH_MAX], made[MADE];
+    name_next(made, realpath(file, real) ? real : file);
+    if (is_ours(made))
+        unlink(made);
+}
+
+bool adopt_make(const char *file, const struct plan *plan, const struct adopted_filling *filling,
+                stance_message *message)
+{
+    char made[MADE];
+    struct store *store = NULL;
+    name_next(made, file);
+    if (is_ours(made)) /* of an attempt that was killed */
+        unlink(made);
+    if (!store_create(made, plan, filling->before, filling->ranks, filling->hosts, message))
+        return false;
+    bool good = store_open(&store, made, plan, 1, message) &&
+                filling->fill(filling->context, store, message);
+    if (good)
+        good = store_close(store, message);
+    else
+        store_abandon(store);
+    good = good && store_take_place(made, file, message);
+    if (!good)
+        unlink(made);
+    return good;
 }

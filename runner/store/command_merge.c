@@ -26,30 +26,23 @@ static void name_missing_shards(const struct merge *m)
 {
     enum { NAMED = 8 };
     const uint64_t count = m->kind == MERGE_EQUAL ? m->part[0].of.origin.shard.count : 0;
-    bool *const there = count > 0 ? calloc(count + 1, 1) : NULL;
-    uint64_t missing = count;
-
-    for (size_t p = 0; there && p < m->parts; p++) {
-        const struct shard *const shard = &m->part[p].of.origin.shard;
-        if (shard->count != count) {
-            missing = 0;
-            break;
-        }
-        missing -= !there[shard->number];
-        there[shard->number] = true;
+    uint64_t missing = 0;
+    for (size_t p = 0; p < m->parts; p++)
+        if (m->part[p].of.origin.shard.count != count)
+            return;
+    for (uint64_t k = 1; k <= count; k++) {
+        bool there = false;
+        for (size_t p = 0; p < m->parts && !there; p++)
+            there = m->part[p].of.origin.shard.number == k;
+        if (!there && ++missing <= NAMED)
+            fprintf(stderr, "%s %llu/%llu",
+                    missing == 1 ? "stance merge: not among the files: shard" : ",",
+                    (unsigned long long)k, (unsigned long long)count);
     }
-    if (there && missing > 0) {
-        uint64_t named = 0;
-        fputs("stance merge: not among the files:", stderr);
-        for (uint64_t k = 1; k <= count && named < NAMED; k++)
-            if (!there[k])
-                fprintf(stderr, "%s %llu/%llu", named++ ? "," : " shard", (unsigned long long)k,
-                        (unsigned long long)count);
-        if (missing > named)
-            fprintf(stderr, " and %llu more", (unsigned long long)(missing - named));
+    if (missing > NAMED)
+        fprintf(stderr, " and %llu more", (unsigned long long)(missing - NAMED));
+    if (missing > 0)
         fputc('\n', stderr);
-    }
-    free(there);
 }
 
 static void print_result(const struct request *request, const struct merge *m)
@@ -100,34 +93,17 @@ static bool at_rest(const struct request *request)
     return true;
 }
 
-/* The file is made under another name and takes its own when it is whole. */
-static bool write_file(const struct request *request, struct merge *m)
-{
-    char made[1100];
-    struct lock lock;
-    snprintf(made, sizeof made, "%s.merging", request->output);
-    m->usage = false;
-    if (!lock_take(&lock, request->output, &m->message))
-        return false;
-    unlink(made);
-    bool good = merge_write(m, made);
-    if (good && m->rows.copied == 0) {
-        m->usage = true;
-        good = complain(&m->message, "none of the %zu files has a case that is computed", m->parts);
-    }
-    good = good && store_take_place(made, request->output, &m->message);
-    if (!good)
-        unlink(made);
-    lock_release(&lock);
-    return good;
-}
-
 static int work(void *context)
 {
     const struct request *request = context;
     struct merge m;
     store_prepare();
-    const bool good = merge_plan(&m, request->files, request->count) && write_file(request, &m);
+    struct lock lock = {.descriptor = -1};
+    bool good = merge_plan(&m, request->files, request->count);
+    m.usage = m.usage && !good;
+    good =
+        good && lock_take(&lock, request->output, &m.message) && merge_write(&m, request->output);
+    lock_release(&lock);
     if (good)
         print_result(request, &m);
     else

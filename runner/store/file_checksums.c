@@ -43,10 +43,11 @@ static bool checksum_of(hid_t dataset, const char *name, uint32_t *crc)
     return good;
 }
 
-/* ---- walking through the variables -------------------------------------------------------- */
+/* ---- walking through the file ------------------------------------------------------------- */
 
 struct walk {
     bool put, strict;
+    H5_index_t order;
     const char *group; /* that is walked through: "", "design", ... */
     const char *name;  /* of the file */
     stance_message *message;
@@ -70,6 +71,25 @@ static bool verify_checksum(const struct walk *walk, hid_t dataset, const char *
     return crc == expected || say_damaged(walk, variable, "is not as its checksum says");
 }
 
+static herr_t touch_attribute(hid_t object, const char *name, const H5A_info_t *info, void *unused)
+{
+    (void)info, (void)unused;
+    hid_t attribute = H5Aopen(object, name, H5P_DEFAULT);
+    return attribute < 0 ? -1 : H5Aclose(attribute);
+}
+
+/* HDF5 verifies its own checksums of what it touches. */
+static bool touch(hid_t object, H5_index_t order)
+{
+    H5O_info_t all;
+    const H5I_type_t type = H5Iget_type(object);
+    if (type == H5I_GROUP) /* which has attributes of nobody */
+        order = H5_INDEX_NAME;
+    return H5Oget_info2(object, &all, H5O_INFO_ALL) >= 0 &&
+           H5Aiterate2(object, order, H5_ITER_INC, NULL, touch_attribute, NULL) >= 0 &&
+           (type != H5I_DATASET || hdf_elements(object) > 0);
+}
+
 /* Looks at one link of a group; a negative value ends the walk. */
 static herr_t visit(hid_t group, const char *name, const H5L_info_t *info, void *context)
 {
@@ -78,13 +98,14 @@ static herr_t visit(hid_t group, const char *name, const H5L_info_t *info, void 
     char path[128];
     (void)info;
     snprintf(path, sizeof path, "%s%s%s", walk->group, walk->group[0] ? "/" : "", name);
-    if (store_is_column(path) || store_is_track(path))
+    const bool rows = store_is_column(path) || store_is_track(path);
+    if (rows && !walk->strict)
         return 0;
     hid_t object = H5Oopen(group, name, H5P_DEFAULT);
-    bool good = object >= 0;
+    bool good = object >= 0 && (!walk->strict || touch(object, walk->order));
     if (!good && !walk->put)
         say_damaged(walk, name, "cannot be opened");
-    if (good && H5Iget_type(object) == H5I_DATASET)
+    if (good && !rows && walk->order == H5_INDEX_NAME && H5Iget_type(object) == H5I_DATASET)
         good = walk->put ? checksum_of(object, name, &crc) &&
                                put_attribute(object, CHECKSUM_ATTRIBUTE, KIND_uint32_t, &crc)
                          : verify_checksum(walk, object, name);
@@ -92,46 +113,19 @@ static herr_t visit(hid_t group, const char *name, const H5L_info_t *info, void 
     return good ? 0 : -1;
 }
 
-/* ---- the structure ------------------------------------------------------------------------ */
-
-static herr_t touch_attribute(hid_t object, const char *name, const H5A_info_t *info, void *unused)
-{
-    (void)info, (void)unused;
-    hid_t attribute = H5Aopen(object, name, H5P_DEFAULT);
-    return attribute < 0 ? -1 : H5Aclose(attribute);
-}
-
-static bool touch_attributes(hid_t object, H5_index_t order)
-{
-    return H5Aiterate2(object, order, H5_ITER_INC, NULL, touch_attribute, NULL) >= 0;
-}
-
-/* Opens one link and its attributes; HDF5 verifies the checksums of what it touches. */
-static herr_t touch(hid_t group, const char *name, const H5L_info_t *info, void *context)
-{
-    H5O_info_t all;
-    (void)info;
-    hid_t object = H5Oopen(group, name, H5P_DEFAULT);
-    bool good = object >= 0 && H5Oget_info2(object, &all, H5O_INFO_ALL) >= 0 &&
-                touch_attributes(object, H5_INDEX_NAME);
-    if (good && H5Iget_type(object) == H5I_DATASET) /* netCDF's order */
-        good = hdf_elements(object) > 0 && touch_attributes(object, H5_INDEX_CRT_ORDER);
-    hdf_close(object);
-    return good || say_damaged(context, name, "cannot be opened") ? 0 : -1;
-}
-
 /* Group by group, each opened by itself: H5Lvisit gives up at what cannot be opened, though it may
  * not matter. */
-static bool walk_through(hid_t file, struct walk *walk, H5_index_t order, H5L_iterate_t look)
+static bool walk_through(hid_t file, struct walk *walk, H5_index_t order)
 {
     static const char *const groups[] = {"", "design", "trajectory", "history"};
     bool good = true;
+    walk->order = order;
     for (size_t i = 0; good && i < sizeof groups / sizeof groups[0]; i++) {
         walk->group = groups[i];
         if (groups[i][0] && H5Lexists(file, groups[i], H5P_DEFAULT) <= 0)
             continue;
         const hid_t id = H5Gopen2(file, groups[i][0] ? groups[i] : "/", H5P_DEFAULT);
-        good = id >= 0 && H5Literate(id, order, H5_ITER_INC, NULL, look, walk) >= 0;
+        good = id >= 0 && H5Literate(id, order, H5_ITER_INC, NULL, visit, walk) >= 0;
         if (!good && !walk->put && walk->message->text[0] == '\0')
             say_damaged(walk, groups[i][0] ? "*" : "its variables", "cannot be listed");
         hdf_close(id);
@@ -144,7 +138,7 @@ static bool walk_through(hid_t file, struct walk *walk, H5_index_t order, H5L_it
 bool file_checksums_put(int64_t file)
 {
     struct walk walk = {.put = true};
-    return walk_through((hid_t)file, &walk, H5_INDEX_NAME, visit);
+    return walk_through((hid_t)file, &walk, H5_INDEX_NAME);
 }
 
 bool file_checksums_verify(int64_t file, const char *name, const char *scenario, const char *hash,
@@ -153,23 +147,19 @@ bool file_checksums_verify(int64_t file, const char *name, const char *scenario,
     struct walk walk = {.strict = strict, .group = "", .name = name, .message = message};
     const hid_t id = (hid_t)file;
     char found[CHECKSUM_SHA256_TEXT];
-    H5O_info_t all;
 
     message->text[0] = '\0';
-    if (!touch_attributes(id, H5_INDEX_NAME))
+    if (!touch(id, H5_INDEX_NAME))
         return say_damaged(&walk, "its attributes", "cannot be read");
     if (hash && hash[0]) {
         checksum_sha256(scenario, strlen(scenario), found);
         if (strcmp(found, hash) != 0)
             return say_damaged(&walk, "the scenario's text", "is not as its checksum says");
     }
-    if (!walk_through(id, &walk, H5_INDEX_NAME, visit))
-        return false;
-    if (!strict)
-        return true;
-    /* Everything can be opened, in the order of its making, too: what other readers go by. */
-    if (H5Oget_info2(id, &all, H5O_INFO_ALL) < 0 || !touch_attributes(id, H5_INDEX_CRT_ORDER))
-        return say_damaged(&walk, "its variables", "cannot be listed");
-    return walk_through(id, &walk, H5_INDEX_NAME, touch) &&
-           walk_through(id, &walk, H5_INDEX_CRT_ORDER, touch);
+    /* Strictly everything can be opened, in the order of its making, too: what other readers go by.
+     */
+    return walk_through(id, &walk, H5_INDEX_NAME) &&
+           (!strict || ((touch(id, H5_INDEX_CRT_ORDER) ||
+                         say_damaged(&walk, "its variables", "cannot be listed")) &&
+                        walk_through(id, &walk, H5_INDEX_CRT_ORDER)));
 }

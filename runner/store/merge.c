@@ -7,7 +7,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 static const double last_bits = 1e-9; /* relative difference of designs that are the same */
 
@@ -19,18 +18,6 @@ const char *const merge_notes[MERGE_NOTES] = {
     [MERGE_DESIGNS] = "The parts' controller designs or computed axes differ in last bits; those "
                       "of the first part that has them are in this file.",
 };
-
-static bool open_part(struct merge *m, struct adopted *part)
-{
-    struct store_counts counts;
-    if (!adopt_scenario(part, &m->message) || !store_count(part->file, &counts, &m->message))
-        return false;
-    return counts.cases == part->scenario->cases
-               ? adopt_open(part, &m->message)
-               : complain(&m->message,
-                          "%.100s: holds one case of a sweep (run --only), not the sweep",
-                          part->file);
-}
 
 /* ---- what must be the same ---------------------------------------------------------------- */
 
@@ -79,7 +66,7 @@ static bool collect_designs(struct merge *m, struct plan *plan)
     bool good = taken || no_memory(&m->message);
     for (size_t p = 0; good && p < m->parts; p++) {
         struct adopted *const part = &m->part[p].of;
-        good = open_part(m, part);
+        good = adopt_scenario(part, &m->message) && adopt_open(part, &m->message);
         if (good)
             m->usage = !(good = take_designs(m, part, plan, taken));
         adopt_close(part);
@@ -98,7 +85,8 @@ static bool copy_parts(struct merge *m, struct store *store)
     for (size_t p = 0; good && p < m->parts; p++) {
         struct adopted *const part = &m->part[p].of;
         const uint64_t before = rows->copied + rows->same;
-        good = open_part(m, part) && adopt_rows(part, store, rows, &m->message) &&
+        good = adopt_scenario(part, &m->message) && adopt_open(part, &m->message) &&
+               adopt_rows(part, store, rows, &m->message) &&
                store_copy_timing(part->store, store, &rank, &m->message);
         m->part[p].taken = rows->copied + rows->same - before;
         adopt_close(part);
@@ -139,33 +127,31 @@ static bool annotate(struct merge *m, struct store *store)
 
 /* ---- all of it ---------------------------------------------------------------------------- */
 
+static bool fill(void *context, struct store *store, stance_message *message)
+{
+    struct merge *const m = context;
+    if (!copy_parts(m, store) || !annotate(m, store))
+        return false;
+    m->usage = m->rows.copied == 0;
+    return !m->usage ||
+           complain(message, "none of the %zu files has a case that is computed", m->parts);
+}
+
 bool merge_write(struct merge *m, const char *file)
 {
+    const struct store_origin *const first = &m->part[0].of.origin;
+    struct adopted_filling filling = {fill, m, .hosts = first->hosts ? first->hosts : ""};
     struct plan plan;
     struct plan_error error;
-    int ranks = 0;
 
     m->usage = false;
     for (size_t p = 0; p < m->parts; p++)
-        ranks += m->part[p].of.origin.ranks > 0 ? m->part[p].of.origin.ranks : 1;
+        filling.ranks += m->part[p].of.origin.ranks > 0 ? m->part[p].of.origin.ranks : 1;
     if (!plan_make(&plan, m->scenario, false, 0, false, &error)) {
         m->message = error.message;
         return false;
     }
-    const char *hosts = m->part[0].of.origin.hosts ? m->part[0].of.origin.hosts : "";
-    bool good =
-        collect_designs(m, &plan) && store_create(file, &plan, NULL, ranks, hosts, &m->message);
-    if (good) {
-        struct store *store = NULL;
-        good = store_open(&store, file, &plan, 1, &m->message) && copy_parts(m, store) &&
-               annotate(m, store);
-        if (good)
-            good = store_close(store, &m->message);
-        else
-            store_abandon(store);
-        if (!good)
-            unlink(file);
-    }
+    const bool good = collect_designs(m, &plan) && adopt_make(file, &plan, &filling, &m->message);
     plan_free(&plan);
     return good;
 }

@@ -23,6 +23,7 @@ extern const char *const merge_notes[MERGE_NOTES];
 struct merge_part {
     struct adopted of;
     uint64_t taken; /* rows */
+    char *value;    /* that becomes a point of an axis; NULL: that of the first part */
 };
 
 struct merge {
@@ -41,7 +42,7 @@ struct merge {
 
 /* Reads what the parts are and finds how they fit. Release in any case. */
 bool merge_plan(struct merge *merge, const char *const *files, size_t count);
-/* Writes the merged file, which must not exist. False: nothing is left of it. */
+/* Makes the merged file (adopt_make). */
 bool merge_write(struct merge *merge, const char *file);
 void merge_free(struct merge *merge);
 

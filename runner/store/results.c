@@ -1,7 +1,6 @@
 /* results.c - reads results files with HDF5's serial driver; trusts nothing that it finds. */
 #include "file_checksums.h"
 #include "results_private.h"
-#include "results_rows.h"
 #include "store.h"
 
 #include "runner/base/checksum.h"
@@ -64,8 +63,6 @@ void results_copy_attribute(hid_t object, const char *name, char *buffer, size_t
 
 /* ---- datasets ----------------------------------------------------------------------------- */
 
-/* Product of lengths, 0 when it overflows. A damaged header must not make us ask for terabytes:
- * no array of ours has more elements than its file has bytes. */
 size_t results_elements(const struct results *r, int rank, const hsize_t *length)
 {
     hsize_t size = 0, product = 1;
@@ -226,35 +223,69 @@ static bool read_axes(struct results *r, stance_message *message)
     return true;
 }
 
-/* ---- status, outcome, failure ------------------------------------------------------------- */
+/* ---- variables over the cases -------------------------------------------------------------- */
 
-/* Counts that there are none of become NAN. */
-static void no_counts(double *values, size_t n)
+bool results_column_open(const struct results *r, const char *name, struct results_column *column,
+                         stance_message *message)
 {
-    for (size_t i = 0; i < n; i++)
-        values[i] = values[i] == (double)STANCE_NO_COUNT ? NAN : values[i];
-}
-
-/* A number of that kind per case; *values stays NULL when the variable is not stored. */
-static bool read_cases(const struct results *r, const char *name, enum store_kind kind,
-                       void **values, stance_message *message)
-{
-    *values = NULL;
-    if (!hdf_exists((hid_t)r->id, name))
-        return true;
+    *column = (struct results_column){.id = -1};
+    snprintf(column->name, sizeof column->name, "%s", name);
     const struct results_variable v = results_variable(r, name);
     if (v.id < 0)
-        return results_failed(r, name, message);
-    bool good = false, shaped = v.rank == r->axes;
-    for (int d = 0; shaped && d < v.rank; d++)
-        shaped = v.length[d] == r->axis[d].count;
-    if (!shaped || (v.class != H5T_INTEGER && (v.class != H5T_FLOAT || kind != KIND_double)))
-        results_damaged(r, "a variable is not as its axes say", message);
-    else if (!(*values = malloc(r->cases * (kind == KIND_double ? sizeof(double) : 1))))
-        results_no_memory(r, message);
-    else
-        good = hdf_read(v.id, kind, *values) || results_failed(r, name, message);
-    hdf_close(v.id);
+        return !hdf_exists((hid_t)r->id, name) || results_failed(r, name, message);
+    bool good = (v.rank == r->axes || v.rank == r->axes + 1) && v.number;
+    for (int a = 0; good && a < r->axes; a++)
+        good = v.length[a] == r->axis[a].count;
+    column->width = good && v.rank > r->axes ? (size_t)v.length[v.rank - 1] : 1;
+    column->id = v.id;
+    column->words = hdf_text(v.id, "flag_meanings");
+    if (column->words)
+        results_clean(column->words);
+    if (good && column->width <= SCENARIO_MAX_STATES)
+        return true;
+    results_column_close(column);
+    return results_damaged(r, "a variable is not as its axes say", message);
+}
+
+void results_column_close(struct results_column *column)
+{
+    if (column->id >= 0)
+        hdf_close((hid_t)column->id);
+    free(column->words);
+    column->id = -1;
+    column->words = NULL;
+}
+
+bool results_column_read(const struct results *r, const struct results_column *column,
+                         uint64_t first, size_t rows, double *values, stance_message *message)
+{
+    const size_t n = rows * column->width;
+    if (!hdf_move((hid_t)column->id, hdf_type(KIND_double), first * column->width, n, HDF_READ,
+                  values))
+        return results_failed(r, column->name, message);
+    for (size_t i = 0; i < n; i++) /* counts that there are none of */
+        values[i] = values[i] == (double)STANCE_NO_COUNT ? NAN : values[i];
+    return true;
+}
+
+bool results_answer(const struct results *r, const char *name, double **values,
+                    stance_message *message)
+{
+    struct results_column column;
+    *values = NULL;
+    if (!results_column_open(r, name, &column, message))
+        return false;
+    if (column.id < 0)
+        return true;
+    bool good =
+        column.width == 1 || results_damaged(r, "a variable is not as its axes say", message);
+    if (good && !(*values = malloc(r->cases * sizeof **values)))
+        good = results_no_memory(r, message);
+    good = good && results_column_read(r, &column, 0, r->cases, *values, message);
+    results_column_close(&column);
+    for (uint64_t i = 0; good && i < r->cases; i++)
+        if (r->kind[i] == RESULTS_PENDING || r->kind[i] == RESULTS_FAILED)
+            (*values)[i] = NAN;
     if (!good) {
         free(*values);
         *values = NULL;
@@ -262,12 +293,35 @@ static bool read_cases(const struct results *r, const char *name, enum store_kin
     return good;
 }
 
-static bool read_bytes(const struct results *r, const char *name, uint8_t **bytes,
+/* ---- status, outcome, failure ------------------------------------------------------------- */
+
+/* A code per case; NULL where the variable is not stored. Files number the failures as their
+ * program did: into our numbers, by the names they bring. */
+static bool read_codes(const struct results *r, const char *name, bool failures, uint8_t **codes,
                        stance_message *message)
 {
-    void *values;
-    const bool good = read_cases(r, name, KIND_uint8_t, &values, message);
-    *bytes = values;
+    uint8_t now[UINT8_MAX + 1] = {0};
+    struct results_column column;
+    *codes = NULL;
+    if (!results_column_open(r, name, &column, message))
+        return false;
+    if (column.id < 0)
+        return true;
+    bool good =
+        column.width == 1 || results_damaged(r, "a variable is not as its axes say", message);
+    if (good && !(*codes = malloc(r->cases)))
+        good = results_no_memory(r, message);
+    good = good &&
+           (hdf_read((hid_t)column.id, KIND_uint8_t, *codes) || results_failed(r, name, message));
+    char *rest = failures ? column.words : NULL;
+    for (size_t k = 0; rest && k < sizeof now; k++) {
+        const char *const word = strsep(&rest, " ");
+        for (size_t f = 0; f < STANCE_FAILURE_COUNT; f++)
+            now[k] = strcmp(word, stance_failure_name[f]) == 0 ? (uint8_t)f : now[k];
+    }
+    for (uint64_t i = 0; good && failures && column.words && i < r->cases; i++)
+        (*codes)[i] = now[(*codes)[i]];
+    results_column_close(&column);
     return good;
 }
 
@@ -291,23 +345,6 @@ static uint8_t kind_of(uint8_t status, const uint8_t *outcome)
     }
 }
 
-/* Files number the failures as their program did: into our numbers, by the names they bring. */
-static void translate_failures(struct results *r)
-{
-    uint8_t now[UINT8_MAX + 1] = {0};
-    hid_t dataset = H5Dopen2((hid_t)r->id, "failure", H5P_DEFAULT);
-    char *words = hdf_text(dataset, "flag_meanings"), *rest = words;
-    for (size_t k = 0; rest && k < sizeof now; k++) {
-        const char *word = strsep(&rest, " ");
-        for (size_t f = 0; f < STANCE_FAILURE_COUNT; f++)
-            now[k] = strcmp(word, stance_failure_name[f]) == 0 ? (uint8_t)f : now[k];
-    }
-    for (uint64_t i = 0; words && i < r->cases; i++)
-        r->failure[i] = now[r->failure[i]];
-    free(words);
-    hdf_close(dataset);
-}
-
 static bool read_kinds(struct results *r, stance_message *message)
 {
     hsize_t length[SCENARIO_MAX_AXES];
@@ -317,15 +354,10 @@ static bool read_kinds(struct results *r, stance_message *message)
     r->cases = results_elements(r, r->axes, length);
     if (r->cases == 0)
         return results_damaged(r, "it is shorter than its axes say", message);
-    if (!read_bytes(r, "status", &r->kind, message) ||
-        !read_bytes(r, "outcome", &outcome, message) ||
-        !read_bytes(r, "failure", &r->failure, message)) {
-        free(outcome);
-        return false;
-    }
-    if (r->failure)
-        translate_failures(r);
-    bool good = r->kind || results_damaged(r, "it has no variable 'status'", message);
+    bool good = read_codes(r, "status", false, &r->kind, message) &&
+                read_codes(r, "outcome", false, &outcome, message) &&
+                read_codes(r, "failure", true, &r->failure, message) &&
+                (r->kind || results_damaged(r, "it has no variable 'status'", message));
     good = good && (store_distrust(r->id, r->kind, r->cases, &r->damage) ||
                     results_failed(r, "the answers", message));
     for (uint64_t i = 0; good && i < r->cases; i++) {
@@ -334,19 +366,6 @@ static bool read_kinds(struct results *r, stance_message *message)
                results_damaged(r, "a case has a status or an outcome that does not exist", message);
     }
     free(outcome);
-    return good;
-}
-
-bool results_answer(const struct results *r, const char *name, double **values,
-                    stance_message *message)
-{
-    void *numbers;
-    const bool good = read_cases(r, name, KIND_double, &numbers, message);
-    *values = numbers;
-    no_counts(*values, *values ? r->cases : 0);
-    for (uint64_t i = 0; *values && i < r->cases; i++)
-        if (r->kind[i] == RESULTS_PENDING || r->kind[i] == RESULTS_FAILED)
-            (*values)[i] = NAN;
     return good;
 }
 
@@ -382,52 +401,6 @@ bool results_timing(const struct results *r, double *longest, double *total, dou
         *cases += values[i];
     free(values);
     return n > 0 && isfinite(*total) && *longest > 0 && *cases > 0;
-}
-
-/* ---- some rows at a time ------------------------------------------------------------------- */
-
-bool results_column_open(const struct results *r, const char *name, struct results_column *column,
-                         stance_message *message)
-{
-    *column = (struct results_column){.id = -1};
-    snprintf(column->name, sizeof column->name, "%s", name);
-    const struct results_variable v = results_variable(r, name);
-    if (v.id < 0)
-        return !hdf_exists((hid_t)r->id, name) || results_failed(r, name, message);
-    bool good = (v.rank == r->axes || v.rank == r->axes + 1) && v.number;
-    for (int a = 0; good && a < r->axes; a++)
-        good = v.length[a] == r->axis[a].count;
-    column->width = good && v.rank > r->axes ? (size_t)v.length[v.rank - 1] : 1;
-    good = good && column->width <= SCENARIO_MAX_STATES;
-    column->id = v.id;
-    if (!good) {
-        results_column_close(column);
-        return results_failed(r, name, message);
-    }
-    column->words = hdf_text(v.id, "flag_meanings");
-    if (column->words)
-        results_clean(column->words);
-    return true;
-}
-
-void results_column_close(struct results_column *column)
-{
-    if (column->id >= 0)
-        hdf_close((hid_t)column->id);
-    free(column->words);
-    column->id = -1;
-    column->words = NULL;
-}
-
-bool results_column_read(const struct results *r, const struct results_column *column,
-                         uint64_t first, size_t rows, double *values, stance_message *message)
-{
-    const size_t n = rows * column->width;
-    if (!hdf_move((hid_t)column->id, hdf_type(KIND_double), first * column->width, n, HDF_READ,
-                  values))
-        return results_failed(r, column->name, message);
-    no_counts(values, n);
-    return true;
 }
 
 /* ---- opening ------------------------------------------------------------------------------ */

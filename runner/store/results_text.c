@@ -53,25 +53,33 @@ void results_number_text(double value, double gap, char *buffer, size_t size)
     } while (gap > 0 && fabs(strtod(buffer, NULL) - value) > gap / 4 && digits++ < MOST_DIGITS);
 }
 
-/* Distance of a value of an axis from the nearest other one; 0: there is none. */
-static double gap_at(const struct results_axis *axis, size_t i)
+/* A word, or a number with its unit, which "none" does not have. */
+static void value_text(const char *word, double value, double gap, const char *unit, char *buffer,
+                       size_t size)
 {
-    double below = i > 0 ? fabs(axis->value[i] - axis->value[i - 1]) : 0;
-    double above = i + 1 < axis->count ? fabs(axis->value[i + 1] - axis->value[i]) : 0;
-    return below > 0 && (below < above || above == 0) ? below : above;
+    char number[32];
+    results_number_text(value, gap, number, sizeof number);
+    unit = unit && isfinite(value) ? unit : "";
+    snprintf(buffer, size, "%s%s%s", word ? word : number, !word && unit[0] ? " " : "",
+             word ? "" : unit);
 }
 
 void results_value_text(const struct results_axis *axis, size_t i, bool unit, char *buffer,
                         size_t size)
 {
-    char number[32];
-    if (axis->word) {
-        snprintf(buffer, size, "%s", axis->word[i]);
-    } else {
-        results_number_text(axis->value[i], gap_at(axis, i), number, sizeof number);
-        snprintf(buffer, size, "%s%s%s", number, unit && axis->unit[0] ? " " : "",
-                 unit ? axis->unit : "");
-    }
+    /* Distance from the nearest other value; 0: there is none. */
+    const double below = i > 0 ? fabs(axis->value[i] - axis->value[i - 1]) : 0,
+                 above = i + 1 < axis->count ? fabs(axis->value[i + 1] - axis->value[i]) : 0;
+    value_text(axis->word ? axis->word[i] : NULL, axis->value[i],
+               below > 0 && (below < above || above == 0) ? below : above, unit ? axis->unit : NULL,
+               buffer, size);
+}
+
+void results_varied_text(const struct results_varied *v, size_t i, bool unit, char *buffer,
+                         size_t size)
+{
+    value_text(v->word ? v->word[(int)v->of.value[i]] : NULL, v->of.value[i], 0,
+               unit ? v->of.unit : NULL, buffer, size);
 }
 
 const char *results_ends_text(const struct results_axis *axis, char *first, char *last, size_t size)
@@ -81,19 +89,6 @@ const char *results_ends_text(const struct results_axis *axis, char *first, char
     results_value_text(axis, ends[0], false, first, size);
     results_value_text(axis, ends[1], true, last, size);
     return sorted ? "" : ", not sorted";
-}
-
-void results_varied_text(const struct results_varied *v, size_t i, bool unit, char *buffer,
-                         size_t size)
-{
-    char number[32];
-    if (v->word) {
-        snprintf(buffer, size, "%s", v->word[(int)v->of.value[i]]);
-    } else {
-        results_number_text(v->of.value[i], 0, number, sizeof number);
-        unit = unit && v->of.unit[0] && isfinite(v->of.value[i]);
-        snprintf(buffer, size, "%s%s%s", number, unit ? " " : "", unit ? v->of.unit : "");
-    }
 }
 
 void results_case_text(const struct results *r, uint64_t index, char *buffer, size_t size)

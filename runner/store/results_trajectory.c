@@ -1,5 +1,6 @@
 /* results_trajectory.c - recorded trajectories of a results file. */
 #include "results_private.h"
+#include "store_private.h"
 
 #include "runner/base/checksum.h"
 
@@ -28,24 +29,51 @@ bool results_recorded(const struct results *r, uint64_t **list, size_t *count,
     return true;
 }
 
-/* One case of a variable (case, time, ...) of `width` numbers per instant; *values NULL when the
- * variable does not exist. */
-static bool read_track(const struct results *r, const char *path, size_t place, size_t rows,
-                       size_t width, double **values, stance_message *message)
+/* A variable of a trajectory, in the order of the table, and its numbers per instant. */
+static double **track_of(struct results_trajectory *t, int v, size_t *width)
 {
-    if (width == 0 || !hdf_exists((hid_t)r->id, path))
-        return true;
-    const struct results_variable v = results_variable(r, path);
-    if (v.id < 0)
-        return results_failed(r, path, message);
-    const bool fits = rows > 0 && v.rank >= 3 && v.length[1] == rows && place < v.length[0] &&
-                      v.elements > 0 && v.elements / v.length[0] == rows * width && v.number;
-    *values = fits ? malloc(rows * width * sizeof **values) : NULL;
-    const bool good = *values && hdf_move(v.id, hdf_type(KIND_double), place * rows * width,
-                                          rows * width, HDF_READ, *values);
-    hdf_close(v.id);
-    return !fits ? results_damaged(r, "a trajectory is not as its dimensions say", message)
-                 : good || results_failed(r, path, message);
+    double **const track[TRACKS] = {&t->position, &t->velocity, &t->torque, &t->force, &t->gap};
+    const size_t lengths[OVERS] = {[OVER_NONE] = 1,
+                                   [OVER_COORDINATE] = t->coordinates,
+                                   [OVER_ACTUATOR] = t->actuators,
+                                   [OVER_CONTACT] = t->contacts,
+                                   [OVER_COMPONENT] = 2};
+    *width = lengths[store_tracks[v].over[0]] * lengths[store_tracks[v].over[1]];
+    return track[v];
+}
+
+/* One case of the variables (case, time, ...); NULL where there is none. */
+static bool read_tracks(const struct results *r, struct results_trajectory *t, size_t place,
+                        size_t rows, stance_message *message)
+{
+    uint32_t crc = 0, expected;
+    for (int k = 0; k < TRACKS; k++) {
+        const char *const path = store_tracks[k].name;
+        size_t width;
+        double **const track = track_of(t, k, &width);
+        if (width == 0 || !hdf_exists((hid_t)r->id, path))
+            continue;
+        const struct results_variable v = results_variable(r, path);
+        if (v.id < 0)
+            return results_failed(r, path, message);
+        const bool fits = rows > 0 && v.rank >= 3 && v.length[1] == rows && place < v.length[0] &&
+                          v.elements > 0 && v.elements / v.length[0] == rows * width && v.number;
+        *track = fits ? malloc(rows * width * sizeof **track) : NULL;
+        const bool good = *track && hdf_move(v.id, hdf_type(KIND_double), place * rows * width,
+                                             rows * width, HDF_READ, *track);
+        hdf_close(v.id);
+        if (!fits)
+            return results_damaged(r, "a trajectory is not as its dimensions say", message);
+        if (!good)
+            return results_failed(r, path, message);
+        crc = checksum_crc32c(crc, *track, rows * width * sizeof **track);
+    }
+    if (!t->position)
+        return results_damaged(r, "the trajectories have no positions", message);
+    return r->kind[r->single ? 0 : t->index] == RESULTS_PENDING ||
+           !hdf_exists((hid_t)r->id, "trajectory/checksum") ||
+           (store_trajectory_checksum(r->id, place, &expected) && crc == expected) ||
+           results_damaged(r, "a trajectory is not as its checksum says", message);
 }
 
 /* Rows before the first that is not a number: a case ends there. */
@@ -59,27 +87,6 @@ static size_t count_rows(const struct results_trajectory *t, size_t rows)
             return k;
     }
     return rows;
-}
-
-/* A trajectory of `rows` instants is as its checksum says, where it has one. */
-static bool is_whole(const struct results *r, const struct results_trajectory *t, size_t place,
-                     size_t rows)
-{
-    const struct {
-        const double *values;
-        size_t width;
-    } part[] = {{t->position, t->coordinates},
-                {t->velocity, t->coordinates},
-                {t->torque, t->actuators},
-                {t->force, 2 * t->contacts},
-                {t->gap, t->contacts}};
-    uint32_t crc = 0, expected;
-
-    for (size_t k = 0; k < sizeof part / sizeof part[0]; k++)
-        if (part[k].values)
-            crc = checksum_crc32c(crc, part[k].values, rows * part[k].width * sizeof(double));
-    return !hdf_exists((hid_t)r->id, "trajectory/checksum") ||
-           (store_trajectory_checksum(r->id, place, &expected) && crc == expected);
 }
 
 bool results_trajectory(const struct results *r, size_t place, uint64_t index,
@@ -96,18 +103,8 @@ bool results_trajectory(const struct results *r, size_t place, uint64_t index,
     t->time = rows ? malloc(rows * sizeof *t->time) : NULL;
     bool good = t->time && t->coordinates > 0 &&
                 results_numbers(r, "trajectory/time", t->time, rows) == rows;
-    good = good || results_damaged(r, "the trajectories lack a dimension", message);
-    good =
-        good &&
-        read_track(r, "trajectory/position", place, rows, t->coordinates, &t->position, message) &&
-        read_track(r, "trajectory/velocity", place, rows, t->coordinates, &t->velocity, message) &&
-        read_track(r, "trajectory/torque", place, rows, t->actuators, &t->torque, message) &&
-        read_track(r, "trajectory/force", place, rows, 2 * t->contacts, &t->force, message) &&
-        read_track(r, "trajectory/gap", place, rows, t->contacts, &t->gap, message);
-    if (good && !t->position)
-        good = results_damaged(r, "the trajectories have no positions", message);
-    if (good && r->kind[r->single ? 0 : index] != RESULTS_PENDING && !is_whole(r, t, place, rows))
-        good = results_damaged(r, "a trajectory is not as its checksum says", message);
+    good = (good || results_damaged(r, "the trajectories lack a dimension", message)) &&
+           read_tracks(r, t, place, rows, message);
     if (good)
         t->rows = count_rows(t, rows);
     else

@@ -25,50 +25,24 @@ static stance_error absent(stance_message *message)
     return STANCE_NUMERICAL;
 }
 
-stance_error stance_place(int n, int m, const double *A, const double *B, const double *re,
-                          const double *im, double *K, int *sweeps, double *condition,
+stance_error stance_place(stance_placement how, const stance_plant *plant, double T,
+                          const stance_poles *poles, double *K, stance_robustness *robustness,
                           stance_message *message)
 {
-    (void)n, (void)m, (void)A, (void)B, (void)re, (void)im, (void)K, (void)sweeps, (void)condition;
+    (void)how, (void)plant, (void)T, (void)poles, (void)K, (void)robustness;
     return absent(message);
 }
 
-stance_error stance_place_schur(int n, int m, const double *A, const double *B, const double *re,
-                                const double *im, double *K, stance_message *message)
-{
-    (void)n, (void)m, (void)A, (void)B, (void)re, (void)im, (void)K;
-    return absent(message);
-}
-
-stance_error stance_place_sampled(stance_placement how, int n, int m, const double *A,
-                                  const double *B, double T, const double *re, const double *im,
-                                  double *K, int *sweeps, double *condition,
-                                  stance_message *message)
-{
-    (void)how, (void)n, (void)m, (void)A, (void)B, (void)T, (void)re, (void)im, (void)K;
-    (void)sweeps, (void)condition;
-    return absent(message);
-}
-
-stance_error stance_lqr(int n, int m, const double *A, const double *B, const double *states,
+stance_error stance_lqr(const stance_plant *plant, double T, const double *states,
                         const double *torques, double *K, stance_message *message)
 {
-    (void)n, (void)m, (void)A, (void)B, (void)states, (void)torques, (void)K;
+    (void)plant, (void)T, (void)states, (void)torques, (void)K;
     return absent(message);
 }
 
-stance_error stance_lqr_sampled(int n, int m, const double *A, const double *B, double T,
-                                const double *states, const double *torques, double *K,
-                                stance_message *message)
+stance_error stance_discretise(const stance_plant *plant, double T, double *Ad, double *Bd)
 {
-    (void)n, (void)m, (void)A, (void)B, (void)T, (void)states, (void)torques, (void)K;
-    return absent(message);
-}
-
-stance_error stance_discretise(int n, int m, const double *A, const double *B, double T, double *Ad,
-                               double *Bd)
-{
-    (void)n, (void)m, (void)A, (void)B, (void)T, (void)Ad, (void)Bd;
+    (void)plant, (void)T, (void)Ad, (void)Bd;
     return STANCE_NUMERICAL;
 }
 

@@ -1,183 +1,202 @@
-/* rest.h - is there an equilibrium close by that holds?
- *
- * Slow is not at rest: a robot that topples over may take its time. `rested` and `stabilised` ask
- * for an equilibrium: with w = 0, contacts that stand (gap closed, forces inside the cones, what
- * the law commands within its limits) and no acceleration,
- *
- *   A w' = F(s, 0, t) + B torque(s, 0, I) + H^T lambda = 0,
- *
- * no further from the state than settle.angle, found by Newton's iteration along the ways that the
- * standing contacts leave (the null space Z of their H, s = s* + Z x on the ground); and that it
- * holds. About it, with central differences,
- *
- *   x'' = K x + B u,    u = C x + C' x' + C" I,    I' = E x + E' x' + E" I,
- *
- * I the integrals of a law that has them. Where a torque is at its limit its row of C is zero: that
- * is what the limit makes of it. A law that samples every T seconds and holds gives the map
- *
- *   (x, x')+ = Phi (x, x') + Gamma u,   I+ = I + T I',   [Phi Gamma; 0 1] = exp([0 1 0; K 0 B; 0 0
- * 0] T)
- *
- * with the u of some samples before where there is a delay, and with the torques as states where
- * actuators lag; one that acts all the time the exponential of the closed loop. It holds where
- * nothing has fallen and no reference of a servo still moves, when a disturbance has not grown by
- * more than REST_GROWTH after REST_HOLDS times settle.hold, REST_WHOLE at least, by squaring the
- * map again and again: what swings without damping, as a free leg does, holds, too; what grows,
- * however slowly, does not. Forces that change with time are looked at eight times a period, at
- * their crests among these. Noise is left out.
- *
- * `rested` says that the motion has come there. Contacts that carry stand, to REST_CREEP, and the
- * map takes the present deviation (x, x', I) to nothing, or round and round, without leaving
- * settle.angle and settle.rate on the way, the forces inside the cones, no other contact closing,
- * nothing falling, the law as linear as it was taken for (REST_BENT: no limit, no other law, no
- * rate limit that counts): looked at eight times an octave of time. What slid to rest has its force
- * on the edge of the cone, up to rounding: cones are wider by REST_EDGE.
+/* rest.h - what a kernel tells of the robot near a state of rest (engine/rest.h), and what becomes
+ * of the verdict.
  */
 #ifndef STANCE_CORE_LOOP_REST_H
 #define STANCE_CORE_LOOP_REST_H
 
-#include "rest_linear.h"
+#include "engine/rest.h"
+#include "program.h"
 
-/* Do contacts that carry stand? A bounce that is over within a step of length h is none. */
-COLD bool rest_stands(const struct rest *r, const lanes *s, const lanes *w, double h)
+#define REST_EDGE 1e-6  /* of a cone: what it is wider here */
+#define REST_CREEP 1e-6 /* m/s: a contact this slow stands */
+
+/* The neighbourhood of a state of rest of the case in one lane. */
+struct rest {
+    stance_rest asked;  /* first: by it the rest is found */
+    struct setting set; /* without pushes */
+    const stance_case *of;
+    double known[STANCE_SAMPLE_HEAD]; /* of a program */
+    int lane;
+    lanes t;
+    double bounce; /* m/s: a bounce that is over within a step is none */
+    struct contact_state mode;
+};
+
+static const struct rest *rest_of(const stance_rest *asked)
 {
-    const double bounce = fmax(STANCE_GRAVITY * h, REST_CREEP);
+    return (const struct rest *)asked;
+}
+
+/* Numbers as lanes, and back. */
+static void rest_lanes(const double *x, int own, int room, lanes *out)
+{
+    for (int i = 0; i < room; i++)
+        out[i] = lanes_of(i < own ? x[i] : 0);
+}
+static void rest_numbers(const struct rest *r, const lanes *x, int own, double *out)
+{
+    for (int i = 0; i < own; i++)
+        out[i] = lane_get(&x[i], r->lane);
+}
+
+/* What a program that remembers nothing commands; the feet are those of the mode. */
+COLD void rest_program(const struct rest *r, const lanes *s, const lanes *w, lanes *torque)
+{
+    const stance_program *const program = r->of->program;
     scene_trig trig;
-    bool stands = true;
+    struct program_measured is;
+    scene_trigonometry(s, &trig);
+    program_measure(&r->set, true, s, w, &trig, &is);
+    double *const sample = mask_get(is.near, r->lane) ? NULL : program->begin(program, r->of);
+    if (!sample)
+        return;
+    memcpy(sample, r->known, sizeof r->known);
+    program_sample(&is, r->mode.closed, r->lane, sample);
+    const double *const command = program->act(program, r->of, sample);
+    for (int i = 0; i < OWN_ACTUATORS; i++)
+        lane_set(&torque[i], r->lane, command ? command[i] : NAN);
+    program->end(program, sample);
+}
+
+/* The functions of a stance_rest. */
+COLD void rest_law(const stance_rest *asked, const double *s1, const double *w1,
+                   const double *integral1, double *torque1, double *rate1)
+{
+    const struct rest *const r = rest_of(asked);
+    lanes s[SCENE_COORDINATES], w[SCENE_COORDINATES], integral[ACTUATORS];
+    lanes torque[ACTUATORS], rate[ACTUATORS];
+    struct dynamics e;
+    rest_lanes(s1, SCENE_COORDINATES, SCENE_COORDINATES, s);
+    rest_lanes(w1, SCENE_COORDINATES, SCENE_COORDINATES, w);
+    rest_lanes(integral1, OWN_ACTUATORS, ACTUATORS, integral);
+    rest_lanes(NULL, 0, ACTUATORS, rate);
+    law_sampled(&r->set.law, s, w, torque);
+    if (SCENE_ACTUATORS > 0 &&
+        mask_any(mask_less(lanes_of(0), r->set.law.decouples + r->set.law.switches))) {
+        const struct state at = {r->t, s, w, integral};
+        scene_trigonometry(s, &e.trig);
+        const mask servos = law_command(&r->set, LANES_ALL, &at, &r->mode, &e, torque);
+        for (int i = 0; i < SCENE_ACTUATORS; i++)
+            rate[i] = choose(servos, e.integral_rate[i], rate[i]);
+    }
+    if (SCENE_ACTUATORS > 0 && r->of->program)
+        rest_program(r, s, w, torque);
+    law_clip(&r->set.law, torque);
+    rest_numbers(r, torque, OWN_ACTUATORS, torque1);
+    rest_numbers(r, rate, OWN_ACTUATORS, rate1);
+}
+
+/* Everything that holds at s, where nothing moves, with these torques, but what the mode tells. */
+COLD void rest_evaluate(const struct rest *r, const double *s1, const double *torque1, lanes *s,
+                        struct dynamics *e)
+{
+    lanes still[SCENE_COORDINATES], torque[ACTUATORS];
+    rest_lanes(s1, SCENE_COORDINATES, SCENE_COORDINATES, s);
+    rest_lanes(NULL, 0, SCENE_COORDINATES, still);
+    rest_lanes(torque1, OWN_ACTUATORS, ACTUATORS, torque);
+    const struct state at = {.t = r->t, .s = s, .w = still};
+    scene_trigonometry(s, &e->trig);
+    dynamics_evaluate(&r->set, &at, torque, CONTACT_ALL, false, e);
+}
+
+static void rest_accelerate(const stance_rest *asked, const double *s1, const double *torque,
+                            double *a)
+{
+    const struct rest *const r = rest_of(asked);
+    lanes s[SCENE_COORDINATES];
+    struct dynamics e;
+    rest_evaluate(r, s1, torque, s, &e);
+    between_solve(&r->set, &r->mode, &e);
+    rest_numbers(r, e.acceleration, SCENE_COORDINATES, a);
+}
+
+static void rest_project(const stance_rest *asked, const double *torque, double *s1)
+{
+    const struct rest *const r = rest_of(asked);
+    lanes s[SCENE_COORDINATES];
+    struct dynamics e;
+    rest_evaluate(r, s1, torque, s, &e);
+    between_project_position(&r->set, r->mode.closed, s, &e);
+    rest_numbers(r, s, SCENE_COORDINATES, s1);
+}
+
+/* Does contact c hold what slides along the ground, too? */
+static bool rest_sticks(const struct rest *r, int c)
+{
+    return contact_grip(c) >= 0 && lane_get(&r->set.friction, r->lane) > 0;
+}
+
+static int rest_rows(const stance_rest *asked, const double *s1,
+                     double row[][STANCE_MAX_COORDINATES], double *creeps)
+{
+    const struct rest *const r = rest_of(asked);
+    lanes s[SCENE_COORDINATES], unit[SCENE_COORDINATES], u[2];
+    scene_trig trig;
+    int n = 0;
+    rest_lanes(s1, SCENE_COORDINATES, SCENE_COORDINATES, s);
     scene_trigonometry(s, &trig);
     for (int c = 0; c < OWN_CONTACTS; c++) {
-        lanes u[2];
         if (!mask_get(r->mode.closed[c], r->lane))
             continue;
-        scene_contact_velocity(&r->set->body, &trig, c, w, u);
-        stands &= fabs(lane_get(&u[0], r->lane)) <= bounce;
-        if (contact_grip(c) >= 0 && lane_get(&r->set->friction, r->lane) > 0)
-            stands &= fabs(lane_get(&u[1], r->lane)) <= REST_CREEP;
+        const int held = rest_sticks(r, c) ? 2 : 1;
+        for (int i = 0; i < SCENE_COORDINATES; i++) {
+            for (int k = 0; k < SCENE_COORDINATES; k++)
+                unit[k] = lanes_of(k == i);
+            scene_contact_velocity(&r->set.body, &trig, c, unit, u);
+            for (int a = 0; a < held; a++)
+                row[n + a][i] = lane_get(&u[a], r->lane);
+        }
+        for (int a = 0; a < held; a++)
+            creeps[n++] = a == 0 ? r->bounce : REST_CREEP;
+    }
+    return n;
+}
+
+/* What the contacts do at s; false: some slide, no forces hold them, or it has fallen. */
+COLD bool rest_mode(const struct rest *r, const double *s1, const double *torque,
+                    struct contact_state *mode, struct dynamics *e)
+{
+    struct between_trouble trouble;
+    lanes s[SCENE_COORDINATES], stood[CONTACTS];
+    for (int c = 0; c < OWN_CONTACTS; c++)
+        stood[c] = lanes_of(1);
+    rest_evaluate(r, s1, torque, s, e);
+    between_mode(&r->set, e, CONTACT_ALL, stood, mode, &trouble);
+    bool stands =
+        !mask_get(trouble.none | trouble.impact | motion_fallen(&r->set, s, &e->trig), r->lane);
+    for (int c = 0; c < OWN_CONTACTS; c++)
+        if (mask_get(mode->closed[c], r->lane) && rest_sticks(r, c))
+            stands &= lane_get(&mode->slide[c], r->lane) == 0;
+    return stands;
+}
+
+static bool rest_stands(stance_rest *asked, const double *s, const double *torque, bool always)
+{
+    struct rest *const r = (struct rest *)asked;
+    const lanes part = scene_longest_step(&r->set.body);
+    const int parts = always && isfinite(lane_get(&part, r->lane)) ? 8 : 1;
+    struct dynamics e;
+    bool stands = true;
+    for (int k = 0; k < parts && stands; k++) { /* of forces that change, from their phase 0 on */
+        if (parts > 1)
+            r->t = scene_swings_from(&r->set.body) + k * part;
+        stands = rest_mode(r, s, torque, &r->mode, &e);
     }
     return stands;
 }
 
-/* Are the torques of the law what they are to first order at the deviation x? */
-static bool rest_straight(const struct rest *r, const double *x, const lanes *torque)
+static bool rest_stays(const stance_rest *asked, const double *s, const double *torque)
 {
-    for (int i = 0; i < REST_INPUTS; i++) {
-        double change = 0, size = 0;
-        for (int j = 0; j < 2 * r->ways + REST_INPUTS; j++) {
-            const int kind = j < r->ways ? 0 : j < 2 * r->ways ? 1 : 2;
-            const double part = r->C[kind][i][j - kind * r->ways] * x[j];
-            change += part, size += fabs(part);
-        }
-        const double bent = lane_get(&torque[i], r->lane) - (r->torque[i] + change);
-        if (!(fabs(bent) <= REST_BENT * size + REST_STILL))
-            return false;
-    }
-    return true;
-}
-
-/* Do actuators that lag give, at the deviation x, what the map takes them to give? `torque`, that
- * is commanded, becomes theirs. */
-static bool rest_keeps_up(const struct rest *r, const double *x, lanes *torque)
-{
-    const double *const own = x + 2 * r->ways + REST_INPUTS, *const queue = own + REST_INPUTS;
-    const double most = fmax(r->rate * r->lag, REST_RAMP * r->rate * r->T);
-    bool keeps = true;
-    for (int i = 0; i < REST_INPUTS && r->lags; i++) {
-        const double command = r->delay ? queue[i] : lane_get(&torque[i], r->lane) - r->torque[i];
-        keeps &= fabs(command - own[i]) <= most;
-        torque[i] = lanes_of(r->torque[i] + own[i]);
-    }
-    return keeps;
-}
-
-/* Are torques and commands under way, at x, too small to matter within settle.hold? */
-static bool rest_is_calm(const struct rest *r, const double *x)
-{
-    const int first = 2 * r->ways + REST_INPUTS,
-              more = ((r->lags ? 1 : 0) + r->delay) * REST_INPUTS;
-    double most = 0;
-    for (int k = 0; k < r->ways; k++)
-        for (int i = 0; i < more; i++)
-            most = fmax(most, fabs(r->B[k][i % ACTUATORS] * x[first + i]) * r->hold);
-    return most <= r->speed;
-}
-
-/* Is all well at the deviation x (ways' places, rates, integrals, torques that lag, commands under
- * way) from the equilibrium? *gone: it is as good as none. */
-COLD bool rest_allows(const struct rest *r, const double *x, bool *gone)
-{
-    const int d = r->ways;
-    double farthest = 0, fastest = 0;
-    lanes s[SCENE_COORDINATES], w[SCENE_COORDINATES], integral[ACTUATORS];
-    lanes torque[ACTUATORS], rates[ACTUATORS];
-    for (int i = 0; i < SCENE_COORDINATES; i++) {
-        double place = 0, speed = 0;
-        for (int k = 0; k < d; k++)
-            place += r->Z[k][i] * x[k], speed += r->Z[k][i] * x[d + k];
-        s[i] = r->s[i] + place, w[i] = lanes_of(speed);
-        farthest = fmax(farthest, fabs(place)), fastest = fmax(fastest, fabs(speed));
-    }
-    *gone =
-        farthest <= REST_GONE * r->angle && fastest <= REST_GONE * r->speed && rest_is_calm(r, x);
-    if (!(farthest <= r->angle && fastest <= r->speed))
-        return false;
-    for (int i = 0; i < ACTUATORS; i++)
-        integral[i] = r->integral[i] + (i < REST_INPUTS ? x[2 * d + i] : 0);
+    const struct rest *const r = rest_of(asked);
     struct dynamics e;
     struct contact_state mode;
-    rest_law(r, s, w, integral, torque, rates);
-    if (!rest_straight(r, x, torque) || !rest_keeps_up(r, x, torque))
-        return false;
-    rest_evaluate(r, s, torque, &e);
-    between_project_position(r->set, r->mode.closed, s, &e);
-    if (rest_fallen(r, s) || !rest_mode(r, s, torque, &mode))
-        return false;
-    for (int c = 0; c < OWN_CONTACTS; c++) {
-        if (mask_get(r->mode.closed[c] & LANES_NOT(mode.closed[c]), r->lane))
-            return false;
-        if (!mask_get(r->mode.closed[c], r->lane) && lane_get(&r->set->may_touch[c], r->lane) > 0 &&
-            !(lane_get(&e.gap[c], r->lane) >= -STEP_CLOSED))
-            return false;
-    }
-    return true;
-}
-
-/* Does the motion from (s, w) come to the equilibrium, or stay about it, for a time `whole`? M, of
- * a sample, is spoiled. */
-COLD bool rest_arrives(const struct rest *r, const lanes *s, const lanes *w, const lanes *integral,
-                       int n, small_matrix M, double whole)
-{
-    const int d = r->ways;
-    double x[REST_STATES] = {0}, time = r->T;
-    bool gone;
-    for (int k = 0; k < d; k++)
-        for (int i = 0; i < SCENE_COORDINATES; i++) {
-            x[k] += r->Z[k][i] * (lane_get(&s[i], r->lane) - lane_get(&r->s[i], r->lane));
-            x[d + k] += r->Z[k][i] * lane_get(&w[i], r->lane);
-        }
-    for (int i = 0; i < REST_INPUTS; i++)
-        x[2 * d + i] = lane_get(&integral[i], r->lane) - lane_get(&r->integral[i], r->lane);
-    for (int i = 2 * d + REST_INPUTS; i < n; i++) /* torques, commands under way */
-        x[i] = r->under_way[i - 2 * d - REST_INPUTS] -
-               r->torque[(i - 2 * d - REST_INPUTS) % ACTUATORS];
-    for (int i = 0; i < n; i++)
-        x[i] *= REST_MARGIN;
-    if (!rest_allows(r, x, &gone))
-        return false;
-    for (; time * REST_FINE < r->hold; time *= 2)
-        matrix_times(n, M, M, M);
-    for (double t = 0; t < whole && !gone; time *= 2) {
-        for (int k = 0; k < 8 && !gone; k++, t += time) {
-            double next[REST_STATES] = {0};
-            for (int i = 0; i < n; i++)
-                for (int j = 0; j < n; j++)
-                    next[i] += M[i][j] * x[j];
-            memcpy(x, next, sizeof x);
-            if (!rest_allows(r, x, &gone))
-                return false;
-        }
-        matrix_times(n, M, M, M);
-    }
-    return true;
+    bool stays = rest_mode(r, s, torque, &mode, &e);
+    for (int c = 0; c < OWN_CONTACTS; c++)
+        if (mask_get(r->mode.closed[c], r->lane))
+            stays &= mask_get(mode.closed[c], r->lane);
+        else if (lane_get(&r->set.may_touch[c], r->lane) > 0)
+            stays &= lane_get(&e.gap[c], r->lane) >= -STEP_CLOSED;
+    return stays;
 }
 
 /* Does a reference of the servos still move? */
@@ -193,107 +212,97 @@ static bool rest_moves(const struct bundle *b, int lane)
 }
 
 /* What stands between commands and torques. */
-static void rest_load_actuators(struct rest *r, const struct bundle *b)
+static void rest_load_actuators(const struct bundle *b, int lane, stance_rest *asked)
 {
-    int n = 0;
-    r->lags = lane_get(&b->lags, r->lane) > 0;
-    r->lag = lane_get(&b->actuators.lag, r->lane);
-    r->rate = lane_get(&b->actuators.rate, r->lane);
-    r->delay = (int)lane_get(&b->delay, r->lane);
-    for (int i = 0; i < REST_INPUTS && r->lags; i++)
-        r->under_way[n++] = lane_get(&b->actuators.torque[i], r->lane);
-    for (int k = 0; k < r->delay; k++)
-        for (int i = 0; i < REST_INPUTS; i++)
-            r->under_way[n++] = lane_get(&b->pending[k][i], r->lane);
+    double *at = asked->under_way;
+    asked->lags = lane_get(&b->lags, lane) > 0;
+    asked->lag = lane_get(&b->actuators.lag, lane);
+    asked->rate = lane_get(&b->actuators.rate, lane);
+    asked->delay = (int)lane_get(&b->delay, lane);
+    for (int i = 0; i < OWN_ACTUATORS && asked->lags; i++)
+        *at++ = lane_get(&b->actuators.torque[i], lane);
+    for (int k = 0; k < asked->delay; k++)
+        for (int i = 0; i < OWN_ACTUATORS; i++)
+            *at++ = lane_get(&b->pending[k][i], lane);
 }
 
-/* Is there an equilibrium near s that holds, for the case in a lane; and, w not NULL, does the
- * motion come there? */
-COLD bool rest_holds(const struct bundle *b, int lane, const lanes *s, const lanes *w,
-                     const lanes *integral)
+/* What a program is told: one that reads the clock is asked what it is in the end, the target by
+ * what all cases know. */
+static void rest_load_known(const struct bundle *b, int lane, bool comes, double *known)
 {
-    struct rest r;
-    struct setting wider = b->set;
-    double off = INFINITY;
-    lanes still[SCENE_COORDINATES], torque[ACTUATORS], rate[ACTUATORS];
-    double known[STANCE_SAMPLE_HEAD];
-    const double h = lane_get(&b->h, lane), every = lane_get(&b->sample_every, lane);
-    memset(&r, 0, sizeof r);
-    r.angle = 1 / lane_get(&b->angle_scale, lane), r.speed = 1 / lane_get(&b->rate_scale, lane);
-    r.T = every > 0 ? every * h : h;
-    r.hold = fmax(lane_get(&b->settle_steps, lane) * h, r.T);
-    scene_push(&wider.body, lanes_of(INFINITY), b->h); /* nothing pushes any more */
-    wider.friction = wider.friction * (1 + REST_EDGE);
-    r.set = &wider;
-    r.of = b->which[lane];
+    const double end = lane_get(&b->steps, lane) * lane_get(&b->h, lane);
     program_known(b, lane, known);
-    /* A law that reads the clock is asked what it is in the end; the target by what all cases know.
-     */
-    known[STANCE_SAMPLE_SINCE] += lane_get(&b->steps, lane) * h - known[STANCE_SAMPLE_TIME];
-    known[STANCE_SAMPLE_TIME] = lane_get(&b->steps, lane) * h;
-    if (!w) {
-        known[STANCE_SAMPLE_SINCE] = known[STANCE_SAMPLE_TIME];
-        known[STANCE_SAMPLE_FOOTFALLS] = 0;
-        known[STANCE_SAMPLE_FOOT] = program_first_foot(b, lane);
+    known[STANCE_SAMPLE_SINCE] += end - known[STANCE_SAMPLE_TIME];
+    known[STANCE_SAMPLE_TIME] = end;
+    if (comes)
+        return;
+    known[STANCE_SAMPLE_SINCE] = end;
+    known[STANCE_SAMPLE_FOOTFALLS] = 0;
+    known[STANCE_SAMPLE_FOOT] = program_first_foot(b, lane);
+}
+
+/* Contacts that are closed, for laws that ask what they do. */
+static void rest_load_mode(struct rest *r, const stance_case *c)
+{
+    const lanes low = lanes_of(fmax(STANCE_GRAVITY * c->step * c->step, STEP_CLOSED));
+    lanes s[SCENE_COORDINATES];
+    scene_trig trig;
+    rest_lanes(r->asked.s, SCENE_COORDINATES, SCENE_COORDINATES, s);
+    scene_trigonometry(s, &trig);
+    for (int i = 0; i < OWN_CONTACTS; i++) {
+        const lanes near =
+            choose(mask_less(lanes_of(0), r->set.restitution[i]), low, lanes_of(STEP_CLOSED));
+        r->mode.closed[i] = mask_less(lanes_of(0), r->set.may_touch[i]) &
+                            mask_less_equal(scene_gap(&r->set.body, s, &trig, i), near);
+        r->mode.slide[i] = lanes_of(0);
     }
-    r.known = known;
+}
+
+/* Is there an equilibrium that holds, for the case in a lane, near target[coordinates]; NULL: near
+ * the present state, and does the motion come there? */
+COLD bool rest_holds(const struct bundle *b, int lane, const double *target)
+{
+    const stance_case *const c = b->which[lane];
+    const double h = lane_get(&b->h, lane), every = lane_get(&b->sample_every, lane);
+    struct rest r;
+    stance_rest *const asked = &r.asked;
+    if (!target && rest_moves(b, lane))
+        return false;
+    memset(&r, 0, sizeof r);
+    r.asked = (stance_rest){
+        .coordinates = SCENE_COORDINATES,
+        .actuators = OWN_ACTUATORS,
+        .angle = 1 / lane_get(&b->angle_scale, lane),
+        .speed = 1 / lane_get(&b->rate_scale, lane),
+        .samples = every > 0,
+        .T = every > 0 ? every * h : h,
+        .comes = !target,
+        .law = rest_law,
+        .accelerate = rest_accelerate,
+        .rows = rest_rows,
+        .project = rest_project,
+        .stands = rest_stands,
+        .stays = rest_stays,
+    };
+    asked->hold = fmax(lane_get(&b->settle_steps, lane) * h, asked->T);
+    r.set = b->set;
+    r.of = c;
     r.lane = lane;
     r.t = b->steps * b->h;
-    for (int i = 0; i < SCENE_COORDINATES; i++)
-        r.s[i] = s[i], still[i] = lanes_of(0);
-    for (int i = 0; i < ACTUATORS; i++)
-        r.integral[i] = integral[i];
-    scene_trig trig;
-    scene_trigonometry(r.s, &trig);
-    const lanes low = lanes_of(fmax(STANCE_GRAVITY * h * h, STEP_CLOSED));
-    for (int c = 0; c < OWN_CONTACTS; c++) { /* for laws that ask what the contacts do */
-        const lanes near =
-            choose(mask_less(lanes_of(0), b->set.restitution[c]), low, lanes_of(STEP_CLOSED));
-        r.mode.closed[c] = mask_less(lanes_of(0), b->set.may_touch[c]) &
-                           mask_less_equal(scene_gap(&b->set.body, r.s, &trig, c), near);
-        r.mode.slide[c] = lanes_of(0);
+    r.bounce = fmax(STANCE_GRAVITY * h, REST_CREEP);
+    scene_push(&r.set.body, lanes_of(INFINITY), b->h); /* nothing pushes any more */
+    r.set.friction = r.set.friction * (1 + REST_EDGE);
+    if (target) {
+        memcpy(asked->s, target, SCENE_COORDINATES * sizeof *target);
+    } else {
+        rest_numbers(&r, b->now.s, SCENE_COORDINATES, asked->s);
+        rest_numbers(&r, b->now.w, SCENE_COORDINATES, asked->w);
+        rest_numbers(&r, b->now.integral, OWN_ACTUATORS, asked->integral);
     }
-    rest_law(&r, r.s, still, r.integral, torque, rate);
-    struct dynamics e;
-    rest_evaluate(&r, r.s, torque, &e); /* what bounces within a step lies on the ground */
-    between_project_position(r.set, r.mode.closed, r.s, &e);
-    rest_law(&r, r.s, still, r.integral, torque, rate);
-    if (!rest_mode(&r, r.s, torque, &r.mode) || (w && !rest_stands(&r, s, w, h)))
-        return false;
-    for (int round = 0; round < REST_ROUNDS && off > REST_STILL; round++) {
-        rest_ways(&r);
-        rest_approach(&r, &off);
-        for (int i = 0; i < SCENE_COORDINATES; i++)
-            if (!(fabs(lane_get(&r.s[i], lane) - lane_get(&s[i], lane)) <= r.angle))
-                return false;
-    }
-    if (!(off <= REST_STILL))
-        return false;
-    rest_ways(&r);
-    rest_law(&r, r.s, still, r.integral, torque, rate);
-    rest_linearise(&r, torque);
-    for (int i = 0; i < REST_INPUTS; i++)
-        r.torque[i] = lane_get(&torque[i], lane);
-    if (rest_fallen(&r, r.s) || (w && rest_moves(b, lane)))
-        return false;
-    /* Forces that hold it, at all times: of those that change, from their phase 0 on. */
-    const lanes part = scene_longest_step(&b->set.body);
-    const int parts = isfinite(lane_get(&part, lane)) ? 8 : 1;
-    for (int k = 0; k < parts; k++) {
-        if (parts > 1)
-            r.t = scene_swings_from(&b->set.body) + k * part;
-        if (!rest_mode(&r, r.s, torque, &r.mode))
-            return false;
-    }
-    if (r.ways == 0)
-        return true;
-    small_matrix M, power;
-    const double whole = fmax(REST_HOLDS * r.hold, REST_WHOLE);
-    rest_load_actuators(&r, b);
-    const int n = rest_map(&r, every > 0, M);
-    matrix_copy(n, M, power);
-    return rest_bounded(n, power, r.T, whole) &&
-           (!w || rest_arrives(&r, s, w, integral, n, M, whole));
+    rest_load_actuators(b, lane, asked);
+    rest_load_known(b, lane, !target, r.known);
+    rest_load_mode(&r, c);
+    return c->scene->rest(asked);
 }
 
 /* ---- what becomes of a verdict ------------------------------------------------------------- */
@@ -329,27 +338,22 @@ COLD bool rest_target(struct bundle *b, int lane)
     const stance_case *const c = b->which[lane];
     const stance_scene *const scene = c->scene;
     double key[REST_KEY], q[SCENE_COORDINATES] = {0}, v[SCENE_COORDINATES] = {0};
-    double s1[SCENE_COORDINATES], w1[SCENE_COORDINATES];
+    double s[SCENE_COORDINATES], w[SCENE_COORDINATES];
     rest_key(b, lane, key);
     if (b->target_known && memcmp(key, b->target_key, sizeof key) == 0)
         return b->target_holds;
-    lanes s[SCENE_COORDINATES], integral[ACTUATORS];
     for (int i = 0; i < scene->postures; i++)
         q[scene->posture[i]] = c->near.target[i];
     if (c->supports)
         scene->stand(scene, c->robot, c->supports, q, v);
-    scene_enter(&c->body, q, v, s1, w1);
-    for (int i = 0; i < SCENE_COORDINATES; i++)
-        s[i] = lanes_of(s1[i]);
-    for (int i = 0; i < ACTUATORS; i++)
-        integral[i] = lanes_of(0);
+    scene_enter(&c->body, q, v, s, w);
     memcpy(b->target_key, key, sizeof key);
     b->target_known = true;
-    return b->target_holds = rest_holds(b, lane, s, NULL, integral);
+    return b->target_holds = rest_holds(b, lane, s);
 }
 
 /* At the end of a case whose program remembers: has what a window watches held for settle.hold? */
-static mask rest_stays(const struct bundle *b, const struct window *w, int lane)
+static mask rest_stayed(const struct bundle *b, const struct window *w, int lane)
 {
     const double since = lane_get(&w->since, lane);
     return since >= 0 && lane_get(&b->n, lane) - since >= lane_get(&b->settle_steps, lane)
@@ -364,19 +368,18 @@ COLD void rest_confirm(struct bundle *b, mask *rested, mask *stabilised)
         if (!b->which[lane])
             continue;
         if (b->which[lane]->program && b->which[lane]->program->remembers) {
-            *rested &= LANES_NOT(mask_of_lane(lane)) | rest_stays(b, &b->resting, lane);
-            *stabilised &= LANES_NOT(mask_of_lane(lane)) | rest_stays(b, &b->settled, lane);
+            *rested &= LANES_NOT(mask_of_lane(lane)) | rest_stayed(b, &b->resting, lane);
+            *stabilised &= LANES_NOT(mask_of_lane(lane)) | rest_stayed(b, &b->settled, lane);
             continue;
         }
-        if (mask_get(*rested, lane) && !rest_holds(b, lane, b->now.s, b->now.w, b->now.integral)) {
+        if (mask_get(*rested, lane) && !rest_holds(b, lane, NULL)) {
             *rested &= LANES_NOT(mask_of_lane(lane));
             lane_set(&b->resting.begin, lane, -1);
         }
         /* What a limited rate makes of a motion no map about the target tells. */
         const bool ramps = lane_get(&b->actuators.rate, lane) < INFINITY;
         if (mask_get(*stabilised, lane) &&
-            !(rest_target(b, lane) &&
-              (!ramps || rest_holds(b, lane, b->now.s, b->now.w, b->now.integral)))) {
+            !(rest_target(b, lane) && (!ramps || rest_holds(b, lane, NULL)))) {
             *stabilised &= LANES_NOT(mask_of_lane(lane));
             lane_set(&b->settled.begin, lane, -1);
         }

@@ -57,25 +57,13 @@ HOT void dynamics_place(const struct setting *set, contact_set touching, bool pu
     scene_inertia(&set->body, &e->trig, A);
 #ifdef SCENE_SERVOS
     for (int i = 0; i < OWN_ACTUATORS && pushes; i++)
-        scene_actuator_response(&set->body, A, i, e->push[i]);
+        scene_actuator_response(A, i, e->push[i]);
 #else
     (void)pushes;
 #endif
     EACH_IN (c, touching)
         scene_contact_response(&set->body, A, false, &e->trig, c, e->response[c]);
-    EACH_IN (c, touching) {
-        scene_rows rows;
-        scene_contact_rows(&set->body, &e->trig, c, NULL, lanes_of(0), &rows);
-        EACH_IN (k, touching)
-            EACH (b, 0, 2) {
-                lanes u[2];
-                if (b >= contact_unknowns(k))
-                    continue;
-                scene_rows_velocity(&set->body, c, &rows, e->response[k][b], u);
-                e->D[c][k][0][b] = u[0];
-                e->D[c][k][1][b] = u[1];
-            }
-    }
+    motion_operator(&set->body, &e->trig, touching, e->response, e->D);
 }
 
 /* What follows from velocities and torques there; contact terms but u of the contacts in `touching`
@@ -86,7 +74,8 @@ HOT void dynamics_motion(const struct setting *set, const struct state *at, cons
     lanes load[SCENE_COORDINATES];
     EACH (i, 0, SCENE_ACTUATORS)
         e->torque[i] = torque[i];
-    scene_forces(&set->body, at->t, at->s, &e->trig, at->w, e->torque, load);
+    const scene_guess here = {.t = at->t, .s = at->s, .trig = &e->trig, .w = at->w};
+    scene_residual(&set->body, &here, e->torque, load);
     scene_solve(A, false, load, e->acceleration);
     EACH_CONTACT (c, 0) {
         lanes curvature[2], forced[2];

@@ -1,27 +1,17 @@
 /* rows.c - see rows.h. */
-#include "engine/scenes/rows.h"
+#include "rows.h"
 
-#include <math.h>
-#include <stdbool.h>
-#include <string.h>
+#include "matrix.h"
 
 enum { SWEEPS = 40 };
 
 static const double rank_tolerance = 1e-9;
 
-static double dot(int n, const double *a, const double *b)
-{
-    double sum = 0;
-    for (int i = 0; i < n; i++)
-        sum += a[i] * b[i];
-    return sum;
-}
-
 /* Makes rows p and q orthogonal, whose squared lengths are a and b; false: they are. */
 static bool turn_pair(int n, int width, double *p, double *q, double *a, double *b,
                       double negligible)
 {
-    const double c = dot(n, p, q);
+    const double c = matrix_dot(n, p, q);
     if (c * c <= 1e-31 * (*a * *b) || fmin(*a, *b) <= negligible)
         return false;
     const double zeta = (*b - *a) / (2 * c);
@@ -42,7 +32,7 @@ static double measure(int rows, int n, double a[][STANCE_ROWS_STRIDE], double *s
 {
     double largest = 0;
     for (int p = 0; p < rows; p++) {
-        square[p] = dot(n, a[p], a[p]);
+        square[p] = matrix_dot(n, a[p], a[p]);
         largest = fmax(largest, square[p]);
     }
     return largest;
@@ -73,7 +63,7 @@ void stance_rows_solve(int rows, int n, double a[][STANCE_ROWS_STRIDE], double *
 {
     memset(x, 0, (size_t)n * sizeof *x);
     for (int p = 0; p < rows; p++) {
-        const double square = dot(n, a[p], a[p]);
+        const double square = matrix_dot(n, a[p], a[p]);
         for (int i = 0; square > 0 && i < n; i++)
             x[i] += a[p][i] * (a[p][n] / square);
     }
@@ -87,14 +77,14 @@ int stance_rows_null(int rows, int n, double a[][STANCE_ROWS_STRIDE],
         for (int j = 0; j < n; j++)
             Z[i][j] = i == j;
         for (int p = 0; p < rows; p++) {
-            const double square = dot(n, a[p], a[p]);
+            const double square = matrix_dot(n, a[p], a[p]);
             for (int j = 0; square > 0 && j < n; j++)
                 Z[i][j] -= a[p][i] * (a[p][j] / square);
         }
     }
     stance_rows_turn(n, n, n, Z);
     for (int i = 0; i < n; i++) {
-        const double length = sqrt(dot(n, Z[i], Z[i]));
+        const double length = sqrt(matrix_dot(n, Z[i], Z[i]));
         if (length < 0.5)
             continue;
         for (int j = 0; j < n; j++)
