@@ -1,13 +1,13 @@
 /* gnuplot.h - a picture, drawn by gnuplot in the formats and sizes of a look.
  *
- * A picture is data: axes, rows of numbers, a legend, notes. chart.gp draws panels of curves one
- * under the other; what has a form of its own (maps, figures of robots) has a script NAME.gp beside
- * the NAME.c that hands it the data. What they share stands in style.gp, legend.gp, page.gp and
- * panels.gp here; all are embedded in the program. In a scratch directory gnuplot loads style.gp,
- * the data (variables, data blocks), legend.gp and the script, so that no path of the user's enters
- * a script; the finished files are copied to where they belong. No text is interpreted: see
- * gnuplot_quote. STANCE_SCRIPTS=DIR in the environment keeps scripts and data in DIR/STEM, where
- * `gnuplot script` draws the picture anew.
+ * A picture is data: panels, axes, series of rows of numbers, a legend, notes. chart.gp lays it
+ * out, one panel under the other or in a grid; what has a form of its own has a script NAME.gp
+ * beside the NAME.c that hands it the data. What they share stands in style.gp, legend.gp, page.gp
+ * and panels.gp here; all are embedded in the program. In a scratch directory gnuplot loads
+ * style.gp, the data (variables, data blocks), legend.gp and the script, so that no path of the
+ * user's enters a script; the finished files are copied to where they belong. No text is
+ * interpreted: see gnuplot_quote. STANCE_SCRIPTS=DIR in the environment keeps scripts and data in
+ * DIR/STEM, where `gnuplot script` draws the picture anew.
  */
 #ifndef STANCE_DRAW_GNUPLOT_H
 #define STANCE_DRAW_GNUPLOT_H
@@ -130,7 +130,7 @@ struct plot_range plot_roomy(struct plot_range range, double part);
 const char *gnuplot_axis(struct gnuplot *g, char which, enum plot_scale scale,
                          struct plot_range range, const char *name, const char *unit);
 /* The next panel of a chart, of this height in px as long as the page has no other, under a heading
- * ("": none). */
+ * ("": none): how panels stand is said in variables of style.gp, columns, chart_width ... */
 void gnuplot_panel(struct gnuplot *g, double height, const char *heading);
 /* What is drawn in it next, a data block as gnuplot's `plot` has it: "using 1:2 with lines". */
 void gnuplot_series(struct gnuplot *g, const char *style, ...)

@@ -174,7 +174,7 @@ bool plot_page_begin(struct case_page *page, const char *name, const char *what)
     }
     if (!(page->time.high > page->time.low))
         page->time.high = page->time.low + 1;
-    gnuplot_set(g, "chart_width = 700; headed = 1");
+    gnuplot_set(g, "chart_width = 700");
     gnuplot_axis(g, 'x', PLOT_LINEAR, page->time, "time", "s");
     if (page->c->other)
         gnuplot_note(g, "dashed: the second case");
