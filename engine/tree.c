@@ -28,9 +28,9 @@
  *   sqrt(I'_j / a_j) becomes max( sqrt(I'_j / a_j) + sum_l sqrt(m_l / a_l), sqrt(m_l / a_j) ).
  */
 #include "tree.h"
+#include "refuse.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 #define SLIDES_TO 10.0 /* m */
@@ -373,9 +373,8 @@ static int path_make(const struct frames *f, const stance_tree *tree, int joint,
 
 static stance_error refuse(stance_message *message, const char *what, int limit)
 {
-    if (message)
-        snprintf(message->text, sizeof message->text, "a mechanism has at most %d %s", limit, what);
-    return STANCE_BAD_ARGUMENT;
+    return stance_refuse(message, STANCE_BAD_ARGUMENT, "a mechanism has at most %d %s", limit,
+                         what);
 }
 
 static void tables_couple(const struct frames *f, stance_tree *tree)

@@ -66,8 +66,6 @@ PICTURE = """/* plot_ends.c - how many of the cases had ended by each time. */
 
 #include <stdlib.h>
 
-GNUPLOT_SCRIPT(plot_ends_gp, "analysis/plot/plot_ends.gp");
-
 static int by_value(const void *a, const void *b)
 {
     const double x = *(const double *)a, y = *(const double *)b;
@@ -79,39 +77,26 @@ bool plot_ends(const struct plot *plot)
     const struct results *r = plot->r;
     double *end = NULL;
     struct gnuplot g;
-    if (!gnuplot_begin(&g, plot, "ends", plot_ends_gp))
+    if (!gnuplot_begin(&g, plot, "ends", NULL))
         return false;
     gnuplot_say(&g, "How many have ended by each time");
     if (gnuplot_needs(&g, results_answer(r, "end_time", &end, plot->message)) && end &&
         gnuplot_keep(&g, end)) {
         qsort(end, r->cases, sizeof *end, by_value);
-        gnuplot_block(&g, "ends");
+        gnuplot_axis(&g, 'x', PLOT_LINEAR, (struct plot_range){0, end[r->cases - 1]}, "end_time", "s");
+        gnuplot_panel(&g, 300, "");
+        gnuplot_axis(&g, 'y', PLOT_LINEAR, (struct plot_range){0, (double)r->cases}, "cases", "");
+        gnuplot_series(&g, "using 1:2 with steps lc rgb hue[1]");
         for (uint64_t i = 0; i < r->cases; i++)
             GNUPLOT_ROW(&g, end[i], (double)(i + 1));
-        gnuplot_set(&g, "cases = %llu", (unsigned long long)r->cases);
     }
     return gnuplot_end(&g);
 }
 """
 
-PICTURE_SCRIPT = """# plot_ends.gp - how many cases had ended by each time.
-page_width = 600
-top = title_height(0)
-page_height = top + 360
-load 'page.gp'
-legend_x = 0
-legend_y = 0
-load 'panels.gp'
-eval panel(80, top, 480, 300)
-eval linear_tics('y', 0, 1.1*cases, 5, 1)
-set xlabel 'end_time (s)'
-plot $ends using 1:2 with steps lc rgb hue[1] notitle
-"""
-
 ADDITIONS = {
     "picture": [
         ("analysis/plot/plot_ends.c", None, PICTURE),
-        ("analysis/plot/plot_ends.gp", None, PICTURE_SCRIPT),
         ("analysis/draw/plot.h", r"^#define PLOT_PICTURES\(X\) .*\\$",
          "\n    X(ends, \"  any sweep           NAME-ends: how many cases have ended by each time\\n\") \\"),
     ],

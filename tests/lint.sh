@@ -35,10 +35,14 @@ done
 
 kernel='-DSTANCE_LANES=1 -DSTANCE_SCENE=biped -DSTANCE_ISA=scalar -DSTANCE_SCENE_LANES=\"engine/scenes/biped_lanes.h\"'
 flags="$kernel -I. -std=c17 -D_GNU_SOURCE -DSTANCE_MPI $(mpicc --showme:compile) $(pkg-config --cflags hdf5-openmpi yaml-0.1 jansson lapacke gsl libxml-2.0)"
-checks='-*,bugprone-*,-bugprone-easily-swappable-parameters,-bugprone-reserved-identifier,-bugprone-narrowing-conversions,-bugprone-implicit-widening-of-multiplication-result,-bugprone-assignment-in-if-condition,-bugprone-macro-parentheses,clang-analyzer-*,-clang-analyzer-security.insecureAPI.DeprecatedOrUnsafeBufferHandling,-clang-analyzer-optin.mpi*'
+checks='-*,bugprone-*,-bugprone-easily-swappable-parameters,-bugprone-reserved-identifier,-bugprone-narrowing-conversions,-bugprone-implicit-widening-of-multiplication-result,-bugprone-assignment-in-if-condition,-bugprone-macro-parentheses,clang-analyzer-*,-clang-analyzer-security.insecureAPI.DeprecatedOrUnsafeBufferHandling,-clang-analyzer-optin.mpi*,readability-function-size'
+sizes='{CheckOptions: [{key: readability-function-size.ParameterThreshold, value: 7}, {key: readability-function-size.StatementThreshold, value: 800}]}'
 [ -z "${STANCE_TEST_LONG:-}" ] || git ls-files 'runner/*.c' 'analysis/*.c' 'engine/*.c' | # pathspecs go into the rooms
-    xargs -P "$(nproc)" -I{} sh -c "clang-tidy --quiet --warnings-as-errors='*' --checks='$checks' {} -- $flags 2>/dev/null" ||
+    xargs -P "$(nproc)" -I{} sh -c "clang-tidy --quiet --warnings-as-errors='*' --checks='$checks' --config='$sizes' {} -- $flags 2>/dev/null" ||
     complain "clang-tidy"
+[ -z "${STANCE_TEST_LONG:-}" ] || git ls-files 'engine/methods/*.c' | # what kernels are made of stands in headers
+    xargs -P "$(nproc)" -I{} sh -c "clang-tidy --quiet --warnings-as-errors='*' --checks='-*,readability-function-size' --config='$sizes' --header-filter='engine/' {} -- $flags 2>/dev/null" ||
+    complain "functions with more than seven parameters"
 
 ((bad == 0)) && echo "lint: clean"
 exit $bad

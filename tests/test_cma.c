@@ -32,12 +32,16 @@ static int without_bounds(void **state)
     return 0;
 }
 
-static struct cma *made(int n, int lambda, const double *mean, double step, uint64_t seed)
+static struct cma *made_within(const struct cma_start *start)
 {
-    struct cma *s =
-        cma_make(&(struct cma_start){n, lambda, mean, free_low, free_high, step, seed, 0});
+    struct cma *s = cma_make(start);
     assert_non_null(s);
     return s;
+}
+
+static struct cma *made(int n, int lambda, const double *mean, double step, uint64_t seed)
+{
+    return made_within(&(struct cma_start){n, lambda, mean, free_low, free_high, step, seed, 0});
 }
 
 /* ---- objectives ------------------------------------------------------------------------------ */
@@ -331,9 +335,8 @@ static void independent(void **state)
     int64_t score[lambda] = {0};
     for (int r = 0; r < runs; r++) {
         const uint64_t seed = (uint64_t)r / 4, restart = (uint64_t)r / 2 % 2;
-        struct cma *s =
-            cma_make(&(struct cma_start){n, lambda, zero, free_low, free_high, 1, seed, restart});
-        assert_non_null(s);
+        struct cma *s = made_within(
+            &(struct cma_start){n, lambda, zero, free_low, free_high, 1, seed, restart});
         cma_ask(s, z[r]);
         if (r % 2) { /* the second generation of what is still round */
             for (int i = 0; i < lambda * n; i++)
@@ -431,12 +434,17 @@ static void ties(void **state)
 
 /* ---- bounds ---------------------------------------------------------------------------------- */
 
+/* Within which candidates must be, and how near to the optimum that leaves. */
+static double within_low[MOST], within_high[MOST], nearest;
+
 static double shifted_sphere(int n, const double *x)
 {
-    double sum = 0;
-    for (int j = 0; j < n; j++)
+    double sum = -nearest;
+    for (int j = 0; j < n; j++) {
+        assert_true(within_low[j] <= x[j] && x[j] <= within_high[j]);
         sum += (x[j] - 1) * (x[j] - 1);
-    return sum;
+    }
+    return fmax(0, sum);
 }
 
 /* The first half of the coordinates may not be above 0.5, where the best is: found as fast as
@@ -446,30 +454,21 @@ static void optimum_on_bounds(void **state)
     (void)state;
     const int sizes[] = {1, 2, 12, 20};
     for (int t = 0; t < 4; t++) {
-        const int n = sizes[t], bound = (n + 1) / 2, lambda = cma_default_lambda(n);
-        double mean[MOST], low[MOST], high[MOST], x[MOST * 16];
-        int64_t score[16];
+        const int n = sizes[t], bound = (n + 1) / 2;
+        double mean[MOST];
         int candidates[2] = {0};
         for (int with = 0; with < 2; with++) {
+            nearest = with ? 0.25 * bound : 0;
             for (int j = 0; j < n; j++) {
                 mean[j] = j % 3 ? -1 : 0.5;
-                low[j] = with && j % 4 ? -1 : -INFINITY;
-                high[j] = with && j < bound ? 0.5 : INFINITY;
+                within_low[j] = with && j % 4 ? -1 : -INFINITY;
+                within_high[j] = with && j < bound ? 0.5 : INFINITY;
             }
-            struct cma *s = cma_make(&(struct cma_start){n, 0, mean, low, high, 0.5, 1, 0});
-            assert_non_null(s);
-            for (double best = INFINITY; best > 1e-6; candidates[with] += lambda) {
-                cma_ask(s, x);
-                for (int i = 0; i < lambda; i++) {
-                    for (int j = 0; j < n; j++)
-                        assert_true(low[j] <= x[i * n + j] && x[i * n + j] <= high[j]);
-                    const double value = shifted_sphere(n, x + i * n) - (with ? 0.25 * bound : 0);
-                    best = fmin(best, value);
-                    score[i] = score_of(fmax(0, value));
-                }
-                assert_true(cma_tell(s, x, score));
-                for (int j = 0; j < n; j++)
-                    assert_true(low[j] <= s->mean[j] && s->mean[j] <= high[j]);
+            struct cma *s =
+                made_within(&(struct cma_start){n, 0, mean, within_low, within_high, 0.5, 1, 0});
+            for (double best = INFINITY; best > 1e-6; candidates[with] += s->lambda) {
+                best = generation(s, shifted_sphere);
+                shifted_sphere(n, s->mean); /* is within bounds, too */
                 assert_true(candidates[with] < 400 * n);
             }
             cma_free(s);
@@ -498,8 +497,7 @@ static void narrow_ranges(void **state)
     (void)state;
     enum { n = 5 };
     const double mean[n] = {0, 1, 1, 0, 0.5}, low[n] = {0, 0, 0, 0, 0}, high[n] = {1, 1, 1, 1, 1};
-    struct cma *s = cma_make(&(struct cma_start){n, 10, mean, low, high, 30, 5, 0});
-    assert_non_null(s);
+    struct cma *s = made_within(&(struct cma_start){n, 10, mean, low, high, 30, 5, 0});
     for (int g = 0; cma_stop(s) != CMA_SMALL; g++) {
         assert_true(g < 500);
         for (int j = 0; j < n; j++)
@@ -620,9 +618,7 @@ static void refused(void **state)
                                        {outside, low, high}, {mean, nan, high},
                                        {mean, low, nan},     {mean, high, low},
                                        {mean, wrong, high}};
-    struct cma *s = cma_make(&good);
-    assert_non_null(s);
-    cma_free(s);
+    cma_free(made_within(&good));
     cma_free(NULL);
     for (int i = 0; i < 6; i++)
         assert_null(
@@ -641,11 +637,10 @@ static void told_nonsense(void **state)
     const double zero[n] = {0}, low[n] = {-1, -INFINITY, -INFINITY},
                  high[n] = {1, INFINITY, INFINITY};
     const double nonsense[] = {NAN, INFINITY, -INFINITY, 1.5, 1e101};
-    struct cma *s = cma_make(&(struct cma_start){n, lambda, zero, low, high, 0.1, 1, 0});
+    struct cma *s = made_within(&(struct cma_start){n, lambda, zero, low, high, 0.1, 1, 0});
     double x[n * lambda];
     int64_t score[lambda] = {INT64_MIN, INT64_MAX, 0, -1, 1, INT64_MIN, INT64_MAX};
     uint64_t before = 0, after = 0;
-    assert_non_null(s);
     cma_ask(s, x);
     assert_true(cma_tell(s, x, score));
     cma_ask(s, x);

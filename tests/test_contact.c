@@ -165,13 +165,11 @@ static void solve(const struct problem *p, int contacts, bool stood, bool most, 
                 D[c][j / 2][a][j % 2] = p->D[2 * c + a][j];
         }
     }
-    const struct contact_rule rule = {.friction = p->friction,
-                                      .prefer = most ? -1 : 1,
-                                      .shift = (const double(*)[2])shift,
-                                      .last = stood ? last : NULL,
-                                      .known = true};
-    solve_contacts(&rule, (const double(*)[2][2][2])D, (const double(*)[2])uf,
-                   contacts == 2 ? 3 : 1, LANES_ALL, active, out, &verdict);
+    struct contact_problem problem =
+        contact_pose(D, uf, contacts == 2 ? 3 : 1, active, p->friction, most ? -1 : 1);
+    problem.shift = shift;
+    problem.last = stood ? last : NULL, problem.known = true;
+    solve_contacts(&problem, LANES_ALL, out, &verdict);
     *ambiguous = verdict.ambiguous, *unsolved = verdict.unsolved;
     for (int i = 0; i < 2 * contacts; i++)
         r[i] = out[i / 2][i % 2];

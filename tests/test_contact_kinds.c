@@ -230,15 +230,13 @@ static struct contact_verdict solve(const struct problem *p, bool most, const do
         for (int j = 0; j < p->rows; j++)
             D[c][p->contact[j]][axis[i]][axis[j]] = p->D[i][j];
     }
-    const struct contact_rule rule = {.friction = p->friction,
-                                      .prefer = most ? -1 : 1,
-                                      .shift = (const double(*)[2])shift,
-                                      .last = last,
-                                      .known = true};
-    solve_contacts(&rule, (const double(*)[CONTACTS][2][2])D, (const double(*)[2])uf, touching,
-                   LANES_ALL, active, out, &verdict);
+    struct contact_problem problem =
+        contact_pose(D, uf, touching, active, p->friction, most ? -1 : 1);
+    problem.shift = shift;
+    problem.last = last, problem.known = true;
+    solve_contacts(&problem, LANES_ALL, out, &verdict);
     if (unique)
-        *unique = direct_unique(p->friction, (const double(*)[CONTACTS][2][2])D, touching, active);
+        *unique = direct_unique(&problem);
     for (int i = 0; i < p->rows; i++)
         r[i] = out[p->contact[i]][axis[i]];
     return verdict;

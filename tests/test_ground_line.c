@@ -58,7 +58,7 @@ static void lines_have_corners(void **state)
     struct ground_pieces pieces;
     double point[64][2], at[2], low = INFINITY, high = -INFINITY;
     (void)state;
-    ground_pieces_find(c, 0, NULL, NULL, NULL, NULL, NULL, &pieces);
+    ground_pieces_find(c, NULL, &pieces);
     assert_true(isinf(pieces.laid[3]) && pieces.laid[3] > 0);
     assert_int_equal(ground_line(c, &pieces, 0, -1, 4, point, 64), 10);
     for (size_t k = 0; k < 10; k++) {
@@ -94,7 +94,7 @@ static void rough_ground_is_its_own(void **state)
     for (int k = 0; k < 3; k++) { /* by `seed`, then twice by its place */
         read_good(&scenario, text, sets, k == 0);
         const stance_case *c = a_case(0);
-        ground_pieces_find(c, 0, NULL, NULL, NULL, NULL, NULL, &pieces);
+        ground_pieces_find(c, NULL, &pieces);
         stance_ground_at(c, pieces.from, 5.1, &own[k], &unused);
         if (k == 0) { /* not by the case's place, but by the number */
             stance_ground_at(a_case(2), pieces.from, 5.1, &height, &unused);
@@ -130,8 +130,9 @@ static void footfalls_lay_pieces(void **state)
             force[k][i][0] = pushes[k] == i;
         }
     }
-    ground_pieces_find(c, ROWS, time, &position[0][0], &velocity[0][0], &force[0][0][0], &gap[0][0],
-                       &pieces);
+    const struct ground_motion motion = {
+        ROWS, time, &position[0][0], &velocity[0][0], &force[0][0][0], &gap[0][0]};
+    ground_pieces_find(c, &motion, &pieces);
     /* Footfalls: of end 1 at 1 s, of 2 at 2 s: there the piece is laid, before that of 3 s. */
     assert_near(pieces.laid[3], 2, 0);
     const double end2[2] = {2.5, 1}; /* the rod is 1 m long, its centre at 2 m */
@@ -145,8 +146,7 @@ static void footfalls_lay_pieces(void **state)
     }
     /* An end that lies on the ground at first has landed before. */
     gap[0][0] = 0;
-    ground_pieces_find(c, ROWS, time, &position[0][0], &velocity[0][0], &force[0][0][0], &gap[0][0],
-                       &pieces);
+    ground_pieces_find(c, &motion, &pieces);
     assert_near(pieces.laid[3], 3, 0);
 }
 

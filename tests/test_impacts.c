@@ -101,7 +101,7 @@ static void velocities(const struct system *s, const long double *w, long double
 }
 
 struct answer {
-    double r[CONTACTS][2], shift[CONTACTS][2], share;
+    double r[CONTACTS][2], share;
     bool limited, unsolved, gains;
 };
 
@@ -129,22 +129,25 @@ static void solve(const struct system *s, stance_impacts law, double share, bool
     }
     for (int c = s->contacts; c < CONTACTS; c++)
         D[c][c][0][0] = D[c][c][1][1] = 1;
-    const struct impact_rule rule = {.friction = s->friction,
+    struct impact_answer found;
+    const struct impact_rule rule = {.D = D,
+                                     .u = u,
+                                     .part = part,
+                                     .friction = s->friction,
                                      .prefer = 1,
                                      .restitution = e,
                                      .moreau = law == STANCE_IMPACTS_MOREAU,
                                      .limited = law != STANCE_IMPACTS_NEWTON};
     if (search)
-        a->limited = impact_solve(&rule, true, (const double(*)[CONTACTS][2][2])D,
-                                  (const double(*)[2])u, part, a->shift, a->r, &verdict);
+        a->limited = impact_solve(&rule, true, &found, &verdict);
     else
-        a->gains = impact_try(&rule, e, (const double(*)[CONTACTS][2][2])D, (const double(*)[2])u,
-                              part, a->shift, a->r, &verdict, &tried);
+        a->gains = impact_try(&rule, e, &found, &verdict, &tried);
+    memcpy(a->r, found.r, sizeof a->r);
     a->unsolved = verdict.unsolved;
     a->share = share;
     for (int c = 0; c < s->contacts; c++)
         if (u[c][0] < -1e-3 && s->restitution * s->elastic[c] > 1e-3)
-            a->share = a->shift[c][0] / (u[c][0] * s->restitution);
+            a->share = found.shift[c][0] / (u[c][0] * s->restitution);
 }
 
 /* The share of the kinetic energies that an impact adds, and by how much it violates what its law

@@ -43,25 +43,24 @@ static void direct_is_exact(void **state)
                 sliding[c] = floor(uniform(&seed, -1, 2)); /* -1, 0, 1 */
             }
             const double *const goes_on = slides ? sliding : NULL;
-            const struct contact_rule rule = {
-                .friction = friction, .prefer = 1, .sliding = goes_on};
             const contact_set touching = contacts == 1 ? 1 : 3;
             const mask active[2] = {true, contacts == 2};
-            const double(*const op)[2][2][2] = (const double(*)[2][2][2])D;
-            const double(*const free)[2] = (const double(*)[2])uf;
+            struct contact_problem asked = contact_pose(D, uf, touching, active, friction, 1);
+            asked.sliding = goes_on;
             struct direct_mode mode;
-            direct_mode_of(&rule, active, false, NULL, &mode);
-            const bool sure =
-                contacts == 1
-                    ? direct_one((const double(*)[2])D[0][0], uf[0], friction, goes_on, r[0])
-                    : direct_unique(friction, op, touching, active) &&
-                          direct_modes(&rule, op, free, touching, active, 1e-11, true, &mode, r);
+            bool sure = false;
+            direct_mode_of(&asked, false, &mode);
+            if (contacts == 1)
+                sure = direct_one(D[0][0], uf[0], friction, goes_on, r[0]);
+            else if (direct_unique(&asked))
+                for (int round = 0; round < DIRECT_ROUNDS && !sure; round++)
+                    sure = direct_try(&asked, 1e-11, true, false, &mode, r);
             if (!sure)
                 continue;
             struct lane_problem problem;
             struct lane_choice best;
             double found[2][2] = {{0}};
-            lane_gather(&rule, op, free, touching, 0, &problem);
+            lane_gather(&asked, touching, 0, &problem);
             lane_choose_none(&best);
             lane_enumerate(&problem, &best);
             for (int row = 0; row < problem.rows; row++)
@@ -113,19 +112,17 @@ static void pairs_are_exact(void **state)
             memcpy(uf[1], uf[0], sizeof uf[0]);
             sliding[1] = sliding[0];
         }
-        const struct contact_rule rule = {.friction = friction,
-                                          .prefer = i % 11 == 0 ? -1 : 1,
-                                          .sliding = i % 3 == 0 ? sliding : NULL,
-                                          .shift = i % 3 == 1 ? (const double(*)[2])shift : NULL,
-                                          .indefinite = i % 5 == 0 && i % 4 != 0};
         const mask active[2] = {true, i % 13 != 0};
-        const double(*const op)[2][2][2] = (const double(*)[2][2][2])D;
-        const double(*const free)[2] = (const double(*)[2])uf;
+        struct contact_problem asked =
+            contact_pose(D, uf, 3, active, friction, i % 11 == 0 ? -1 : 1);
+        asked.sliding = i % 3 == 0 ? sliding : NULL;
+        asked.shift = i % 3 == 1 ? shift : NULL;
+        asked.indefinite = i % 5 == 0 && i % 4 != 0;
         struct lane_problem problem;
         struct lane_choice best;
         double alone[2][2] = {{0}};
         mask ambiguous = false;
-        lane_gather(&rule, op, free, active[1] ? 3 : 1, 0, &problem);
+        lane_gather(&asked, active[1] ? 3 : 1, 0, &problem);
         lane_choose_none(&best);
         lane_enumerate(&problem, &best);
         lane_clip(&problem, best.u, best.r);
@@ -134,14 +131,14 @@ static void pairs_are_exact(void **state)
         const bool valid = best.violation <= problem.tolerance;
         solved += valid;
         const struct contact_tolerance tolerance = {problem.exact, problem.tolerance};
-        if (!pair_enumerate(&rule, op, free, 3, 0, 1, active, &tolerance, true, r, &ambiguous))
+        if (!pair_enumerate(&asked, (const int[2]){0, 1}, &tolerance, true, r, &ambiguous))
             continue;
         found++;
         several += ambiguous;
         assert_true(best.violation <= 1e3 * problem.tolerance);
         double off = 0, u[2][2], v[2][2];
-        direct_velocities(op, free, 3, (const double(*)[2])r, u);
-        direct_velocities(op, free, 3, (const double(*)[2])alone, v);
+        direct_velocities(D, uf, 3, r, u);
+        direct_velocities(D, uf, 3, alone, v);
         for (int c = 0; c < 2; c++)
             for (int a = 0; a < 2 && active[c]; a++)
                 off = fmax(off, fabs(u[c][a] - v[c][a]));
@@ -172,22 +169,20 @@ static void small_ones_are_exact(void **state)
             large[c][0] = uniform(&seed, -1, 0.5), large[c][1] = uniform(&seed, -1, 1);
             uf[c][0] = small * large[c][0], uf[c][1] = small * large[c][1];
         }
-        const struct contact_rule rule = {.friction = uniform(&seed, 0, 1.5), .prefer = 1};
         const mask active[2] = {true, true};
-        const double(*const op)[2][2][2] = (const double(*)[2][2][2])D;
-        const double(*const free)[2] = (const double(*)[2])uf;
+        struct contact_problem asked = contact_pose(D, large, 3, active, uniform(&seed, 0, 1.5), 1);
         struct contact_verdict verdict;
         struct lane_problem problem;
         struct lane_choice best;
-        lane_gather(&rule, op, (const double(*)[2])large, 3, 0, &problem);
+        lane_gather(&asked, 3, 0, &problem);
         lane_enumerate(&problem, &best);
         if (best.violation > problem.exact)
             continue;
         solved++;
-        solve_contacts(&rule, op, free, 3, true, active, r, &verdict);
-        direct_velocities(op, free, 3, (const double(*)[2])r, u);
-        worst = fmax(worst, direct_violation(&rule, op, 3, active, (const double(*)[2])r,
-                                             (const double(*)[2])u));
+        asked.uf = uf;
+        solve_contacts(&asked, true, r, &verdict);
+        direct_velocities(D, uf, 3, r, u);
+        worst = fmax(worst, direct_violation(&asked, r, u));
     }
     print_message("# two points at %.0e m/s: %d of %d have a solution, laws violated by %.1e at "
                   "most\n",
@@ -232,14 +227,13 @@ static void steps_are_converged(bool coupled)
                 for (int a = 0; a < 2; a++) /* torques change as a law's would */
                     torque[a] += h * uniform(&seed, -20, 20);
                 struct iterate raw;
-                double reached;
                 const contact_set touching = step_touching(&b.set, b.now.gap, true);
-                ordinary_reach(&b.advance.quick, &b.set, &b.now, torque, h, coupled, true, touching,
-                               false, &raw, &reached);
-                const bool good = ordinary_try(&b.advance.quick, &b.set, &b.now, torque, h, coupled,
-                                               true, touching, false, &it, &quick);
-                const bool there = take_step(&b.set, &b.now, torque, h, true, coupled,
-                                             STEP_MAX_ITERATIONS, &next, &full);
+                const struct step step = {&b.set, &b.now, torque, coupled, h, STEP_MAX_ITERATIONS,
+                                          NULL};
+                ordinary_reach(&b.advance.quick, &step, true, touching, false, &raw);
+                const bool good =
+                    ordinary_try(&b.advance.quick, &step, true, touching, false, &it, &quick);
+                const bool there = take_step(&step, true, &next, &full);
                 taken++;
                 if (!there)
                     break;

@@ -584,7 +584,7 @@ static void unreadable_files_lead_to_one_line(void **state)
     assert_false(read_as(&s, "tests/bad/absent.yaml", NULL, NULL, 0));
     assert_string_equal(errors, "tests/bad/absent.yaml: No such file or directory\n");
     assert_false(read_as(&s, "tests/bad", NULL, NULL, 0));
-    assert_string_equal(errors, "tests/bad: is a directory, not a scenario file\n");
+    assert_string_equal(errors, "tests/bad: is a directory, not a file\n");
     refused("", NULL, 0, "bad.yaml: nothing stands in this file\n");
     refused("# a comment\n", NULL, 0, "bad.yaml: nothing stands in this file\n");
     refused("stance: 1\ntitle: \xc3(\n", NULL, 0, "bad.yaml:2:8: not UTF-8 text (byte 0xc3)\n");

@@ -29,8 +29,8 @@ static bool take(contact_set touching, const struct bundle *b, const double *tor
     report_clear(sum);
     for (int k = 0; k < parts; k++) {
         struct step_report part;
-        if (!standing_take(touching, &b->set, &here, torque, false, h / parts, true, true, to,
-                           &part, error))
+        const struct step step = {&b->set, &here, torque, .h = h / parts};
+        if (!standing_take(touching, &step, true, true, to, &part, error))
             return false;
         report_add(sum, &part);
         here = *to;
@@ -116,8 +116,8 @@ static void standing_is_exact(void **state)
         struct step_report report;
         const double before = b.now.energy;
         for (int n = 0; n < LENGTH; n++) {
-            if (!standing_take(touching, &b.set, &b.now, torque, false, 1e-3, true, n % 32 == 0,
-                               &next, &report, &error))
+            const struct step step = {&b.set, &b.now, torque, .h = 1e-3};
+            if (!standing_take(touching, &step, true, n % 32 == 0, &next, &report, &error))
                 break;
             taken++;
             b.now = next;

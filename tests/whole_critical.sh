@@ -216,7 +216,7 @@ critical plane block.yaml ground.friction=1..0 --set 'sweep={grid: [{path: robot
 drawn friction.h5 'Up to which ground.friction, from 1 on, cases end as rested'
 drawn strengths.h5 'from 0 N on, cases end as rested'
 drawn curves.h5 'band: interval \(95 %\)'
-drawn plane.h5 "measure = 'ground.friction'"
+drawn plane.h5 "bar_text = 'ground.friction'"
 critical rows swing.yaml "$hz=0.2..4" --set 'sweep={grid: [{path: "robot.points.tip.force[1]", from: 2, to: 6, count: 9}]}'
 drawn rows.h5 'light: rested again beyond it'
 

@@ -92,7 +92,7 @@ accepted "lines that end as on other systems are taken" "$stance" check lines.ya
 
 # ---- what is no file ------------------------------------------------------------------------------
 mkdir folder.yaml && mkfifo pipe && ln -s loop loop && ln -s pipe to_pipe
-refused "a folder as scenario" 2 'folder.yaml: is a directory, not a scenario file' "$stance" check folder.yaml
+refused "a folder as scenario" 2 'folder.yaml: is a directory, not a file' "$stance" check folder.yaml
 refused "a pipe without a writer as scenario" 2 'pipe: a named pipe into which nothing is written' "$stance" check pipe
 refused "/dev/zero as scenario" 2 '/dev/zero: larger than 1 MiB' "$stance" run /dev/zero
 refused "a link to itself as scenario" 3 'loop: Too many levels of symbolic links' "$stance" design loop

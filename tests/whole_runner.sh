@@ -137,7 +137,7 @@ for n in 0 2; do
     cp killed.h5 first.h5
     expect "killed $name: another scenario is refused" 2 "$stance" run long.yaml --set seed=2 \
         -o killed.h5 --resume
-    says "... and told what differs" "^  + seed: 2$"
+    says "... and told what differs" "^  seed: none, now 2$"
     "$python" "$tests/results_tools.py" damage killed.h5 3
     expect "killed $name, damaged, and resumed" 0 mpirun -n 3 "$stance" run long.yaml \
         -o killed.h5 --resume
@@ -205,72 +205,58 @@ kill -TERM $job
 wait $job
 (($? == 4))
 result $? "SIGTERM within long cases stops with code 4"
-for signal in INT TERM USR1; do
+for to in "INT to it" "TERM to it" "USR1 to it" "USR1 to mpirun"; do
+    launch=
+    [[ $to = *mpirun ]] && launch="mpirun -n 2"
     rm -f signal.h5
-    "$stance" run long.yaml -o signal.h5 --quiet >log 2>&1 &
+    $launch "$stance" run long.yaml -o signal.h5 --quiet >log 2>&1 &
     job=$!
     await "$job" computing signal.h5
-    kill -$signal $job
+    kill -"${to%% *}" $job
     wait $job
     (($? == 4))
-    result $? "SIG$signal stops with code 4"
-    tool "SIG$signal: every case marked done is whole" whole signal.h5
+    result $? "SIG$to stops with code 4"
+    tool "SIG$to: every case marked done is whole" whole signal.h5
 done
-rm -f signal.h5
-mpirun -n 2 "$stance" run long.yaml -o signal.h5 --quiet >log 2>&1 &
-job=$!
-await "$job" computing signal.h5
-kill -USR1 $job
-wait $job
-(($? == 4))
-result $? "SIGUSR1 to mpirun stops with code 4"
-tool "SIGUSR1 to mpirun: every case marked done is whole" whole signal.h5
 
 # ---- errors: one line, the right code, no hang -------------------------------------------------
+refused() { # name, code, what it says once, command ...
+    expect "$1$with" "$2" $launch "${@:4}"
+    says "... says so once" "$3"
+}
 for launch in "" "mpirun -n 3"; do
     with=${launch:+ ($launch)}
     # shellcheck disable=SC2086
     {
-        expect "an existing file$with" 3 $launch "$stance" run square.yaml
-        says "... says so once" 'results/square.h5 exists; --force replaces it'
-        expect "a missing directory$with" 3 $launch "$stance" run square.yaml -o no/where.h5
-        says "... says so once" 'no/where.h5.*No such file or directory'
-        expect "a missing scenario$with" 3 $launch "$stance" run nowhere.yaml
-        says "... says so once" 'nowhere.yaml.*No such file'
-        expect "an unknown key$with" 2 $launch "$stance" run square.yaml --set ground.frction=1
-        says "... says so once" 'friction'
-        expect "an unknown option$with" 2 $launch "$stance" run square.yaml --forse
-        says "... says so once" "did you mean '--force'"
-        expect "a case beyond the last$with" 2 $launch "$stance" run square.yaml --only 25
-        says "... says so once" 'cases are 0 ... 24'
-        expect "an initial state under the ground$with" 2 $launch "$stance" run square.yaml \
+        refused "an existing file" 3 'results/square.h5 exists; --force replaces it' "$stance" run square.yaml
+        refused "a missing directory" 3 'no/where.h5.*No such file or directory' "$stance" run square.yaml -o no/where.h5
+        refused "a missing scenario" 3 'nowhere.yaml.*No such file' "$stance" run nowhere.yaml
+        refused "an unknown key" 2 'friction' "$stance" run square.yaml --set ground.frction=1
+        refused "an unknown option" 2 "did you mean '--force'" "$stance" run square.yaml --forse
+        refused "a case beyond the last" 2 'cases are 0 ... 24' "$stance" run square.yaml --only 25
+        refused "an initial state under the ground" 2 '^square.yaml:[0-9]*:[0-9]*: .*ground' "$stance" run square.yaml \
             -o buried.h5 --set initial.offset.z=-0.1
-        says "... says so once, with its line" '^square.yaml:[0-9]*:[0-9]*: .*ground'
         [ ! -e buried.h5 ]
         result $? "... and makes no file"
-        expect "an equilibrium that does not exist$with" 2 $launch "$stance" run alone.yaml \
+        refused "an equilibrium that does not exist" 2 '^alone.yaml:[0-9]*:[0-9]*: ' "$stance" run alone.yaml \
             -o none.h5 --set robot.trunk_length=9
-        says "... says so once, with its line" '^alone.yaml:[0-9]*:[0-9]*: '
         expect "a dry run$with" 0 $launch "$stance" run long.yaml -o dry.h5 --dry-run
         [ ! -e dry.h5 ]
         result $? "... makes no file"
         if mount -t tmpfs -o size=1m tmpfs "$disk" 2>/dev/null; then
-            expect "a full disk$with" 3 $launch "$stance" run long.yaml -o disk/full.h5
-            says "... says so once" 'No space left on device'
+            refused "a full disk" 3 'No space left on device' "$stance" run long.yaml -o disk/full.h5
             [ -z "$(ls disk)" ]
             result $? "... and leaves nothing"
             mount -o remount,ro "$disk"
-            expect "a read-only disk$with" 3 $launch "$stance" run square.yaml -o disk/full.h5
-            says "... says so once" 'Read-only file system'
+            refused "a read-only disk" 3 'Read-only file system' "$stance" run square.yaml -o disk/full.h5
             umount "$disk"
         else
             skip "a full disk$with" "cannot mount"
             skip "a read-only disk$with" "cannot mount"
         fi
         rm -f limit.h5
-        expect "a limit on file sizes$with" 3 $launch bash -c \
+        refused "a limit on file sizes" 3 'limit.h5.*File too large' bash -c \
             "ulimit -f 2000; exec '$stance' run long.yaml -o limit.h5"
-        says "... says so once" 'limit.h5.*File too large'
         # Taken away while it runs: the writes of one rank fail.
         $launch "$stance" run long.yaml -o limit.h5 --quiet >log 2>&1 &
         job=$!
@@ -289,12 +275,13 @@ for launch in "" "mpirun -n 3"; do
 done
 # A quota shows in what is refused, not in the room that a disk has.
 if ! grep -q __asan_init "$stance" && gcc -D_GNU_SOURCE -shared -fPIC -o quota.so "$tests/quota.c" -ldl 2>log; then
-    expect "a quota that leaves no room" 3 env QUOTA=reserve LD_PRELOAD=./quota.so "$stance" run long.yaml -o quota.h5
-    says "... says so once" 'stance run: quota.h5.part: cannot reserve its space: Disk quota exceeded'
+    launch='' with=''
+    refused "a quota that leaves no room" 3 'stance run: quota.h5.part: cannot reserve its space: Disk quota exceeded' \
+        env QUOTA=reserve LD_PRELOAD=./quota.so "$stance" run long.yaml -o quota.h5
     [ -z "$(ls quota.h5* 2>/dev/null)" ]
     result $? "... and leaves nothing"
-    expect "a quota that is used up in mid-run" 3 env QUOTA=1000000 LD_PRELOAD=./quota.so "$stance" run long.yaml -o quota.h5 --quiet
-    says "... says so once" 'stance run: quota.h5: cannot write .*: Disk quota exceeded'
+    refused "a quota that is used up in mid-run" 3 'stance run: quota.h5: cannot write .*: Disk quota exceeded' \
+        env QUOTA=1000000 LD_PRELOAD=./quota.so "$stance" run long.yaml -o quota.h5 --quiet
     tool "... and what is marked done is whole" whole quota.h5 0
     expect "... it goes on" 0 "$stance" run long.yaml -o quota.h5 --resume --quiet
     expect "... to the same end" 0 "$stance" compare long.h5 quota.h5

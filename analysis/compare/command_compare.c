@@ -6,7 +6,7 @@
 #include "runner/base/command.h"
 #include "runner/base/message.h"
 #include "runner/base/sandbox.h"
-#include "runner/store/results_rows.h"
+#include "runner/store/results.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -28,8 +28,7 @@ static void place_text(const struct results *r, const struct compare_difference 
         add_text(text, size, ", component %zu", place->component);
 }
 
-/* Coordinates of a case as {path: value}. */
-static json_t *point_facts(const struct results *r, uint64_t index)
+json_t *compare_point(const struct results *r, uint64_t index)
 {
     size_t point[SCENARIO_MAX_AXES];
     results_point(r, index, point);
@@ -44,7 +43,7 @@ static json_t *place_facts(const struct results *r, const struct compare_differe
     place_text(r, difference, place, where, sizeof where);
     return TABLE_OBJECT({"index", as_whole(place->index)},
                         {"component", as_whole(place->component)},
-                        {"at", as_tree(known ? point_facts(r, place->index) : json_object())},
+                        {"at", as_tree(known ? compare_point(r, place->index) : json_object())},
                         {"values", as_tree(table_texts(place->value[0], place->value[1]))},
                         {".where", as_text(where)});
 }
@@ -82,8 +81,6 @@ static void add_difference(struct table *t, const struct results *r,
     table_end_row(t);
 }
 
-#define VALUES "{values/0} \\| {values/1}\n"
-
 static const char differences_text[] =
     "[differences:"
     "[equal:equal within the tolerance: {.count} variable{.count#s} in which numbers differ\n]"
@@ -91,8 +88,8 @@ static const char differences_text[] =
     "[differences*:{name}: [reason=values:"
     "[!differing:equal within the tolerance\n|[.alone:{first/0/values/0} \\| {first/0/values/1}\n"
     "|{differing} of {of} [of_cases:case|element]{of#s} differ\n"
-    "[first*:  {.where}: " VALUES "]]]"
-    "[!.alone:[largest_at:  largest difference {.largest} in {.where}: " VALUES "]]"
+    "[first*:  {.where}: " COMPARE_VALUES "]]]"
+    "[!.alone:[largest_at:  largest difference {.largest} in {.where}: " COMPARE_VALUES "]]"
     "|[.missing:|different ]{reason}\n]]"
     "|[.tolerances:equal within the tolerance: no number differs|identical]\n]";
 
@@ -112,90 +109,6 @@ static bool print_differences(const struct results r[2], const struct comparison
         {"equal", as_truth(comparison->beyond == 0)}, {".count", as_whole(comparison->count)},
         {".tolerances", as_truth(comparison->tolerances)});
     return table_say(form, table_show(facts, "differences", &t, NULL, 0), differences_text, &t);
-}
-
-/* ---- labels alone ------------------------------------------------------------------------- */
-
-static double share_of(uint64_t part, uint64_t all)
-{
-    return all ? (double)part / (double)all : NAN;
-}
-
-/* What the labels of the first file have become in the second. */
-static void add_labels(struct table *t, const struct label_comparison *c)
-{
-    for (int from = 0; from < RESULTS_KIND_COUNT; from++) {
-        uint64_t all = 0;
-        for (int to = 0; to < RESULTS_KIND_COUNT; to++)
-            all += c->cases[from][to];
-        for (int to = 0; to < RESULTS_KIND_COUNT; to++) {
-            if (c->cases[from][to] == 0)
-                continue;
-            TABLE_FACTS(
-                t,
-                {{"first", "first", .width = 10, .left = true}, as_text(results_kind_names[from])},
-                {{"second", "second", .width = 10, .left = true}, as_text(results_kind_names[to])},
-                {{"cases", "cases", .width = 12}, as_whole(c->cases[from][to])},
-                {{"share", "of all", "%.3f %%", .width = 9, .percent = true},
-                 as_number(share_of(c->cases[from][to], c->compared))},
-                {{"share_of_first", "of the first", "%.3f %%", .width = 12, .percent = true},
-                 as_number(share_of(c->cases[from][to], all))});
-            table_end_row(t);
-        }
-    }
-}
-
-static json_t *domain_facts(const struct label_comparison *c)
-{
-    return TABLE_OBJECT(
-        {"outcome", as_text(results_kind_names[c->of])}, {"kept", as_whole(c->kept)},
-        {"lost", as_whole(c->lost)}, {"won", as_whole(c->won)},
-        {"neither", as_whole(c->compared - c->kept - c->lost - c->won)},
-        {"lost_share", as_number(share_of(c->lost, c->kept + c->lost))},
-        {"lost_low", as_number(c->lost_interval.low)},
-        {"lost_high", as_number(c->lost_interval.high)},
-        {"won_share", as_number(share_of(c->won, c->kept + c->won))},
-        {".before", as_whole(c->kept + c->lost)}, {".after", as_whole(c->kept + c->won)},
-        {".either", as_whole(c->kept + c->lost + c->won)},
-        {".bounded", as_truth(isfinite(c->lost_interval.low))});
-}
-
-static const char labels_text[] =
-    "labels: {equal} of {compared} equal ({equal_share*%.5g} %)\n"
-    "[farthest:unequal: {.unequal}, at most {farthest} cell{farthest#s} from another label in "
-    "{files/0}\n"
-    "|[.unequal:unequal: {.unequal}, and {files/0} has no boundary\n]]"
-    "[first*:  case {index}[.where: ({.where})]: " VALUES "]"
-    "[.unequal:\n{.became}]"
-    "[domain:[.either:\n{outcome} in both: {kept}; lost, in {files/0} alone: {lost}"
-    "[.before: ({lost_share*%.3f} % of its domain"
-    "[.bounded:; 95 % interval {lost_low*%.3f} ... {lost_high*%.3f} %])];\n"
-    "won, in {files/1} alone: {won}[.after: ({won_share*%.3f} % of its domain)]\n]]";
-
-static bool print_labels(const struct results r[2], const struct label_comparison *c,
-                         enum table_form form)
-{
-    struct table became = {0};
-    json_t *const first = json_array();
-    char where[600];
-    for (int k = 0; k < c->shown; k++) {
-        const uint64_t i = c->place[k];
-        results_case_text(&r[0], i, where, sizeof where);
-        TABLE_APPEND(first, {"index", as_whole(i)}, {"at", as_tree(point_facts(&r[0], i))},
-                     {"values", as_tree(table_texts(results_kind_names[r[0].kind[i]],
-                                                    results_kind_names[r[1].kind[i]]))},
-                     {".where", as_text(where)});
-    }
-    json_t *const facts = TABLE_OBJECT(
-        {"files", as_tree(table_texts(r[0].file, r[1].file))}, {"compared", as_whole(c->compared)},
-        {"equal", as_whole(c->equal)}, {".unequal", as_whole(c->compared - c->equal)},
-        {"equal_share", as_number(c->compared ? share_of(c->equal, c->compared) : 1)},
-        {"farthest", c->farthest ? as_whole(c->farthest) : as_nothing(NULL)});
-    add_labels(&became, c);
-    json_t *const all =
-        table_show(facts, "became", &became, "first second cases share share_of_first", 0);
-    TABLE_PUT(all, {"domain", as_tree(domain_facts(c))}, {"first", as_tree(first)});
-    return table_say(form, all, labels_text, &became);
 }
 
 /* ---- the command -------------------------------------------------------------------------- */
@@ -269,19 +182,6 @@ static int compare_all(const struct results r[2], const struct request *request,
     return good ? code : EXIT_IO;
 }
 
-static int compare_only_labels(const struct results r[2], const struct request *request,
-                               stance_message *message)
-{
-    struct label_comparison comparison;
-    if (!compare_labels(&comparison, &r[0], &r[1],
-                        request->of < RESULTS_KIND_COUNT ? request->of : statistics_judged(&r[0]),
-                        message))
-        return EXIT_USAGE;
-    return !print_labels(r, &comparison, request->form) ? EXIT_IO
-           : comparison.equal == comparison.compared    ? EXIT_DONE
-                                                        : EXIT_CASES_FAILED;
-}
-
 static int compare(void *context)
 {
     const struct request *request = context;
@@ -296,7 +196,8 @@ static int compare(void *context)
         if (r[f].damage.cases > 0)
             complain(&message, "stance compare: %.180s is damaged and not compared", r[f].file);
     if (!message.text[0])
-        code = (request->labels ? compare_only_labels : compare_all)(r, request, &message);
+        code = request->labels ? compare_labels(r, request->of, request->form, &message)
+                               : compare_all(r, request, &message);
     if (code == EXIT_IO && !message.text[0])
         complain(&message, "stance compare: the comparison could not be written");
     if (message.text[0])

@@ -4,11 +4,30 @@
 #include "compare_labels.h"
 
 #include "runner/base/message.h"
+#include "runner/store/results.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+enum { LABELS_SHOWN = 3 };
+
+struct labels {
+    uint64_t compared, equal; /* cases that are pending in neither file */
+    /* Chebyshev distance from an unequal case to the nearest one of another label than its own in
+     * the first file, along the refined axes (without any: along all axes of numbers): 1 is beside
+     * the boundary. 0: there is no unequal case, or no boundary. */
+    uint64_t farthest;
+    /* Of those compared, by the label in the first file and that in the second. */
+    uint64_t cases[RESULTS_KIND_COUNT][RESULTS_KIND_COUNT];
+    enum results_kind of;     /* the domain that is looked at */
+    uint64_t kept, won, lost; /* cases in it of both files, of the second and of the first alone */
+    /* Of the share of the first domain that the second has lost, at 95 %, of a sample; else NAN. */
+    struct interval lost_interval;
+    int shown;
+    uint64_t place[LABELS_SHOWN]; /* the first unequal cases */
+};
 
 /* ---- neighbours --------------------------------------------------------------------------- */
 
@@ -91,34 +110,24 @@ static bool same_values(const struct results_axis *first, const struct results_a
     return same;
 }
 
-/* The share of what was in the domain of the first file at a point of the sample that is not in
- * that of the second, over the points. */
-static bool find_interval(struct label_comparison *c, const struct results *first,
-                          const struct results *second)
+bool compare_lost(struct interval *share, const struct results r[2], enum results_kind of)
 {
-    enum { LOST, HAD };
-    const size_t points = first->sample < 0 ? 0 : first->axis[first->sample].count;
-    const size_t block = first->block > 0 ? first->block : 1, blocks = (points + block - 1) / block;
-    double *count = calloc(blocks + 1, 2 * sizeof *count);
-    struct interval_draws draws = {0};
-    for (uint64_t i = 0; count && points > 0 && i < first->cases; i++) {
-        if (first->kind[i] == c->of && second->kind[i] != RESULTS_PENDING) {
-            double *own = count + 2 * (i % points / block); /* the sample is the last axis */
-            own[LOST] += second->kind[i] != c->of;
-            own[HAD]++;
-        }
-    }
-    for (size_t b = 0; count && b < blocks; b++)
-        interval_add(&draws, count[2 * b + LOST], count[2 * b + HAD]);
-    c->lost_interval = interval_of(&draws, 0.95);
-    free(count);
-    return count != NULL;
+    struct results had = r[0]; /* whose other cases are left out */
+    had.kind = malloc(had.cases);
+    for (uint64_t i = 0; had.kind && i < had.cases; i++)
+        had.kind[i] = r[0].kind[i] != of || r[1].kind[i] == RESULTS_PENDING ? RESULTS_PENDING
+                      : r[1].kind[i] == of                                  ? RESULTS_STABILISED
+                                                                            : RESULTS_FELL;
+    const bool good = had.kind && intervals_find(&had, RESULTS_FELL, -1, NULL, 1, share);
+    free(had.kind);
+    return good;
 }
 
-bool compare_labels(struct label_comparison *comparison, const struct results *first,
-                    const struct results *second, enum results_kind of, stance_message *message)
+static bool find_labels(struct labels *comparison, const struct results r[2],
+                        stance_message *message)
 {
-    *comparison = (struct label_comparison){.of = of};
+    const struct results *const first = &r[0], *const second = &r[1];
+    const enum results_kind of = comparison->of;
     bool axes = first->axes == second->axes && first->cases == second->cases &&
                 first->single == second->single;
     bool starts = first->varied == second->varied;
@@ -136,7 +145,7 @@ bool compare_labels(struct label_comparison *comparison, const struct results *f
         return complain(message, "stance compare: the starts of %.80s and %.80s are not the same",
                         first->file, second->file);
     uint32_t *distance = malloc(first->cases * sizeof *distance);
-    if (!distance || !find_interval(comparison, first, second)) {
+    if (!distance || !compare_lost(&comparison->lost_interval, r, of)) {
         free(distance);
         return complain(message, "stance compare: not enough memory");
     }
@@ -168,4 +177,98 @@ bool compare_labels(struct label_comparison *comparison, const struct results *f
     }
     free(distance);
     return true;
+}
+
+/* ---- what is said ------------------------------------------------------------------------- */
+
+static double share_of(uint64_t part, uint64_t all)
+{
+    return all ? (double)part / (double)all : NAN;
+}
+
+/* What the labels of the first file have become in the second. */
+static void add_labels(struct table *t, const struct labels *c)
+{
+    for (int from = 0; from < RESULTS_KIND_COUNT; from++) {
+        uint64_t all = 0;
+        for (int to = 0; to < RESULTS_KIND_COUNT; to++)
+            all += c->cases[from][to];
+        for (int to = 0; to < RESULTS_KIND_COUNT; to++) {
+            if (c->cases[from][to] == 0)
+                continue;
+            TABLE_FACTS(
+                t,
+                {{"first", "first", .width = 10, .left = true}, as_text(results_kind_names[from])},
+                {{"second", "second", .width = 10, .left = true}, as_text(results_kind_names[to])},
+                {{"cases", "cases", .width = 12}, as_whole(c->cases[from][to])},
+                {{"share", "of all", "%.3f %%", .width = 9, .percent = true},
+                 as_number(share_of(c->cases[from][to], c->compared))},
+                {{"share_of_first", "of the first", "%.3f %%", .width = 12, .percent = true},
+                 as_number(share_of(c->cases[from][to], all))});
+            table_end_row(t);
+        }
+    }
+}
+
+static json_t *domain_facts(const struct labels *c)
+{
+    return TABLE_OBJECT(
+        {"outcome", as_text(results_kind_names[c->of])}, {"kept", as_whole(c->kept)},
+        {"lost", as_whole(c->lost)}, {"won", as_whole(c->won)},
+        {"neither", as_whole(c->compared - c->kept - c->lost - c->won)},
+        {"lost_share", as_number(share_of(c->lost, c->kept + c->lost))},
+        {"lost_low", as_number(c->lost_interval.low)},
+        {"lost_high", as_number(c->lost_interval.high)},
+        {"won_share", as_number(share_of(c->won, c->kept + c->won))},
+        {".before", as_whole(c->kept + c->lost)}, {".after", as_whole(c->kept + c->won)},
+        {".either", as_whole(c->kept + c->lost + c->won)},
+        {".bounded", as_truth(isfinite(c->lost_interval.low))});
+}
+
+static const char labels_text[] =
+    "labels: {equal} of {compared} equal ({equal_share*%.5g} %)\n"
+    "[farthest:unequal: {.unequal}, at most {farthest} cell{farthest#s} from another label in "
+    "{files/0}\n"
+    "|[.unequal:unequal: {.unequal}, and {files/0} has no boundary\n]]"
+    "[first*:  case {index}[.where: ({.where})]: " COMPARE_VALUES "]"
+    "[.unequal:\n{.became}]"
+    "[domain:[.either:\n{outcome} in both: {kept}; lost, in {files/0} alone: {lost}"
+    "[.before: ({lost_share*%.3f} % of its domain"
+    "[.bounded:; 95 % interval {lost_low*%.3f} ... {lost_high*%.3f} %])];\n"
+    "won, in {files/1} alone: {won}[.after: ({won_share*%.3f} % of its domain)]\n]]";
+
+static bool print_labels(const struct results r[2], const struct labels *c, enum table_form form)
+{
+    struct table became = {0};
+    json_t *const first = json_array();
+    char where[600];
+    for (int k = 0; k < c->shown; k++) {
+        const uint64_t i = c->place[k];
+        results_case_text(&r[0], i, where, sizeof where);
+        TABLE_APPEND(first, {"index", as_whole(i)}, {"at", as_tree(compare_point(&r[0], i))},
+                     {"values", as_tree(table_texts(results_kind_names[r[0].kind[i]],
+                                                    results_kind_names[r[1].kind[i]]))},
+                     {".where", as_text(where)});
+    }
+    json_t *const facts = TABLE_OBJECT(
+        {"files", as_tree(table_texts(r[0].file, r[1].file))}, {"compared", as_whole(c->compared)},
+        {"equal", as_whole(c->equal)}, {".unequal", as_whole(c->compared - c->equal)},
+        {"equal_share", as_number(c->compared ? share_of(c->equal, c->compared) : 1)},
+        {"farthest", c->farthest ? as_whole(c->farthest) : as_nothing(NULL)});
+    add_labels(&became, c);
+    json_t *const all =
+        table_show(facts, "became", &became, "first second cases share share_of_first", 0);
+    TABLE_PUT(all, {"domain", as_tree(domain_facts(c))}, {"first", as_tree(first)});
+    return table_say(form, all, labels_text, &became);
+}
+
+int compare_labels(const struct results r[2], enum results_kind of, enum table_form form,
+                   stance_message *message)
+{
+    struct labels c = {.of = of < RESULTS_KIND_COUNT ? of : statistics_judged(&r[0])};
+    if (!find_labels(&c, r, message))
+        return EXIT_USAGE;
+    return !print_labels(r, &c, form) ? EXIT_IO
+           : c.equal == c.compared    ? EXIT_DONE
+                                      : EXIT_CASES_FAILED;
 }

@@ -7,28 +7,20 @@
 #define STANCE_COMPARE_COMPARE_LABELS_H
 
 #include "analysis/statistics/intervals.h"
+#include "analysis/table/table.h"
 
-enum { LABELS_SHOWN = 3 };
+/* Prints it, with the domain of an outcome (RESULTS_KIND_COUNT: what is judged by). Returns the
+ * command's exit code, with a line in *message unless the output fails. */
+int compare_labels(const struct results r[2], enum results_kind of, enum table_form form,
+                   stance_message *message);
 
-struct label_comparison {
-    uint64_t compared, equal; /* cases that are pending in neither file */
-    /* Chebyshev distance from an unequal case to the nearest one of another label than its own in
-     * the first file, along the refined axes (without any: along all axes of numbers): 1 is beside
-     * the boundary. 0: there is no unequal case, or no boundary. */
-    uint64_t farthest;
-    /* Of those compared, by the label in the first file and that in the second. */
-    uint64_t cases[RESULTS_KIND_COUNT][RESULTS_KIND_COUNT];
-    enum results_kind of; /* the domain that is looked at */
-    uint64_t kept, won,
-        lost; /* cases in the domain of both, of the second and of the first alone */
-    /* Of the share of the first domain that the second has lost, at 95 %, of a sample; else NAN. */
-    struct interval lost_interval;
-    int shown;
-    uint64_t place[LABELS_SHOWN]; /* the first unequal cases */
-};
+/* The share of the domain of the first file that the second one has lost, at 95 %, of a sample;
+ * else NAN. False: no memory. */
+bool compare_lost(struct interval *share, const struct results r[2], enum results_kind of);
 
-/* With the domain of an outcome. False: not over the same axes and starts, or not enough memory. */
-bool compare_labels(struct label_comparison *comparison, const struct results *first,
-                    const struct results *second, enum results_kind of, stance_message *message);
+/* Coordinates of a case as {path: value}. */
+json_t *compare_point(const struct results *r, uint64_t index);
+/* Both texts of a place. */
+#define COMPARE_VALUES "{values/0} \\| {values/1}\n"
 
 #endif

@@ -23,6 +23,7 @@ right_room = at_least(legend_room, ends > 0 ? 24 + 7.4*longest_end : 0)
 beside = leads ? margin : plain ? 24 : row_head + right_room
 if (asked_width > 0 && !asides) { columns = at_most(columns, at_least(1, int((asked_width - left - beside + across)/(130 + across)))) }
 width = wide(chart_width, columns, left + (columns - 1)*across + beside)
+if (equal) { width = at_most(width, chart_width) }
 lead_width = wide(lead_width, 1, left + legend_room)
 eval chart_fit
 rows = leads + (panels - leads + columns - 1)/columns
@@ -35,6 +36,7 @@ low_foot(r) = plain ? 6 : r <= leads ? 84 : own_x ? 66 : columns > 1 ? 12 : head
 foot = plain ? 10 : !own_x && axis_label('x', 999) eq value('x_path') || own_x && columns > 1 ? 62 : 84
 
 page_width = at_least(table_columns ? at_least(asked_width, 2*margin + table_names + 152*table_columns) : leads ? left + lead_width + legend_room : 0, right + beside)
+page_width = at_least(asked_width > 0 ? asked_width : equal ? 560 : 0, page_width)
 top = title_height(0) + (stretches > 0 ? 22 : 0)
 # Of a table's lines the name stands once where there is no room for it beside each value.
 panel_room(p) = (columns > 1 ? width + 4 : width + legend_room) - 7*strlen(panel_right[p])
@@ -52,7 +54,7 @@ do for [r=1:rows] {
     own_sum = own_sum + row_high[r]
     other_sum = other_sum + head + (r < rows ? low_foot(r) : foot)
 }
-stretch = asked_height > 0 ? at_least(50.0*rows, asked_height - legend_height - top - other_sum)/own_sum : 1.0
+stretch = asked_height > 0 && !equal ? at_least(50.0*rows, asked_height - legend_height - top - other_sum)/own_sum : 1.0
 own_sum = 0
 do for [r=1:rows] {
     row_top[r] = top + row_top[r] + stretch*own_sum
@@ -128,21 +130,33 @@ if (bars) {
     eval legend_bar(0)
 }
 if (ground >= 0) { set object 1 rectangle from graph 0,0 to graph 1,1 behind fillcolor rgb ground fillstyle solid noborder }
-do for [p=1:panels] {
-    eval panel(panel_left(p), panel_top[p], panel_wide(p), panel_high[p])
-    eval gridded && p > leads ? grid : 'unset grid'
-    eval axis_tics(panel_x[p], panel_wide(p)/(panel_wide(p) < 300 ? 50 : 64), panel_x[p] ne 'x' || p + columns > panels)
-    f_font = panel_wordy[p] ? ',8' : ',12' # words are long, panels are not
-    set xtics font f_font
-    if (panel_y[p] eq '') {
-        unset grid
-        set yrange [0:1]
-        set ytics (-1) # none in sight
-    } else {
-        f_tics = value(panel_y[p].'_scale') eq 'list' ? 99 : panel_high[p] < 160 ? 4 : int(panel_high[p]/(panel_high[p] > 400 ? 46 : 36))
-        eval axis_tics(panel_y[p], f_tics, panel_y[p] ne 'y' || column_of(p) == 0)
+# Of a picture that moves what stands still is drawn before the frames where these are laid over it (SVG).
+still = frames > 1 && drawing eq 'svg'
+do for [f=1-still:frames] {
+    if (frames > 1) { # the view moves, and the time
+        f_at = at_least(f, 1)
+        x_low = low_x + centre[f_at]; x_high = high_x + centre[f_at]
+        y1_low = low_y + base[f_at]; y1_high = high_y + base[f_at]
+        f_time = f > 0 ? sprintf('%.2f s', (f - 1)*frame_step) : ''
+        set label 1000 f_time at screen X(right),Y(row_top[1] - 10) right font ',12' front
     }
-    if (plain) { unset border; unset xtics; unset ytics; unset grid }
-    eval 'plot '.panel_plot[p][3:*]
-    unset colorbox # one for all
+    do for [p=1:panels] {
+        eval panel(panel_left(p), panel_top[p], panel_wide(p), panel_high[p])
+        eval gridded && p > leads ? grid : 'unset grid'
+        eval axis_tics(panel_x[p], panel_wide(p)/(panel_wide(p) < 300 ? 50 : 64), panel_x[p] ne 'x' || p + columns > panels)
+        f_font = panel_wordy[p] ? ',8' : ',12' # words are long, panels are not
+        set xtics font f_font
+        if (panel_y[p] eq '') {
+            unset grid
+            set yrange [0:1]
+            set ytics (-1) # none in sight
+        } else {
+            f_tics = value(panel_y[p].'_scale') eq 'list' ? 99 : panel_high[p] < 160 ? 4 : int(panel_high[p]/(panel_high[p] > 400 ? 46 : 36))
+            eval axis_tics(panel_y[p], f_tics, panel_y[p] ne 'y' || column_of(p) == 0)
+        }
+        if (plain || still && (f > 0 || travels)) { unset border; unset xtics; unset ytics; unset grid }
+        eval 'plot '.(f > 0 ? panel_plot[p][3:*] : 'NaN notitle')
+        unset colorbox # one for all
+    }
+    if (f == 0) { unset label; unset object; unset arrow }
 }

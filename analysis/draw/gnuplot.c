@@ -26,13 +26,15 @@ GNUPLOT_SCRIPT(page_gp, "analysis/draw/page.gp");
 GNUPLOT_SCRIPT(panels_gp, "analysis/draw/panels.gp");
 GNUPLOT_SCRIPT(chart_gp, "analysis/draw/chart.gp");
 
-/* What stands beside the data and the picture's own script. */
+/* What can be in a picture's directory beside cells; with a text: what all pictures share. */
 static const struct {
     const char *name, *text;
-} shared[] = {{"style.gp", style_gp},
-              {"legend.gp", legend_gp},
-              {"page.gp", page_gp},
-              {"panels.gp", panels_gp}};
+} files[] = {{"style.gp", style_gp},   {"legend.gp", legend_gp}, {"page.gp", page_gp},
+             {"panels.gp", panels_gp}, {"script", NULL},         {"picture.gp", NULL},
+             {"data.gp", NULL},        {"drawn.gp", NULL},       {"errors", NULL},
+             {"picture.svg", NULL},    {"picture.png", NULL},    {"picture.pdf", NULL},
+             {"picture.gif", NULL}};
+enum { FILES = sizeof files / sizeof *files };
 
 /* ---- directories --------------------------------------------------------------------------- */
 
@@ -49,24 +51,15 @@ bool gnuplot_directory(const char *directory)
 
 /* ---- the scratch directory ---------------------------------------------------------------- */
 
-static void scratch_path(const struct gnuplot *g, const char *name, char path[320])
-{
-    snprintf(path, 320, "%s/%s", g->scratch, name);
-}
-
 /* Removes the directory of a picture that is over, with what can be in it. */
 static void remove_picture(const char *directory)
 {
-    static const char *const names[] = {"script",      "picture.gp",  "data.gp",
-                                        "drawn.gp",    "errors",      "picture.svg",
-                                        "picture.png", "picture.pdf", "picture.gif"};
     char path[1100];
-    for (size_t i = 0; i < sizeof names / sizeof *names + sizeof shared / sizeof *shared; i++) {
-        const size_t own = sizeof names / sizeof *names;
-        snprintf(path, sizeof path, "%s/%s", directory, i < own ? names[i] : shared[i - own].name);
+    int cells = 0;
+    for (size_t i = 0; i < FILES; i++) {
+        snprintf(path, sizeof path, "%s/%s", directory, files[i].name);
         unlink(path);
     }
-    int cells = 0;
     do
         snprintf(path, sizeof path, "%s/cells%d", directory, ++cells);
     while (unlink(path) == 0);
@@ -81,7 +74,7 @@ static void note_failure(struct gnuplot *g)
 static void put_file(struct gnuplot *g, const char *name, const void *bytes, size_t size)
 {
     char path[320];
-    scratch_path(g, name, path);
+    snprintf(path, sizeof path, "%s/%s", g->scratch, name);
     FILE *const file = fopen(path, "wb");
     if (!file || fwrite(bytes, 1, size, file) != size)
         note_failure(g);
@@ -143,15 +136,6 @@ static void put_look(struct gnuplot *g)
         gnuplot_set(g, "eval in_grey");
 }
 
-static void put_titles(struct gnuplot *g)
-{
-    const struct look *const look = g->plot->look;
-    const struct results *const r = g->plot->r;
-    const char *const title = g->plot->title ? g->plot->title : r->title[0] ? r->title : r->name;
-    put_prose(g, look->title ? look->title : look->bare ? "" : title, "title");
-    put_prose(g, look->bare ? "" : g->subtitle, "subtitle");
-}
-
 /* A piece of memory of a picture, and what there was before it. */
 struct gnuplot_room {
     struct gnuplot_room *before;
@@ -186,8 +170,8 @@ bool gnuplot_begin(struct gnuplot *g, const struct plot *plot, const char *name,
         leave(g);
         return false;
     }
-    for (size_t k = 0; k < sizeof shared / sizeof *shared; k++)
-        put_file(g, shared[k].name, shared[k].text, strlen(shared[k].text));
+    for (size_t k = 0; k < FILES && files[k].text; k++)
+        put_file(g, files[k].name, files[k].text, strlen(files[k].text));
     script = script ? script : chart_gp;
     put_file(g, "picture.gp", script, strlen(script));
     put_look(g);
@@ -229,36 +213,7 @@ void gnuplot_kind_colour(const char *kind, char colour[8])
         snprintf(colour, 8, "#%.6s", at + strlen(name));
 }
 
-/* ---- running ------------------------------------------------------------------------------ */
-
-/* Runs gnuplot in the scratch directory; its exit status, NOT_FOUND: there is none, or -1 with
- * errno set. */
-static int run_gnuplot(const struct gnuplot *g)
-{
-    setenv("STANCE_SCRATCH", g->scratch, 1);
-    const int status =
-        system("cd \"$STANCE_SCRATCH\" && exec gnuplot -d script </dev/null >errors 2>&1");
-    return status < 0 ? -1 : WIFEXITED(status) ? WEXITSTATUS(status) : 128;
-}
-
-/* The last line that gnuplot said. */
-static void read_complaint(const struct gnuplot *g, char text[120])
-{
-    char path[320], line[300];
-    scratch_path(g, "errors", path);
-    FILE *errors = fopen(path, "r");
-    snprintf(text, 120, "no reason given");
-    while (errors && fgets(line, sizeof line, errors)) {
-        const char *const start = line + strspn(line, " \t\r\v\f");
-        line[strcspn(line, "\n")] = '\0';
-        if (*start)
-            snprintf(text, 120, "%.119s", start);
-    }
-    if (errors)
-        fclose(errors);
-}
-
-/* ---- letters ------------------------------------------------------------------------------ */
+/* ---- formats ------------------------------------------------------------------------------ */
 
 static char *read_file(const char *path, size_t *size)
 {
@@ -280,24 +235,20 @@ static char *read_file(const char *path, size_t *size)
     return text;
 }
 
-/* The data without letters that cannot be drawn, where there is need of them; SVG is drawn by its
- * readers, with fonts of their own. */
-static char *drawable(const struct gnuplot *g)
-{
-    bool plain = strcmp(g->plot->look->font, LOOK_FONT) == 0;
-    for (size_t i = 0; i < g->size; i++)
-        plain = plain && (unsigned char)g->text[i] < 0x80;
-    return plain ? NULL : fonts_replace(g->plot->look->font, g->text, g->size);
-}
-
-/* The picture is drawn from the same data in each format. */
+/* The picture is drawn from the same data in each format; without letters that cannot be drawn,
+ * where there is need of them: SVG is drawn by its readers, with fonts of their own. */
 static void put_formats(struct gnuplot *g)
 {
-    char script[800] = "";
+    const char *const font = g->plot->look->font;
+    char script[800] = "", *drawn = NULL;
+    bool plain = strcmp(font, LOOK_FONT) == 0;
     if (fflush(g->data) != 0)
         note_failure(g);
     put_file(g, "data.gp", g->text, g->size);
-    char *const drawn = drawable(g);
+    for (size_t i = 0; i < g->size; i++)
+        plain = plain && (unsigned char)g->text[i] < 0x80;
+    if (!plain)
+        drawn = fonts_replace(font, g->text, g->size);
     if (drawn)
         put_file(g, "drawn.gp", drawn, strlen(drawn));
     for (int f = 0; f < LOOK_FORMAT_COUNT; f++)
@@ -464,24 +415,37 @@ static bool fetch(const struct gnuplot *g)
     return good;
 }
 
-/* Runs gnuplot and fetches what it drew. */
+/* Runs gnuplot in the scratch directory and fetches what it drew; or says the last line that it
+ * said. */
 static bool draw(const struct gnuplot *g)
 {
     stance_message *const message = g->plot->message;
-    char complaint[120];
+    char path[320], line[300], complaint[120] = "no reason given";
     if (g->error == ENOMEM)
         return no_memory(message);
     if (g->error)
         return complain(message, "%.100s: cannot be written: %s", g->scratch, strerror(g->error));
-    const int status = run_gnuplot(g);
+    setenv("STANCE_SCRATCH", g->scratch, 1);
+    const int ended =
+        system("cd \"$STANCE_SCRATCH\" && exec gnuplot -d script </dev/null >errors 2>&1");
+    const int status = WIFEXITED(ended) ? WEXITSTATUS(ended) : 128;
+    if (ended < 0)
+        return complain(message, "gnuplot cannot be run: %s", strerror(errno));
     if (status == NOT_FOUND)
         return complain(message, "gnuplot, which draws the pictures, is not installed; on Debian: "
                                  "apt-get install gnuplot-nox");
-    if (status < 0)
-        return complain(message, "gnuplot cannot be run: %s", strerror(errno));
     if (status == 0)
         return fetch(g);
-    read_complaint(g, complaint);
+    snprintf(path, sizeof path, "%s/errors", g->scratch);
+    FILE *const errors = fopen(path, "r");
+    while (errors && fgets(line, sizeof line, errors)) {
+        const char *const start = line + strspn(line, " \t\r\v\f");
+        line[strcspn(line, "\n")] = '\0';
+        if (*start)
+            snprintf(complaint, sizeof complaint, "%.119s", start);
+    }
+    if (errors)
+        fclose(errors);
     return complain(message,
                     status == TOO_SMALL ? "%.190s: a larger --size, or shorter --labels"
                                         : "gnuplot failed: %.190s",
@@ -499,13 +463,17 @@ bool gnuplot_end(struct gnuplot *g)
     const char *const dash = strrchr(g->stem, '-');
     char path[1024];
     const bool missing = g->missing;
+    const struct look *const look = g->plot->look;
+    const struct results *const r = g->plot->r;
+    const char *const title = g->plot->title ? g->plot->title : r->title[0] ? r->title : r->name;
     if (missing && g->error == ENOMEM)
         no_memory(g->plot->message);
     if (missing || !look_wants(g->plot->look, dash ? dash + 1 : g->stem)) {
         gnuplot_abandon(g);
         return !missing;
     }
-    put_titles(g);
+    put_prose(g, look->title ? look->title : look->bare ? "" : title, "title");
+    put_prose(g, look->bare ? "" : g->subtitle, "subtitle");
     put_formats(g);
     const bool good = draw(g);
     leave(g);

@@ -1,6 +1,6 @@
 # legend.gp - what the legend takes of the page: beside the panels legend_width px, or below them, where an asked
 # width has no room for that, legend_height px. `bars`: it has a colour bar, too.
-legend_below = plain || table_columns > 0 || asked_width > 0 && asked_width < 760
+legend_below = legend_low || table_columns > 0 || asked_width > 0 && asked_width < 760
 # Dashes are told apart from some length on.
 legend_indent = 22
 do for [k=1:legends] { if (legend_dash[k] > 0) { legend_indent = 52 } }

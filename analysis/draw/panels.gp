@@ -25,8 +25,11 @@ do for [k=1:notes] {
 }
 eval panel(0, 0, page_width, page_height)
 unset border; unset tics
-plot [0:1][0:1] 2 notitle # nothing of it is seen but what was set before
-unset label; unset object; unset arrow
+# Nothing of the plot is seen but what was set before; frames of a picture that moves have that each.
+if (frames < 2) {
+    plot [0:1][0:1] 2 notitle
+    unset label; unset object; unset arrow
+}
 set border 31 lw 0.8 lc '#404040'
 set xtics nomirror out scale 0.6 textcolor '#202020'
 set ytics nomirror out scale 0.6 textcolor '#202020'

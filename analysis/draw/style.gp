@@ -103,7 +103,11 @@ chart_width = 620 # px, of a panel
 lead_width = 520; lead_own = 520
 scaled = 0        # heights follow widths
 gridded = 1
-plain = 0         # panels have neither frame nor axes, the legend stands below them
+plain = 0         # panels have neither frame nor axes
+equal = 0         # both directions have the same scale
+legend_low = 0    # the legend stands below the panels
+frames = 1        # of a picture that moves, frame_step apart: the ranges of its panel are from centre[], base[]
+travels = 0       # they move
 ground = -1       # colour under what is drawn
 shared_y = ''
 chart_beside = '' # the name of a strip

@@ -34,6 +34,7 @@ struct follow {
     struct gait gait; /* the last one that was found ... */
     double last;      /* ... at this value; and the one before */
     double before[RETURN_MAP_MOST], last_before;
+    struct gait next, there; /* what is looked for; at the end of the stretch that is looked at */
     int found;
     double at, asked; /* the value that is looked at; of which it is asked what it comes to */
     int settled;      /* times of steps there */
@@ -53,11 +54,9 @@ static int take(const struct scenario *s, const stance_case *c, void *context)
                          : return_map_begin(&f->map, c, kernel, f->along->steps, f->along->settle,
                                             &f->guess, &f->message);
     f->begun |= good;
-    struct gait *const gait = malloc(sizeof *gait);
-    good = good && gait && gait_find(&f->map, &f->guess, gait, &f->message);
+    good = good && gait_find(&f->map, &f->guess, &f->next, &f->message);
     if (good)
-        f->gait = *gait;
-    free(gait);
+        f->gait = f->next;
     if (good && f->along->settled && f->at == f->asked) { /* what it comes to, slightly off it */
         struct return_point off = f->gait.from;
         for (int i = 0; i < f->map.n; i++)
@@ -237,14 +236,11 @@ static int follow(struct follow *f)
         f->asked = end;
         if (!reach(f, end) || !note(f, NULL))
             return EXIT_USAGE;
-        struct gait *const there = malloc(sizeof *there);
-        if (!there)
-            return EXIT_USAGE;
-        *there = f->gait;
+        f->there = f->gait;
         f->asked = NAN;
         for (int kind = 0; kind < 2; kind++) {
             const int sign = kind == 0 ? 1 : -1;
-            f->gait = *there, f->last = end;
+            f->gait = f->there, f->last = end;
             const double now = room(f, sign);
             if ((at[kind] < 0) == (now < 0) || !isfinite(at[kind]) || !isfinite(now))
                 continue;
@@ -258,10 +254,9 @@ static int follow(struct follow *f)
             f->row[f->rows - 1] = f->row[f->rows - 2];
             f->row[f->rows - 2] = place;
         }
-        f->gait = *there, f->last = end;
-        memcpy(f->before, there->from.z, sizeof f->before);
+        f->gait = f->there, f->last = end;
+        memcpy(f->before, f->there.from.z, sizeof f->before);
         f->found = 1; /* the line begins anew behind a place */
-        free(there);
     }
     return EXIT_DONE;
 }

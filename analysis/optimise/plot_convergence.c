@@ -103,7 +103,7 @@ static void find_lines(struct page *page)
     static const char *const format[] = {"%.4g", "%.1f %%"};
     const struct search_study *const study = page->study;
     const struct search_file *const f = &study->f;
-    const char *where, *more[SEARCH_CURVES] = {NULL};
+    const char *more[SEARCH_CURVES] = {NULL};
     char text[SEARCH_CURVES][40];
     page->at[SEARCH_FIRST] = page->at[SEARCH_CHOSEN] = page->at[SEARCH_ALLOWED] = NAN;
     if (study->done) {
@@ -111,7 +111,7 @@ static void find_lines(struct page *page)
         page->at[SEARCH_CHOSEN] = page->scale * f->confirmed_objective[f->chosen];
     }
     if (study->done && study->plain)
-        page->at[SEARCH_ALLOWED] = page->scale * search_limit(study, (size_t)f->chosen, &where);
+        page->at[SEARCH_ALLOWED] = page->scale * search_limit(study, (size_t)f->chosen, NULL);
     for (int k = 0; k < SEARCH_CURVES; k++) {
         snprintf(text[k], sizeof text[k], format[study->plain], page->at[k]);
         more[k] = isnan(page->at[k]) ? NULL : text[k];

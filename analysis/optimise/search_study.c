@@ -3,7 +3,6 @@
 
 #include "runner/base/message.h"
 #include "runner/base/sandbox.h"
-#include "runner/optimise/best.h"
 #include "runner/optimise/search.h"
 #include "runner/plan/allowed.h"
 #include "runner/scenario/schema.h"
@@ -143,14 +142,8 @@ struct search_gain search_gain(const struct search_study *study, size_t circumst
 
 double search_limit(const struct search_study *study, size_t k, const char **circumstance)
 {
-    const struct search_file *const f = &study->f;
-    const size_t circumstances = f->length[SEARCH_CIRCUMSTANCE];
-    size_t least;
-    const double limit = linear_limit_overall(counts_worst(study), circumstances,
-                                              &f->confirmed_allowed[k * circumstances], &least);
-    if (circumstance)
-        *circumstance = least < circumstances ? f->circumstance[least] : NULL;
-    return limit;
+    const char *where;
+    return search_limit_of(&study->f, counts_worst(study), k, circumstance ? circumstance : &where);
 }
 
 bool search_chosen_apart(const struct search_study *study)

@@ -56,52 +56,22 @@ static json_t *families(const struct search_study *study)
     return list;
 }
 
-/* "initial.offset.theta, q1, q2": what a path has in common with the one before is said once. */
-static void add_starts(const struct search_file *f, json_t *facts)
-{
-    for (size_t k = 0; k < f->length[SEARCH_VARIED]; k++) {
-        const char *const path = f->varied[k], *const name = schema_last_name(path);
-        const size_t length = (size_t)(name - path);
-        const bool same =
-            k > 0 && schema_last_name(f->varied[k - 1]) - f->varied[k - 1] == (ptrdiff_t)length &&
-            strncmp(f->varied[k - 1], path, length) == 0;
-        say_add(facts, ".starts_over", "%s%s", k ? ", " : "", same ? name : path);
-    }
-}
-
-static void add_required(const struct search_study *study, json_t *facts)
-{
-    const double critical = study->first->search.critical;
-    double least, longest;
-    scenario_extent(study->first, offsetof(struct scenario_values, sample_time), &least, &longest);
-    if (longest != 0 && isnan(critical)) /* else nothing is sampled */
-        say_add(facts, ".required", "two sample times");
-    else if (longest != 0 && critical > 0)
-        say_add(facts, ".required", "%g s", critical);
-}
-
 /* ---- what came out ------------------------------------------------------------------------ */
 
-/* The limit is that of a posture, which may be varied, too. */
+/* The limit is that of a posture, which may be varied, too: the first one has its own. */
 static json_t *limit(const struct search_study *study)
 {
     const size_t chosen = (size_t)study->f.chosen;
     const char *where;
     const double allowed = search_limit(study, chosen, &where),
-                 before = search_limit(study, 0, NULL),
-                 first = 100 * search_share(study, 0, SEARCH_OVERALL) / before;
+                 before = search_limit(study, 0, NULL);
     if (!(allowed > 0))
         return NULL;
-    json_t *const facts = TABLE_OBJECT(
+    return TABLE_OBJECT(
         {"allowed", as_number(allowed)}, {"where", as_text(where)},
-        {"chosen", as_number(100 * search_share(study, chosen, SEARCH_OVERALL) / allowed)});
-    if (before == allowed)
-        say_add(facts, "first", ", first %.1f %%", first);
-    else if (before > 0)
-        say_add(facts, "first",
-                ";\n  at the first one's posture it is %.2f %%, of which it has %.1f %%",
-                100 * before, first);
-    return facts;
+        {"chosen", as_number(search_share(study, chosen, SEARCH_OVERALL) / allowed)},
+        {"first", as_number(search_share(study, 0, SEARCH_OVERALL) / before)},
+        {"before", as_number(before)}, {"differs", as_truth(before != allowed)});
 }
 
 static void add_counts(const struct search_study *study, json_t *facts)
@@ -158,21 +128,13 @@ static void add_values(const struct search_study *study, json_t *facts)
 static void add_poles(const struct search_study *study, json_t *facts)
 {
     stance_message ignored;
-    json_t *list = NULL;
     struct design_report *const loop =
         study->best && scenario_law(&study->best->base)->designed ? malloc(sizeof *loop) : NULL;
-    if (loop && design_loop(loop, study->best, NULL, &ignored)) {
-        list = json_array();
-        for (int i = 0; i < loop->states; i++) {
-            say_add(facts, ".poles", "%s%.5g", i ? ", " : "", loop->closed_re[i]);
-            if (loop->closed_im[i] != 0)
-                say_add(facts, ".poles", "%+.5gi", loop->closed_im[i]);
-            json_array_append_new(list,
-                                  json_pack("[f, f]", loop->closed_re[i], loop->closed_im[i]));
-        }
-    }
+    if (loop && design_loop(loop, study->best, NULL, &ignored))
+        design_put_complex(facts, ".poles", loop->states, loop->closed_re, loop->closed_im);
+    else
+        table_put(facts, "poles", as_tree(NULL));
     free(loop);
-    table_put(facts, "poles", as_tree(list));
 }
 
 static json_t *chosen(const struct search_study *study)
@@ -366,9 +328,12 @@ static bool add_facts(const struct search_study *study, json_t *facts)
               {".starts", as_whole((uint64_t)f->starts[last])}, {".done", as_truth(study->done)});
     say_add(facts, ".best", study->plain ? "%.2f %%" : "%.6g",
             (study->plain ? 100 : 1) * f->objective[best]);
-    add_starts(f, facts);
-    if (study->first && study->first->search.given)
-        add_required(study, facts);
+    const struct scenario *const s = study->first;
+    const bool samples = s && s->search.given && s->base.sample_time > 0;
+    if (samples && isnan(s->search.critical))
+        say_add(facts, ".required", "two sample times");
+    else if (samples && s->search.critical > 0)
+        say_add(facts, ".required", "%g s", s->search.critical);
     const bool good = add_tables(study, facts);
     table_put(facts, "chosen", as_tree(study->done ? chosen(study) : NULL));
     return good;
@@ -381,7 +346,7 @@ static const char text[] =
     "[.varied*:  {of}[more:  {many} of them]{range}\n]"
     "Maximised: {maximised}\n"
     "[.required:Required: a critical sample time of {.required}\n]"
-    "Starts over {.starts_over}\n"
+    "Starts over [starts_over*, :{value}]\n"
     "\nSearch\n{.stages}[finished:  ended: {note}\n]"
     "[!.done:\nNot finished: {generations} of at most {most_generations} generations; best so far "
     "candidate {best}, {.best} of the {.starts} starts by which it was\n"
@@ -393,7 +358,8 @@ static const char text[] =
     "[chosen:  chosen - first[.several:, mean of the circumstances]: {gain*%+.2f} points "
     "({gain_low*%.2f} ... {gain_high*%.2f}), start by start: {won} won, {lost} lost\n]"
     "[.limit:  {allowed*%.2f} % is what linear theory allows any controller "
-    "[where:in its worst circumstance,\n  {where}|there]: chosen {chosen%.1f} % of that{first}\n"
+    "[where:in its worst circumstance,\n  {where}|there]: chosen {chosen*%.1f} % of that"
+    "[before:, first {first*%.1f} %[differs: of its posture's {before*%.2f} %]]\n"
     "[linear_limit_glued:  (" ALLOWED_GLUED ")\n]]"
     "[chosen:  of the chosen one's starts {.counts}\n]"
     "[.several:\nIn each circumstance\n{.circumstances}"
@@ -403,7 +369,7 @@ static const char text[] =
     "[gains:  controller:\n    design: gains\n    gains:\n"
     "[gains*:      - \\[[value*, :{value%.6g}]\\]\n]]"
     "[.values*:  {key} = {value%.6g}\n]"
-    "[.poles:  poles {.poles} 1/s\n]"
+    "[.poles:  poles{.poles} 1/s\n]"
     "[.critical:  critical sample time{.critical}\n]]]";
 
 static int summarise(const struct report *report, stance_message *message)

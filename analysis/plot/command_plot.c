@@ -1,6 +1,5 @@
 /* command_plot.c - `stance plot FILE`: chooses the pictures that a file calls for. */
 #include "plot_case.h"
-#include "plot_model.h"
 
 #include "analysis/optimise/search_pictures.h"
 #include "analysis/sensitivity/sensitivity_study.h"

@@ -6,17 +6,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-GNUPLOT_SCRIPT(plot_animation_gp, "analysis/plot/plot_animation.gp");
-
 static const double frame_time = 0.04; /* s, at the least */
-
-static double end_of(const struct plot_case *c)
-{
-    double end = 0;
-    for (; c; c = c->other)
-        end = fmax(end, c->t->time[c->t->rows - 1]);
-    return end;
-}
 
 struct animation {
     struct gnuplot g;
@@ -42,64 +32,75 @@ static struct plot_range see(const struct animation *a, int i)
     return range;
 }
 
-/* The ground of frame f between places that move with the view. Returns how many points it has. */
-static size_t find_ground(const struct animation *a, const struct plot_case *c, int f,
-                          struct plot_range x, double (*point)[2])
-{
-    const double about = a->follows ? a->figure[0][f].centre : 0;
-    return plot_ground(c, f * a->step, about + x.low, about + x.high, point);
-}
-
-/* Plates, each frame an index of $ground; `z` is widened to where they go down to. */
+/* The ground between places that move with the view, each frame an index; `z` is widened to where
+ * it goes down to. */
 static void put_ground(struct animation *a, const struct plot_case *c, struct plot_range x,
                        struct plot_range *z)
 {
     double(*const point)[2] = gnuplot_room(&a->g, PLOT_GROUND, sizeof *point);
-    gnuplot_set(&a->g, "uneven = %d", c->floor != NULL);
-    gnuplot_block(&a->g, "ground");
-    if (!c->floor)
-        GNUPLOT_ROW(&a->g, NAN, NAN);
-    if (!c->floor || !point)
-        return;
-    for (int f = 0; f < a->frames; f++) {
-        const size_t points = find_ground(a, c, f, x, point);
+    gnuplot_series(&a->g, "index f-1 using 1:2 with lines lw 2 lc rgb 0xa0a0a0");
+    for (int f = 0; point && f < a->frames; f++) {
+        const double about = a->follows ? a->figure[0][f].centre : 0,
+                     base = a->follows ? a->figure[0][f].base : 0;
+        const size_t points = plot_ground(c, f * a->step, about + x.low, about + x.high, point);
         for (size_t k = 0; k < points; k++) {
             GNUPLOT_ROW(&a->g, point[k][0], point[k][1]);
-            z->low = fmin(z->low, point[k][1] - (a->follows ? a->figure[0][f].base : 0));
+            if (c->floor)
+                z->low = fmin(z->low, point[k][1] - base);
         }
         gnuplot_gap(&a->g);
         gnuplot_gap(&a->g);
     }
 }
 
+/* What is seen, as large as the page has room, in the proportions of the ranges. */
 static void put_view(struct animation *a, const struct plot_case *c)
 {
+    enum { WIDE = 632, HIGH = 480 };
+    struct gnuplot *const g = &a->g;
     struct plot_range x = see(a, 0), z = see(a, 1);
     if (x.high - x.low > 3 * (z.high - z.low)) {
         a->follows = true;
         x = see(a, 0);
         z = see(a, 1);
     }
-    const double tall = z.high - z.low, margin = 0.08 * tall + 1e-9;
-    const double half = fmax(0.6 * tall, 0.5 * (x.high - x.low)) + margin,
-                 middle = 0.5 * (x.low + x.high);
-    put_ground(a, c, (struct plot_range){middle - half, middle + half}, &z);
-    gnuplot_set(&a->g, "low_x = %#.17g; high_x = %#.17g; low_z = %#.17g; high_z = %#.17g",
-                middle - half, middle + half, z.low - margin, z.high + margin);
-    gnuplot_arrays(&a->g, (size_t)a->frames, "centre base");
+    const double tall = z.high - z.low, margin = 0.08 * tall + 1e-9,
+                 middle = 0.5 * (x.low + x.high),
+                 half = fmax(fmax(0.6 * tall, 0.5 * (x.high - x.low)) + margin,
+                             0.5 * (tall + 2 * margin) * WIDE / HIGH);
+    gnuplot_set(g, "equal = legend_low = scaled = 1; gridded = 0; travels = %d; chart_width = %d",
+                a->follows, WIDE);
+    x = (struct plot_range){middle - half, middle + half};
+    gnuplot_axis(g, 'x', PLOT_LINEAR, x, "x", "m");
+    gnuplot_panel(g, 0, "");
+    gnuplot_text(g, " ", "panel_right[panels]"); /* room for the time */
+    put_ground(a, c, x, &z);
+    z = (struct plot_range){z.low - margin, z.high + margin};
+    gnuplot_set(g, "panel_own[1] = %.10g", WIDE * (z.high - z.low) / (2 * half));
+    gnuplot_axis(g, 'y', PLOT_LINEAR, z, "z", "m");
+    gnuplot_arrays(g, (size_t)a->frames, "centre base");
     for (int f = 0; f < a->frames; f++) {
-        gnuplot_number(&a->g, a->follows ? a->figure[0][f].centre : 0, "centre[%d]", f + 1);
-        gnuplot_number(&a->g, a->follows ? a->figure[0][f].base : 0, "base[%d]", f + 1);
+        gnuplot_number(g, a->follows ? a->figure[0][f].centre : 0, "centre[%d]", f + 1);
+        gnuplot_number(g, a->follows ? a->figure[0][f].base : 0, "base[%d]", f + 1);
     }
+    gnuplot_set(g,
+                "frames = %d; frame_step = %.10g; delay = int(100*frame_step + 0.5); "
+                "low_x = x_low; high_x = x_high; low_y = y1_low; high_y = y1_high",
+                a->frames, a->step);
 }
 
-/* The frames of the cases, each an index of $segments<number> and $points<number>. */
+/* The frames of the cases, the second one grey, each an index. */
 static void put_frames(struct animation *a, int contacts)
 {
-    for (int k = 0; k < 4 && a->figure[k / 2]; k++) {
-        gnuplot_block(&a->g, "%s%d", k % 2 == FIGURE_SEGMENTS ? "segments" : "points", k / 2 + 1);
+    static const char *const styles[] = {
+        "using 1:2 with lines lw 3 lc rgb 0xb8b8b8",
+        "using 1:2:(" FIGURE_COLOUR ") with lines lw 3 lc rgb variable",
+        "using 1:2:(" FIGURE_COLOUR ") with points pt 7 ps 0.9 lc rgb variable"};
+    for (int k = a->figure[1] ? 0 : 1; k < 3; k++) {
+        gnuplot_series(&a->g, "index f-1 %s", styles[k]);
         for (int f = 0; f < a->frames; f++) {
-            figure_put(&a->g, &a->figure[k / 2][f], contacts, (enum figure_part)(k % 2), 0, 0);
+            figure_put(&a->g, &a->figure[k == 0][f], contacts,
+                       k == 2 ? FIGURE_POINTS : FIGURE_SEGMENTS, 0, 0);
             gnuplot_gap(&a->g);
             gnuplot_gap(&a->g);
         }
@@ -109,15 +110,18 @@ static void put_frames(struct animation *a, int contacts)
 bool plot_animation(const struct plot_case *c)
 {
     struct animation a = {.follows = false};
-    if (!c->readable || (c->other && !c->other->readable))
+    if (!c->scenario || (c->other && !c->other->scenario))
         return complain(c->plot->message,
                         "%.150s: no stick figures: this version cannot read its scenario",
                         c->plot->r->file);
-    const double step = fmax(frame_time, ceil(100 * end_of(c) / LOOK_MOST_FRAMES) / 100);
+    double end = 0;
+    for (const struct plot_case *k = c; k; k = k->other)
+        end = fmax(end, k->t->time[k->t->rows - 1]);
+    const double step = fmax(frame_time, ceil(100 * end / LOOK_MOST_FRAMES) / 100);
     a.step = step;
-    a.frames = (int)(end_of(c) / step + 1e-9) + 1;
+    a.frames = (int)(end / step + 1e-9) + 1;
     c->plot->look->animated = step;
-    if (!plot_case_begin(c, &a.g, "animation", plot_animation_gp, "Stick figures"))
+    if (!plot_case_begin(c, &a.g, "animation", NULL, "Stick figures"))
         return false;
     int cases = 0;
     for (const struct plot_case *k = c; k; k = k->other) {
@@ -126,12 +130,11 @@ bool plot_animation(const struct plot_case *c)
             figure_make(&figure[f], k, figure_row(k->t, f * step));
         a.figure[cases++] = figure;
     }
-    const int contacts = figure_names(&a.g, c->scenario.scene);
+    const int contacts = figure_colours(&a.g, c->scenario->scene);
+    figure_legend(&a.g, c);
     if (a.figure[0]) {
         put_view(&a, c);
         put_frames(&a, contacts);
     }
-    gnuplot_set(&a.g, "frames = %d; step = %.10g; fall = %#.17g; follows = %d; cases = %d",
-                a.frames, step, figure_fall(c), a.follows, cases);
     return gnuplot_end(&a.g);
 }

@@ -14,7 +14,7 @@ enum { MOST_ROWS = 4000 };
 /* Contacts with the ground; those after them are stops of joints, which have no place on it. */
 static size_t grounded(const struct plot_case *c)
 {
-    return c->readable ? (size_t)plot_case_grounded(c->scenario.scene) : c->t->contacts;
+    return c->scenario ? (size_t)plot_case_grounded(c->scenario->scene) : c->t->contacts;
 }
 
 /* ---- pages -------------------------------------------------------------------------------- */
@@ -94,42 +94,34 @@ static struct range range_of(const struct case_page *page, struct columns column
     return range;
 }
 
-/* Value i of the first path of an axis, for people. */
-static void swept_value(const struct scenario_axis *axis, size_t i, char *text, size_t size)
-{
-    const double value = scenario_axis_value(axis, i, 0);
-    double gap = INFINITY;
-    if (axis->words || isinf(value)) {
-        scenario_axis_text(axis, i, 0, text, size);
-        return;
-    }
-    if (i > 0)
-        gap = fmin(gap, fabs(value - scenario_axis_value(axis, i - 1, 0)));
-    if (i + 1 < axis->count)
-        gap = fmin(gap, fabs(scenario_axis_value(axis, i + 1, 0) - value));
-    results_number_text(value, isinf(gap) ? 0 : gap, text, size);
-    if (axis->unit[0] && strcmp(axis->unit, "1") != 0)
-        add_text(text, size, " %s", axis->unit);
-}
-
 /* "ground.friction = 0.3, ..." of a case of a sweep, from its scenario. */
 static void swept_text(const struct scenario *s, uint64_t index, char *text, size_t size)
 {
     size_t point[SCENARIO_MAX_AXES];
-    char value[64];
+    char word[64];
     for (int a = s->axes - 1; a >= 0; a--) {
         point[a] = (size_t)(index % s->axis[a].count);
         index /= s->axis[a].count;
     }
     for (int a = 0; a < s->axes; a++) {
-        const struct scenario_axis *axis = &s->axis[a];
+        const struct scenario_axis *const axis = &s->axis[a];
+        const size_t i = point[a];
         for (int k = 0; k < (axis->sample ? axis->paths : 1); k++) {
-            if (axis->sample)
-                scenario_axis_text(axis, point[a], k, value, sizeof value);
-            else
-                swept_value(axis, point[a], value, sizeof value);
+            const double value = axis->words ? NAN : scenario_axis_value(axis, i, k);
+            double gap = INFINITY; /* from the nearest other value: so many digits are needed */
+            if (axis->sample || axis->words || isinf(value)) {
+                scenario_axis_text(axis, i, k, word, sizeof word);
+            } else {
+                if (i > 0)
+                    gap = fmin(gap, fabs(value - scenario_axis_value(axis, i - 1, 0)));
+                if (i + 1 < axis->count)
+                    gap = fmin(gap, fabs(scenario_axis_value(axis, i + 1, 0) - value));
+                results_number_text(value, isinf(gap) ? 0 : gap, word, sizeof word);
+                if (axis->unit[0] && strcmp(axis->unit, "1") != 0)
+                    add_text(word, sizeof word, " %s", axis->unit);
+            }
             add_text(text, size, "%s%s = %s", a || k ? ", " : "",
-                     axis->sample ? axis->path[k] : axis->name, value);
+                     axis->sample ? axis->path[k] : axis->name, word);
         }
     }
 }
@@ -141,8 +133,8 @@ static void describe(struct gnuplot *g, const struct plot_case *c)
     char where[600] = "";
     if (!r->single)
         results_case_text(r, c->t->index, where, sizeof where);
-    else if (c->readable)
-        swept_text(&c->scenario, c->t->index, where, sizeof where);
+    else if (c->scenario)
+        swept_text(c->scenario, c->t->index, where, sizeof where);
     if (where[0])
         gnuplot_say(g, "case %llu, %s: ", (unsigned long long)c->t->index, where);
     gnuplot_say(g, "%s", results_kind_names[r->kind[r->single ? 0 : c->t->index]]);
@@ -255,11 +247,6 @@ static void put_ramp(struct case_page *page, const struct ramp *ramp, const char
         GNUPLOT_ROW(&page->g, time[k], ramp->start + ramp->rate * fmin(time[k], ramp->end));
 }
 
-static void put_level(struct case_page *page, double level, const char *colour, bool dashed)
-{
-    put_ramp(page, &(struct ramp){level, 0, page->time.high}, colour, dashed);
-}
-
 /* A line and an entry of the legend for each contact or actuator. */
 static void put_names(struct case_page *page, const char (*names)[SCENARIO_NAME], size_t count,
                       int dash)
@@ -273,7 +260,7 @@ static void put_names(struct case_page *page, const char (*names)[SCENARIO_NAME]
 /* What the controller aims at, where it does. */
 static double target_of(const struct plot_case *c, size_t i)
 {
-    const stance_scene *scene = c->readable ? c->scenario.scene : NULL;
+    const stance_scene *scene = c->scenario ? c->scenario->scene : NULL;
     for (int p = 0; scene && scenario_law(&c->values)->designed && p < scene->postures; p++)
         if ((size_t)scene->posture[p] == i)
             return c->equilibrium[i];
@@ -287,12 +274,12 @@ static bool setpoint_of(const struct plot_case *c, size_t i, struct ramp *setpoi
     const char *const law = "decoupling";
     int index, coordinate[STANCE_MAX_ACTUATORS];
     bool led = false;
-    if (!c->readable || scenario_law(v) != stance_law_find(law))
+    if (!c->scenario || scenario_law(v) != stance_law_find(law))
         return false;
     memcpy(&index, scenario_law_value(v, law, "controlled"), sizeof index);
-    if (!stance_selection(c->scenario.scene, index, coordinate))
+    if (!stance_selection(c->scenario->scene, index, coordinate))
         return false;
-    for (int k = 0; k < c->scenario.scene->actuators; k++)
+    for (int k = 0; k < c->scenario->scene->actuators; k++)
         led = led || coordinate[k] == (int)i;
     if (!led)
         return false;
@@ -313,7 +300,7 @@ static bool draw_coordinates(const struct plot_case *c)
     if (!plot_page_begin(&page, "coordinates", "Coordinates"))
         return false;
     for (size_t i = 0; i < t->coordinates; i++) {
-        const stance_quantity *q = c->readable ? &c->scenario.scene->coordinate[i] : &unknown;
+        const stance_quantity *q = c->scenario ? &c->scenario->scene->coordinate[i] : &unknown;
         struct range range = range_of(&page, (struct columns){i, 1, i + 1, false});
         const double target = target_of(c, i);
         struct ramp setpoint;
@@ -325,7 +312,7 @@ static bool draw_coordinates(const struct plot_case *c)
         }
         put_panel(&page, 100, q->text, range.of, t->coordinate[i], q->unit);
         if (isfinite(target))
-            put_level(&page, target, "hue[2]", true);
+            put_ramp(&page, &(struct ramp){target, 0, INFINITY}, "hue[2]", true);
         if (leads)
             put_ramp(&page, &setpoint, "hue[2]", true);
         put_line(&page, i, 1, 0, false);
@@ -365,8 +352,8 @@ void plot_page_forces(struct case_page *page, double height)
     bool rough = false;
 
     page->shown = SHOWN_FORCES;
-    if (c->readable)
-        stance_tree_numbers_make(c->scenario.scene->tree, c->scenario.scene->mechanism,
+    if (c->scenario)
+        stance_tree_numbers_make(c->scenario->scene->tree, c->scenario->scene->mechanism,
                                  c->values.robot, &number);
     for (size_t k = 0; k < 2; k++) {
         const struct range range = range_of(page, (struct columns){k, 2, 2 * count, true});
@@ -376,27 +363,18 @@ void plot_page_forces(struct case_page *page, double height)
         heading_of(&range, brief, "N", text, sizeof text);
         put_panel(page, height, text, range.of, names[k][brief ? 3 : 1], "N");
         for (size_t i = 0; i < count; i++) {
-            for (int sign = -1; k == 1 && c->readable && sign <= 1; sign += 2)
+            for (int sign = -1; k == 1 && c->scenario && sign <= 1; sign += 2)
                 put_line(page, 2 * i, sign * c->values.friction * number.rough[i], i, true);
             put_line(page, 2 * i + k, 1, i, false);
-            rough |= c->readable && number.rough[i] != 1;
+            rough |= c->scenario && number.rough[i] != 1;
         }
     }
     put_names(page, t->contact, count, 0);
-    if (c->readable) {
+    if (c->scenario) {
         gnuplot_note(&page->g, "tangential, dotted:");
         gnuplot_note(&page->g, "limit of friction %.4g%s", c->values.friction,
                      rough ? " times each friction_factor" : "");
     }
-}
-
-static bool draw_forces(const struct plot_case *c)
-{
-    struct case_page page = {.c = c};
-    if (!plot_page_begin(&page, "forces", "Forces of the ground on the contacts"))
-        return false;
-    plot_page_forces(&page, 220);
-    return gnuplot_end(&page.g);
 }
 
 /* ---- torques and gaps --------------------------------------------------------------------- */
@@ -410,7 +388,7 @@ static const char *unit_of(const stance_scene *scene, size_t k)
 /* What the actuators give. */
 static const char *torque_label(const struct plot_case *c, const char **unit)
 {
-    const stance_scene *const scene = c->readable ? c->scenario.scene : NULL;
+    const stance_scene *const scene = c->scenario ? c->scenario->scene : NULL;
     int slides = 0;
     for (int k = 0; scene && k < scene->actuators; k++)
         slides += strcmp(unit_of(scene, (size_t)k), "N") == 0;
@@ -431,9 +409,9 @@ static size_t torque_levels(const struct plot_case *c, size_t actuators, struct 
 {
     double limit[STANCE_MAX_ACTUATORS];
     size_t count = 0, alike = 0;
-    if (!c->readable)
+    if (!c->scenario)
         return 0;
-    stance_torque_limits(c->scenario.scene, c->values.robot, c->values.torque_limit,
+    stance_torque_limits(c->scenario->scene, c->values.robot, c->values.torque_limit,
                          c->values.torque_limits, limit);
     for (size_t i = 0; i < actuators; i++) {
         size_t k = 0;
@@ -443,7 +421,7 @@ static size_t torque_levels(const struct plot_case *c, size_t actuators, struct 
         if (!isfinite(limit[i]))
             continue;
         if (k == count)
-            level[count++] = (struct torque_level){limit[i], unit_of(c->scenario.scene, i), ""};
+            level[count++] = (struct torque_level){limit[i], unit_of(c->scenario->scene, i), ""};
         add_text(level[k].of, sizeof level[k].of, "%s %.40s", level[k].of[0] ? "," : " of",
                  c->t->actuator[i]);
     }
@@ -472,7 +450,7 @@ void plot_page_torques(struct case_page *page, double height)
     put_panel(page, height, text, range.of, label, "");
     for (size_t k = 0; k < limits; k++)
         for (int sign = -1; level[k].limit < extent && sign <= 1; sign += 2)
-            put_level(page, sign * level[k].limit, "0x606060", true);
+            put_ramp(page, &(struct ramp){sign * level[k].limit, 0, INFINITY}, "0x606060", true);
     for (size_t k = 0; k < t->actuators; k++)
         put_line(page, k, 1, k, false);
     put_names(page, t->actuator, t->actuators, page->marks > 0);
@@ -481,30 +459,32 @@ void plot_page_torques(struct case_page *page, double height)
                      level[k].limit, level[k].unit, level[k].of);
 }
 
-static bool draw_torques(const struct plot_case *c)
+static void put_gaps(struct case_page *page)
 {
-    struct case_page page = {.c = c};
-    if (!plot_page_begin(&page, "torques", "What the actuators give"))
-        return false;
-    plot_page_torques(&page, 260);
-    return gnuplot_end(&page.g);
+    const size_t count = grounded(page->c);
+    struct range range = range_of(page, (struct columns){0, 1, count, false});
+    plot_widen(&range.of, 0);
+    put_panel(page, 260, "", range.of, "gap", "m");
+    put_ramp(page, &(struct ramp){0, 0, INFINITY}, "0x606060", false);
+    for (size_t k = 0; k < count; k++)
+        put_line(page, k, 1, k, false);
+    put_names(page, page->c->t->contact, count, 0);
 }
 
-static bool draw_gaps(const struct plot_case *c)
+/* A page of one quantity. */
+static bool draw_page(const struct plot_case *c, enum shown shown)
 {
-    const struct results_trajectory *t = c->t;
-    const size_t count = grounded(c);
-    struct case_page page = {.c = c, .shown = SHOWN_GAPS};
-
-    if (!plot_page_begin(&page, "gaps", "Heights of the contact points above the ground"))
+    struct case_page page = {.c = c, .shown = shown};
+    if (shown == SHOWN_FORCES &&
+        plot_page_begin(&page, "forces", "Forces of the ground on the contacts"))
+        plot_page_forces(&page, 220);
+    else if (shown == SHOWN_TORQUES && plot_page_begin(&page, "torques", "What the actuators give"))
+        plot_page_torques(&page, 260);
+    else if (shown == SHOWN_GAPS &&
+             plot_page_begin(&page, "gaps", "Heights of the contact points above the ground"))
+        put_gaps(&page);
+    else
         return false;
-    struct range range = range_of(&page, (struct columns){0, 1, count, false});
-    plot_widen(&range.of, 0);
-    put_panel(&page, 260, "", range.of, "gap", "m");
-    put_level(&page, 0, "0x606060", false);
-    for (size_t k = 0; k < count; k++)
-        put_line(&page, k, 1, k, false);
-    put_names(&page, t->contact, count, 0);
     return gnuplot_end(&page.g);
 }
 
@@ -524,17 +504,14 @@ static void learn(struct plot_case *c)
         *time[k] = has ? values[r->single ? 0 : t->index] : NAN;
         free(values);
     }
-    c->readable = results_scenario(r, &c->scenario);
-    const stance_scene *scene = c->scenario.scene;
-    if (c->readable && ((size_t)scene->coordinates != t->coordinates ||
-                        t->index >= c->scenario.cases || (size_t)scene->contacts != t->contacts)) {
-        scenario_free(&c->scenario);
-        c->readable = false;
+    const struct scenario *const read = r->read;
+    if (read && (size_t)read->scene->coordinates == t->coordinates && t->index < read->cases &&
+        (size_t)read->scene->contacts == t->contacts) {
+        c->scenario = read;
+        scenario_case_values(read, t->index, &c->values);
     }
-    if (c->readable)
-        scenario_case_values(&c->scenario, t->index, &c->values);
     /* there may be one per design, and which is not asked */
-    if (!c->readable || results_numbers(r, "design/equilibrium_position", c->equilibrium,
+    if (!c->scenario || results_numbers(r, "design/equilibrium_position", c->equilibrium,
                                         t->coordinates) != t->coordinates)
         for (int i = 0; i < STANCE_MAX_COORDINATES; i++)
             c->equilibrium[i] = NAN;
@@ -557,8 +534,6 @@ bool plot_case_load(struct plot_case *c, const struct plot *plot, size_t place, 
 
 void plot_case_free(struct plot_case *c)
 {
-    if (c->readable)
-        scenario_free(&c->scenario);
     free(c->floor);
     results_trajectory_free(&c->trajectory);
 }
@@ -574,10 +549,11 @@ bool plot_case(const struct plot_case *c)
         return complain(c->plot->message, "%.100s: the two cases are of different robots",
                         c->plot->r->file);
     const bool lands = grounded(c) > 0;
-    const bool good = draw_coordinates(c) && (!t->force || !lands || draw_forces(c)) &&
-                      (!t->torque || draw_torques(c)) && (!t->gap || !lands || draw_gaps(c));
-    if (good && !c->readable)
+    const bool good = draw_coordinates(c) && (!t->force || !lands || draw_page(c, SHOWN_FORCES)) &&
+                      (!t->torque || draw_page(c, SHOWN_TORQUES)) &&
+                      (!t->gap || !lands || draw_page(c, SHOWN_GAPS));
+    if (good && !c->scenario)
         fprintf(stderr, "%s: no stick figures: this version cannot read the file's scenario\n",
                 c->plot->r->file);
-    return good && (!c->readable || (plot_strip(c) && plot_phase(c)));
+    return good && (!c->scenario || (plot_strip(c) && plot_phase(c)));
 }

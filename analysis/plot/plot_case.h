@@ -12,10 +12,9 @@ struct plot_case {
     const struct results_trajectory *t;
     const struct plot_case *other; /* drawn in the same frames; NULL: none */
     struct results_trajectory trajectory;
-    double settle_time, fall_time; /* s, NAN where not reached */
-    bool readable;                 /* the next two are known, and fit the trajectory */
-    struct scenario scenario;
-    struct scenario_values values;              /* of this case */
+    double settle_time, fall_time;   /* s, NAN where not reached */
+    const struct scenario *scenario; /* fits the trajectory; NULL: not known, nor is what follows */
+    struct scenario_values values;   /* of this case */
     double equilibrium[STANCE_MAX_COORDINATES]; /* of the controller; NAN: none, or not known */
     stance_case *floor;                         /* whose numbers the ground has; NULL: it is even */
     struct ground_pieces pieces;                /* of it */
@@ -80,10 +79,11 @@ size_t plot_ground(const struct plot_case *c, double time, double low, double hi
 double plot_ground_base(const struct plot_case *c, double time, double x);
 /* Once the rest of a case is known. */
 void plot_ground_learn(struct plot_case *c);
-/* Tells the script of the contacts: contacts, contact_name[], and of the colours of what figure_put
- * puts. Returns how many. */
+/* Tells the script of the colours of what figure_put puts. Returns how many contacts there are. */
 #define FIGURE_COLOUR "figure_colour($3)"
-int figure_names(struct gnuplot *g, const stance_scene *scene);
+int figure_colours(struct gnuplot *g, const stance_scene *scene);
+/* The entries of contacts, the body, perhaps the second case. */
+void figure_legend(struct gnuplot *g, const struct plot_case *c);
 /* Rows x, z, colour, time of its segments, each a line of its own, or of its joints and contacts;
  * the colour is a contact's number, the number of contacts: the body's. */
 enum figure_part { FIGURE_SEGMENTS, FIGURE_POINTS };
@@ -106,5 +106,10 @@ double walk_end(const struct plot_case *c);
 bool plot_steps(const struct plot_case *c, bool *drawn);
 /* STEM-phase, of legs that take turns: each angle against its rate. */
 bool plot_phase(const struct plot_case *c);
+
+/* NAME-model of the scenario in `file` with --set `sets`, into this directory unless the look says
+ * otherwise: its first case, where it begins. Returns an exit code; says why on standard error. */
+int plot_model(const struct command *command, const char *file, const struct option_texts *sets,
+               struct look *look);
 
 #endif

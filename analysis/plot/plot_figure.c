@@ -26,17 +26,6 @@ double figure_fall(const struct plot_case *c)
     return tan(c->values.robot[STANCE_ROBOT_SLOPE]);
 }
 
-static bool is_outline(const struct plot_case *c)
-{
-    const stance_mechanism *const m = c->scenario.scene->mechanism;
-    stance_mechanism_numbers number;
-    bool round = m->carried && m->carried->outline;
-    stance_mechanism_expand(m, c->values.robot, &number);
-    for (int e = 0; e < m->elements; e++)
-        round = round || number.element[e].radius > 0;
-    return round;
-}
-
 /* Of a disc that a contact is; 0: it is none. */
 static double radius_of(const stance_mechanism *m, const stance_mechanism_numbers *number,
                         int contact)
@@ -51,7 +40,7 @@ static double radius_of(const stance_mechanism *m, const stance_mechanism_number
  * so that a leg has the colour of its foot. Of other outlines none is. */
 static void find_feet(struct figure *figure, const struct plot_case *c)
 {
-    const stance_scene *const scene = c->scenario.scene;
+    const stance_scene *const scene = c->scenario->scene;
     stance_mechanism_numbers number;
     double sine, cosine;
     stance_mechanism_expand(scene->mechanism, c->values.robot, &number);
@@ -78,7 +67,7 @@ static void find_feet(struct figure *figure, const struct plot_case *c)
 /* Of legs that are alike, what turns with the joints of one of them is of its first foot. */
 static void find_legs(struct figure *figure, const struct plot_case *c, const double *position)
 {
-    const stance_scene *const scene = c->scenario.scene;
+    const stance_scene *const scene = c->scenario->scene;
     const stance_exchange *const e = &scene->exchange;
     for (int leg = 0; leg < 2 && e->any; leg++) {
         double bent[STANCE_MAX_COORDINATES] = {0}, point[STANCE_MAX_POINTS][2];
@@ -98,14 +87,19 @@ static void find_legs(struct figure *figure, const struct plot_case *c, const do
 
 void figure_make(struct figure *figure, const struct plot_case *c, size_t row)
 {
-    const stance_scene *scene = c->scenario.scene;
+    const stance_scene *scene = c->scenario->scene;
     const struct results_trajectory *t = c->t;
     const double *position = t->position + row * t->coordinates;
     const double rest[STANCE_MAX_COORDINATES] = {0};
+    const stance_mechanism *const m = scene->mechanism;
+    stance_mechanism_numbers number;
     double speed[2];
 
     figure->time = t->time[row];
-    figure->outline = is_outline(c);
+    figure->outline = m->carried && m->carried->outline;
+    stance_mechanism_expand(m, c->values.robot, &number);
+    for (int e = 0; e < m->elements; e++)
+        figure->outline = figure->outline || number.element[e].radius > 0;
     figure->points = scene->figure(scene, c->values.robot, position, figure->point);
     for (int k = 0; k < plot_case_grounded(scene); k++)
         scene->contact_point(scene, c->values.robot, position, rest, k, figure->contact[k], speed);
@@ -117,14 +111,21 @@ void figure_make(struct figure *figure, const struct plot_case *c, size_t row)
     figure->base = plot_ground_base(c, figure->time, figure->centre);
 }
 
-int figure_names(struct gnuplot *g, const stance_scene *scene)
+int figure_colours(struct gnuplot *g, const stance_scene *scene)
 {
     const int contacts = plot_case_grounded(scene);
-    gnuplot_set(g, "contacts = %d\narray contact_name[%d]", contacts, STANCE_MAX_CONTACTS);
-    gnuplot_set(g, "figure_colour(k) = k < contacts ? hue[int(k)%%|hue|+1] : 0x303030");
-    for (int k = 0; k < contacts; k++)
-        gnuplot_text(g, scene->contact_name[k], "contact_name[%d]", k + 1);
+    gnuplot_set(g, "figure_colour(k) = k < %d ? hue[int(k)%%|hue|+1] : 0x303030", contacts);
     return contacts;
+}
+
+void figure_legend(struct gnuplot *g, const struct plot_case *c)
+{
+    const stance_scene *const scene = c->scenario->scene;
+    for (int k = 0; k < plot_case_grounded(scene); k++)
+        gnuplot_legend(g, gnuplot_hue((size_t)k), 0, 0, scene->contact_name[k], "");
+    gnuplot_legend(g, "0x303030", 0, 0, "body", "");
+    if (c->other)
+        gnuplot_legend(g, "0xb8b8b8", 0, 0, "the second case", "");
 }
 
 /* Whether a point of the figure is a contact. */

@@ -10,7 +10,7 @@ static double size_of(const struct plot_case *c)
     struct plot_range x = PLOT_NOTHING, z = PLOT_NOTHING;
     double point[STANCE_MAX_POINTS][2];
     const int points =
-        c->scenario.scene->figure(c->scenario.scene, c->values.robot, c->t->position, point);
+        c->scenario->scene->figure(c->scenario->scene, c->values.robot, c->t->position, point);
     for (int p = 0; p < points; p++) {
         plot_widen(&x, point[p][0]);
         plot_widen(&z, point[p][1]);
@@ -21,13 +21,14 @@ static double size_of(const struct plot_case *c)
 void plot_ground_learn(struct plot_case *c)
 {
     const struct results_trajectory *const t = c->t;
-    if (!c->readable || c->scenario.scene->mechanism->plates == 0 ||
+    if (!c->scenario || c->scenario->scene->mechanism->plates == 0 ||
         !(c->floor = calloc(1, sizeof *c->floor)))
         return;
-    ground_case(&c->scenario, &c->values, t->index, c->floor);
+    ground_case(c->scenario, &c->values, t->index, c->floor);
     c->reach = 0.5 * size_of(c);
-    ground_pieces_find(c->floor, t->rows, t->time, t->position, t->velocity, t->force, t->gap,
-                       &c->pieces);
+    const struct ground_motion motion = {t->rows,     t->time,  t->position,
+                                         t->velocity, t->force, t->gap};
+    ground_pieces_find(c->floor, &motion, &c->pieces);
 }
 
 size_t plot_ground(const struct plot_case *c, double time, double low, double high,

@@ -5,7 +5,6 @@
  * stick figure with velocities v at its unit rate, about p + (-v_z, v_x) if they turn, along v if
  * they slide. Its own link is the one that the fewest other coordinates move.
  */
-#include "plot_model.h"
 #include "plot_case.h"
 
 #include "runner/plan/asked.h"
@@ -28,6 +27,8 @@ struct moved {
     double along[2];  /* of a slide, of length 1 */
     double point[2];  /* m, where its link ends */
     double direction; /* rad, from the centre to that point, counter-clockwise from +x */
+    double shown;     /* rad, of the arc from where the angle is 0; 0: it only shows the sign */
+    double radius, torque; /* m, of the arcs of its angle and of its actuator */
 };
 
 /* At a place, of what is at `of`, all in m. */
@@ -101,8 +102,18 @@ static void find_motion(struct model *m, int k)
     moved->along[1] = v[1] / speed;
     const int own = own_point(m, k);
     memcpy(moved->point, m->point[own < 0 ? 0 : own], sizeof moved->point);
-    moved->direction =
-        atan2(moved->point[1] - moved->centre[1], moved->point[0] - moved->centre[0]);
+    const double away[] = {moved->point[0] - moved->centre[0], moved->point[1] - moved->centre[1]},
+                 angle = remainder(m->c->position[k], 2 * M_PI),
+                 reach = fmin(m->size, 2.2 * hypot(away[0], away[1])); /* in proportion to it */
+    int rank = 0; /* those that turn about the same place have each a radius of its own */
+    for (int other = 0; other < k; other++)
+        rank += m->moved[other].turns &&
+                hypot(m->moved[other].centre[0] - moved->centre[0],
+                      m->moved[other].centre[1] - moved->centre[1]) < 1e-3 * m->size;
+    moved->direction = atan2(away[1], away[0]);
+    moved->shown = fabs(angle) < 0.1 ? 0 : angle;
+    moved->radius = reach * (0.15 + 0.08 * rank);
+    moved->torque = reach * (0.33 + 0.05 * rank);
 }
 
 static void make_model(struct model *m)
@@ -138,61 +149,24 @@ static void label(struct model *m, enum ink ink, double x, double z, const doubl
         m->label[m->labels++] = (struct label){text, x, z, {of[0], of[1]}, ink};
 }
 
-/* At a radius about the centre of coordinate k, at an angle. */
-static void place_at(const struct model *m, int k, double radius, double angle, double place[2])
+/* At a radius about the centre of a turn, at an angle. */
+static void place_at(const struct moved *moved, double radius, double angle, double place[2])
 {
-    place[0] = m->moved[k].centre[0] + radius * cos(angle);
-    place[1] = m->moved[k].centre[1] + radius * sin(angle);
+    place[0] = moved->centre[0] + radius * cos(angle);
+    place[1] = moved->centre[1] + radius * sin(angle);
 }
 
-/* Around the centre of coordinate k, from one angle to another; its last piece has
- * a head. Rows: where it begins, how far it goes, its ink, whether it has a head. */
-static void arc(struct model *m, int k, enum ink ink, double radius, double from, double to)
+/* From one angle to another; its last piece has a head. Rows: where a piece begins, how far it
+ * goes, its ink, whether it has a head. */
+static void arc(struct model *m, const struct moved *moved, enum ink ink, double radius,
+                double from, double to)
 {
-    const double *const centre = m->moved[k].centre;
+    double a[2], b[2];
     for (int i = 0; i < ARC_STEPS; i++) {
-        const double a = from + (to - from) * i / ARC_STEPS,
-                     b = from + (to - from) * (i + 1) / ARC_STEPS;
-        GNUPLOT_ROW(m->g, centre[0] + radius * cos(a), centre[1] + radius * sin(a),
-                    radius * (cos(b) - cos(a)), radius * (sin(b) - sin(a)), ink,
-                    i + 1 == ARC_STEPS);
+        place_at(moved, radius, from + (to - from) * i / ARC_STEPS, a);
+        place_at(moved, radius, from + (to - from) * (i + 1) / ARC_STEPS, b);
+        GNUPLOT_ROW(m->g, a[0], a[1], b[0] - a[0], b[1] - a[1], ink, i + 1 == ARC_STEPS);
     }
-}
-
-/* How many earlier coordinates turn about the same place: each has a radius of its own. */
-static int rank_of(const struct model *m, int k)
-{
-    int rank = 0;
-    for (int other = 0; other < k; other++)
-        rank += m->moved[other].turns &&
-                hypot(m->moved[other].centre[0] - m->moved[k].centre[0],
-                      m->moved[other].centre[1] - m->moved[k].centre[1]) < 1e-3 * m->size;
-    return rank;
-}
-
-/* An angle goes from where its link would be at 0 to where it is; near 0 the arc shows the sign. */
-static double shown_angle(const struct model *m, int k)
-{
-    const double angle = remainder(m->c->position[k], 2 * M_PI);
-    return fabs(angle) < 0.1 ? 0 : angle;
-}
-
-/* In proportion to its link, as far as that is short. */
-static double reach_of(const struct model *m, int k)
-{
-    const struct moved *const moved = &m->moved[k];
-    return fmin(m->size, 2.2 * hypot(moved->point[0] - moved->centre[0],
-                                     moved->point[1] - moved->centre[1]));
-}
-
-static double radius_of(const struct model *m, int k)
-{
-    return reach_of(m, k) * (0.15 + 0.08 * rank_of(m, k));
-}
-
-static double torque_radius(const struct model *m, int k)
-{
-    return reach_of(m, k) * (0.33 + 0.05 * rank_of(m, k));
 }
 
 /* A rail's coordinate is far from where it is 0, perhaps: an arrow shows its sign. */
@@ -201,18 +175,6 @@ static bool is_place(const struct model *m, int k)
     const struct moved *const moved = m->moved;
     return k < 2 && m->scene->coordinates > 1 && moved[0].all && moved[1].all && !moved[0].turns &&
            !moved[1].turns;
-}
-
-/* How far the arrow of a slide goes, and from where. */
-static double slide_of(const struct model *m, int k, double from[2])
-{
-    const struct moved *const moved = &m->moved[k];
-    const double q = m->c->position[k], side = 0.05 * m->size;
-    const bool sign = moved->all || fabs(q) < 0.02 * m->size;
-    for (int i = 0; i < 2; i++)
-        from[i] = moved->point[i] - (sign ? 0 : q * moved->along[i]) +
-                  side * (i ? moved->along[0] : -moved->along[1]);
-    return sign ? 0.18 * m->size : q;
 }
 
 /* Uneven ground, to either side as far as it may be seen; pieces by footfall are not there yet. */
@@ -225,7 +187,7 @@ static void put_ground(struct model *m)
     GNUPLOT_ROW(m->g, NAN, NAN);
     if (m->scene->mechanism->plates == 0 || !point)
         return;
-    ground_pieces_find(m->c, 0, NULL, NULL, NULL, NULL, NULL, &pieces);
+    ground_pieces_find(m->c, NULL, &pieces);
     const size_t points = ground_line(m->c, &pieces, 0, m->range[0].low - 4 * m->size,
                                       m->range[0].high + 4 * m->size, point, PLOT_GROUND);
     for (size_t k = 0; k < points; k++)
@@ -241,7 +203,7 @@ static void put_lines(struct model *m)
     GNUPLOT_ROW(m->g, NAN, NAN);
     for (int k = 0; k < m->scene->coordinates; k++) {
         const struct moved *const moved = &m->moved[k];
-        const double zero = moved->direction - shown_angle(m, k), length = 1.25 * radius_of(m, k);
+        const double zero = moved->direction - moved->shown, length = 1.25 * moved->radius;
         if (!moved->turns)
             continue;
         gnuplot_gap(m->g);
@@ -258,19 +220,19 @@ static void put_coordinate(struct model *m, int k)
     const char *const name = m->scene->coordinate[k].name;
     double at[2], of[2];
     if (moved->turns) {
-        const double angle = shown_angle(m, k), radius = radius_of(m, k),
-                     gap = 0.06 * m->size / radius;
-        arc(m, k, INK_COORDINATE, radius, moved->direction - angle,
-            moved->direction + (angle == 0 ? 0.6 : 0));
-        place_at(m, k, radius,
-                 moved->direction + (angle == 0  ? 0.6 + gap
-                                     : angle > 0 ? -angle - gap
-                                                 : -angle + gap),
-                 at);
-        place_at(m, k, radius, moved->direction + (angle == 0 ? 0.3 : -0.5 * angle), of);
+        const double angle = moved->shown, radius = moved->radius, gap = 0.06 * m->size / radius,
+                     end = moved->direction + (angle == 0 ? 0.6 : 0);
+        arc(m, moved, INK_COORDINATE, radius, moved->direction - angle, end);
+        place_at(moved, radius, angle == 0 ? end + gap : end - angle - copysign(gap, angle), at);
+        place_at(moved, radius, moved->direction + (angle == 0 ? 0.3 : -0.5 * angle), of);
         label(m, INK_COORDINATE, at[0], at[1], of, name);
-    } else if (!is_place(m, k)) {
-        const double far = slide_of(m, k, of), side = 0.05 * m->size;
+    } else if (!is_place(m, k)) { /* from where it is 0; near that the arrow shows the sign */
+        const double q = m->c->position[k], side = 0.05 * m->size;
+        const bool sign = moved->all || fabs(q) < 0.02 * m->size;
+        const double far = sign ? 0.18 * m->size : q;
+        for (int i = 0; i < 2; i++)
+            of[i] = moved->point[i] - (sign ? 0 : q * moved->along[i]) +
+                    side * (i ? moved->along[0] : -moved->along[1]);
         GNUPLOT_ROW(m->g, of[0], of[1], far * moved->along[0], far * moved->along[1],
                     INK_COORDINATE, 1);
         for (int i = 0; i < 2; i++)
@@ -288,25 +250,13 @@ static void put_actuator(struct model *m, int a)
                  dz = m->size * moved->along[1];
     double at[2] = {x + 0.22 * dx, z + 0.22 * dz}, of[2] = {x + 0.11 * dx, z + 0.11 * dz};
     if (moved->turns) {
-        const double radius = torque_radius(m, k);
-        arc(m, k, INK_ACTUATOR, radius, moved->direction + 0.12, moved->direction + 0.7);
-        place_at(m, k, radius + 0.05 * m->size, moved->direction + 0.6, at);
-        place_at(m, k, radius, moved->direction + 0.5, of);
+        arc(m, moved, INK_ACTUATOR, moved->torque, moved->direction + 0.12, moved->direction + 0.7);
+        place_at(moved, moved->torque + 0.05 * m->size, moved->direction + 0.6, at);
+        place_at(moved, moved->torque, moved->direction + 0.5, of);
     } else {
         GNUPLOT_ROW(m->g, x, z, 0.18 * dx, 0.18 * dz, INK_ACTUATOR, 1);
     }
     label(m, INK_ACTUATOR, at[0], at[1], of, m->scene->actuator_name[a]);
-}
-
-static void put_contact(struct model *m, int k)
-{
-    const double slope = m->c->robot[STANCE_ROBOT_SLOPE], length = 0.13 * m->size;
-    const double rest[STANCE_MAX_COORDINATES] = {0};
-    double p[2], speed[2];
-    m->scene->contact_point(m->scene, m->c->robot, m->c->position, rest, k, p, speed);
-    GNUPLOT_ROW(m->g, p[0], p[1], length * sin(slope), length * cos(slope), INK_CONTACT, 1);
-    GNUPLOT_ROW(m->g, p[0], p[1], length * cos(slope), -length * sin(slope), INK_CONTACT, 1);
-    label(m, INK_CONTACT, p[0], p[1] - 0.06 * m->size, p, m->scene->contact_name[k]);
 }
 
 /* The arrows of all things and, after them, their labels. */
@@ -317,8 +267,15 @@ static void put_things(struct model *m)
         put_coordinate(m, k);
     for (int a = 0; a < m->scene->actuators; a++)
         put_actuator(m, a);
-    for (int k = 0; k < plot_case_grounded(m->scene); k++)
-        put_contact(m, k);
+    for (int k = 0; k < plot_case_grounded(m->scene); k++) {
+        static const double rest[STANCE_MAX_COORDINATES];
+        const double slope = m->c->robot[STANCE_ROBOT_SLOPE], length = 0.13 * m->size;
+        double p[2], speed[2];
+        m->scene->contact_point(m->scene, m->c->robot, m->c->position, rest, k, p, speed);
+        GNUPLOT_ROW(m->g, p[0], p[1], length * sin(slope), length * cos(slope), INK_CONTACT, 1);
+        GNUPLOT_ROW(m->g, p[0], p[1], length * cos(slope), -length * sin(slope), INK_CONTACT, 1);
+        label(m, INK_CONTACT, p[0], p[1] - 0.06 * m->size, p, m->scene->contact_name[k]);
+    }
     gnuplot_arrays(m->g, MOST_LABELS, "label_text label_x label_y label_ink of_x of_y");
     gnuplot_set(m->g, "labels = %d", m->labels);
     for (int k = 0; k < m->labels; k++) {
@@ -329,13 +286,6 @@ static void put_things(struct model *m)
                     "of_x[k] = %#.9g; of_y[k] = %#.9g",
                     k + 1, l->x, l->z, l->ink, l->of[0], l->of[1]);
     }
-}
-
-/* Which way a slide goes, seen from where the robot stands. */
-static const char *way_of(const struct moved *moved)
-{
-    const double x = moved->along[0], z = moved->along[1];
-    return fabs(x) > fabs(z) ? (x > 0 ? "to the right" : "to the left") : z > 0 ? "up" : "down";
 }
 
 /* The next line of what stands beside the figure. */
@@ -361,12 +311,16 @@ static void put_words(struct model *m)
     for (int a = 0; a < m->scene->actuators; a++) {
         const int k = m->scene->actuated[a];
         const char *const name = m->scene->coordinate[k].name;
+        const double x = m->moved[k].along[0], z = m->moved[k].along[1]; /* of a slide */
         if (m->moved[k].turns)
             snprintf(text, sizeof text, "%.40s: positive raises %.40s", m->scene->actuator_name[a],
                      name);
         else
             snprintf(text, sizeof text, "%.40s: positive pushes %.40s along its axis, %s",
-                     m->scene->actuator_name[a], name, way_of(&m->moved[k]));
+                     m->scene->actuator_name[a], name,
+                     fabs(x) > fabs(z) ? (x > 0 ? "to the right" : "to the left")
+                     : z > 0           ? "up"
+                                       : "down");
         word(m, INK_ACTUATOR, text);
     }
     if (plot_case_grounded(m->scene) > 0)

@@ -33,7 +33,7 @@ static double read(const struct plot_case *c, const double *x, int i, bool other
 {
     double sum = 0;
     for (size_t k = 0; k < c->t->coordinates && other; k++)
-        sum += c->scenario.scene->exchange.coordinate[i][k] * x[k];
+        sum += c->scenario->scene->exchange.coordinate[i][k] * x[k];
     return other ? sum : x[i];
 }
 
@@ -134,7 +134,7 @@ static void put_curves(const struct curve *curve, const char *colour, int dash)
 
 static void put_phase(struct gnuplot *g, const struct plot_case *c, int i, char legend[3][200])
 {
-    const stance_scene *const scene = c->scenario.scene;
+    const stance_scene *const scene = c->scenario->scene;
     const stance_quantity *const q = &scene->coordinate[i];
     char name[200] = "", unit[60];
     struct plot_range range[2] = {PLOT_NOTHING, PLOT_NOTHING};
@@ -169,8 +169,8 @@ bool plot_phase(const struct plot_case *c)
         return true;
     if (!plot_case_begin(c, &g, "phase", NULL, "Angles against their rates"))
         return false;
-    for (int j = 0; j < c->scenario.scene->postures; j++)
-        put_phase(&g, c, c->scenario.scene->posture[j], legend);
+    for (int j = 0; j < c->scenario->scene->postures; j++)
+        put_phase(&g, c, c->scenario->scene->posture[j], legend);
     for (int k = 0; k < 3; k++)
         if (legend[k][0])
             gnuplot_legend(&g, gnuplot_hue((size_t)k), k == 1 ? 2 : 1, 0, legend[k], "");

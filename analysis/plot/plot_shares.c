@@ -75,89 +75,75 @@ static void choose_parameters(struct page *page)
     }
 }
 
-/* The curves, with the shares of the cases that are done: of each kind, or of the second axis's
- * values of stabilised cases, or where there are none of rested ones. */
-static void make_shares(struct page *page)
+/* A curve: of each value the share of the cases that are done; of a sample its interval, where
+ * there are starts the volume of the basin. Of a grid of other things the shares are left as they
+ * are. Share k is of a kind or, with a second axis, of its point k. */
+static bool make_share(struct page *page, size_t k, enum results_kind kind)
+{
+    const struct results *const r = page->r;
+    const int second = page->second;
+    const size_t values = page->values, stride = second < 0 ? 1 : r->axis[second].count;
+    stance_message *const message = page->g.plot->message;
+    const char *by[] = {r->axis[page->first].name, second < 0 ? NULL : r->axis[second].name};
+    const struct basin_choice choice = {
+        .of = kind, .by = by, .by_count = second < 0 ? 1 : 2, .side = 5, .level = 0.95};
+    struct interval *const interval = gnuplot_room(&page->g, values, sizeof *interval);
+    struct share *const share = &page->share[k];
+    struct basin_sample sample;
+    struct basin basin;
+    bool usage = false;
+    *share = (struct share){gnuplot_room(&page->g, values, sizeof *share->part), kind};
+    if (!interval || !share->part)
+        return no_memory(message);
+    for (size_t i = 0; i < values; i++) {
+        const struct statistics_counts *const c = &page->counts[second < 0 ? i : i * stride + k];
+        double *const part = share->part[i];
+        part[SHARE] = part[LOW] = part[HIGH] =
+            c->done > 0 ? (double)c->kind[kind] / (double)c->done : NAN;
+        part[LOWEST] = part[HIGHEST] = NAN;
+    }
+    if (!basin_sample_make(&sample, r, message))
+        return false;
+    if (!basin_make(&basin, r, &choice, &sample, &usage, message)) {
+        if (!usage || r->sample < 0 || second >= 0)
+            return usage;
+        if (!intervals_find(r, kind, page->first, NULL, values, interval))
+            return no_memory(message);
+        for (size_t i = 0; i < values; i++) {
+            share->part[i][LOW] = interval[i].low;
+            share->part[i][HIGH] = interval[i].high;
+        }
+        return page->measured = true;
+    }
+    page->bounded = basin.averaged < 0; /* over a sample of parameters nothing is certain */
+    for (size_t i = 0; i < values; i++) {
+        const struct basin_row *const row = /* in the order of the axes */
+            &basin.row[second < 0 || page->first < second ? i * stride + (second < 0 ? 0 : k)
+                                                          : k * values + i];
+        double *const part = share->part[i];
+        part[SHARE] = row->volume / basin.box;
+        part[LOW] = fmax(0, (row->volume - row->reach) / basin.box);
+        part[HIGH] = fmin(1, (row->volume + row->reach) / basin.box);
+        part[LOWEST] = page->bounded ? row->low / basin.box : NAN;
+        part[HIGHEST] = page->bounded ? row->high / basin.box : NAN;
+    }
+    basin_free(&basin);
+    return page->measured = true;
+}
+
+/* The curves: of each kind, or of the second axis's values of stabilised cases, or where there are
+ * none of rested ones. */
+static bool make_shares(struct page *page)
 {
     const bool pair = page->second >= 0;
     const size_t stride = pair ? page->r->axis[page->second].count : 1;
     enum results_kind kinds[2];
     const int found = choose_kinds(page->counts, page->values * stride, kinds);
-    const int count = pair ? (int)stride : found;
-    page->count = count;
-    for (int k = 0; k < count; k++) {
-        struct share *const share = &page->share[k];
-        share->kind = kinds[pair ? 0 : k];
-        share->part = gnuplot_room(&page->g, page->values, sizeof *share->part);
-        for (size_t i = 0; share->part && i < page->values; i++) {
-            const struct statistics_counts *const c =
-                &page->counts[pair ? i * stride + (size_t)k : i];
-            double *const part = share->part[i];
-            part[SHARE] = part[LOW] = part[HIGH] =
-                c->done > 0 ? (double)c->kind[share->kind] / (double)c->done : NAN;
-            part[LOWEST] = part[HIGHEST] = NAN;
-        }
-    }
-}
-
-/* The intervals of shares of a sample that has no basins. */
-static bool measure_sample(struct page *page, struct share *share)
-{
-    struct interval *const interval = gnuplot_room(&page->g, page->values, sizeof *interval);
-    if (!interval ||
-        !intervals_find(page->r, share->kind, page->first, NULL, page->values, interval))
-        return no_memory(page->g.plot->message);
-    for (size_t i = 0; i < page->values; i++) {
-        share->part[i][LOW] = interval[i].low;
-        share->part[i][HIGH] = interval[i].high;
-    }
-    return true;
-}
-
-/* The volumes of basins, where there are starts, and intervals of samples. Share k is of its own
- * kind or, with a second axis, of its point k. Of a grid of other things the shares are left as
- * they are. */
-static bool measure(struct page *page)
-{
-    const struct results *const r = page->r;
-    const int second = page->second;
-    stance_message *const message = page->g.plot->message;
-    const char *by[] = {r->axis[page->first].name, second < 0 ? NULL : r->axis[second].name};
-    for (size_t k = 0; k < (size_t)page->count; k++) {
-        struct share *const share = &page->share[k];
-        const struct basin_choice choice = {
-            .of = share->kind, .by = by, .by_count = second < 0 ? 1 : 2, .side = 5, .level = 0.95};
-        struct basin_sample sample;
-        struct basin basin;
-        bool usage = false;
-        if (!share->part || !basin_sample_make(&sample, r, message))
-            return false;
-        if (!basin_make(&basin, r, &choice, &sample, &usage, message)) {
-            if (!usage || r->sample < 0 || second >= 0)
-                return usage;
-            if (!measure_sample(page, share))
-                return false;
-            page->measured = true;
-            continue;
-        }
-        page->measured = true;
-        page->bounded = basin.averaged < 0; /* over a sample of parameters nothing is certain */
-        for (size_t i = 0; i < page->values; i++) {
-            /* rows are in the order of the axes */
-            const struct basin_row *const row =
-                &basin.row[second < 0             ? i
-                           : page->first < second ? i * r->axis[second].count + k
-                                                  : k * page->values + i];
-            double *const part = share->part[i];
-            part[SHARE] = row->volume / basin.box;
-            part[LOW] = fmax(0, (row->volume - row->reach) / basin.box);
-            part[HIGH] = fmin(1, (row->volume + row->reach) / basin.box);
-            part[LOWEST] = page->bounded ? row->low / basin.box : NAN;
-            part[HIGHEST] = page->bounded ? row->high / basin.box : NAN;
-        }
-        basin_free(&basin);
-    }
-    return true;
+    bool good = true;
+    page->count = pair ? (int)stride : found;
+    for (int k = 0; good && k < page->count; k++)
+        good = make_share(page, (size_t)k, kinds[pair ? 0 : k]);
+    return good;
 }
 
 /* The end of the axis in per cent: the highest end of a share of more than no case at all, of which
@@ -330,8 +316,7 @@ bool plot_shares(const struct plot *plot)
                      sizeof *page.counts);
     if (page.points && page.counts) {
         statistics_count_pair(r, page.first, page.second, page.counts);
-        make_shares(&page);
-        if (gnuplot_needs(&page.g, measure(&page)))
+        if (gnuplot_needs(&page.g, make_shares(&page)))
             put(&page);
     }
     return gnuplot_end(&page.g);

@@ -149,18 +149,14 @@ bool plot_strip(const struct plot_case *c)
     const int most = look->width > 0 && look->width < 760 / 16. * 25.4 / 72 * look->points ? 5 : 7;
     strip->c = c;
     make_strip(strip);
-    strip->contacts = figure_names(&g, c->scenario.scene);
-    for (int k = 0; k < strip->contacts; k++)
-        gnuplot_legend(&g, gnuplot_hue((size_t)k), 0, 0, c->scenario.scene->contact_name[k], "");
-    gnuplot_legend(&g, "0x303030", 0, 0, "body", "");
-    if (c->other)
-        gnuplot_legend(&g, "0xb8b8b8", 0, 0, "the second case", "");
+    strip->contacts = figure_colours(&g, c->scenario->scene);
+    figure_legend(&g, c);
     /* Figures fill the page, but a lonely one is not to fill a wall; under each is its time. */
     const int columns = strip->count < most ? strip->count : most;
     const double width = columns * strip->spacing, high = strip->height.high,
                  tall = high - strip->height.low, scale = fmin(1072 / width, 320 / tall),
                  low = strip->height.low - 30 / scale;
-    gnuplot_set(&g, "plain = 1; chart_width = %.10g; scaled = 1", scale * width);
+    gnuplot_set(&g, "plain = equal = legend_low = scaled = 1; chart_width = %.10g", scale * width);
     for (int first = 0; first < strip->count; first += columns) {
         const struct plot_range x = {first * strip->spacing, (first + columns) * strip->spacing};
         const bool barred = first == 0;

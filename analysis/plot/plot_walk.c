@@ -51,18 +51,12 @@ double walk_end(const struct plot_case *c)
     return isfinite(end) ? end : c->t->time[c->t->rows - 1];
 }
 
-/* Whether the run ended just after a footfall. */
-static bool ends_at_footfall(const struct plot_case *c, size_t footfalls)
-{
-    return c->values.footfalls > 0 && footfalls + 1 == (size_t)c->values.footfalls;
-}
-
 /* When another foot came down than the one before, as the engine counts them, the last ones; a
  * start with both feet on the ground is one, too. Returns how many. */
 size_t walk_footfalls(const struct plot_case *c, double time[WALK_FOOTFALLS])
 {
     const struct results_trajectory *const t = c->t;
-    const stance_scene *const scene = c->readable ? c->scenario.scene : NULL;
+    const stance_scene *const scene = c->scenario ? c->scenario->scene : NULL;
     size_t count = 0, made = 0;
     int foot = -1, stands = -1;
     bool both = false;
@@ -88,7 +82,8 @@ size_t walk_footfalls(const struct plot_case *c, double time[WALK_FOOTFALLS])
             }
             foot = own;
         }
-    if (count < WALK_FOOTFALLS && ends_at_footfall(c, made))
+    if (count < WALK_FOOTFALLS && c->values.footfalls > 0 &&
+        made + 1 == (size_t)c->values.footfalls)
         time[count++] = walk_end(c);
     return count;
 }
@@ -117,19 +112,11 @@ static const char metre[] = "metre(_) = panel_high[1]/(y1_high - y1_low)*(x_high
     "($2 - figure_fall*($4 - x_low)/metre(0))"
 #define FIGURE_PLACE FIGURE_PLACE_ALONE ":(" FIGURE_COLOUR ")"
 
-static void put_plane(struct case_page *page)
-{
-    gnuplot_series(&page->g,
-                   "using 1:(-figure_fall*($1 - x_low)/metre(0)) with lines lw 2 lc rgb 0xa0a0a0");
-    GNUPLOT_ROW(&page->g, page->time.low, 0);
-    GNUPLOT_ROW(&page->g, page->time.high, 0);
-}
-
 /* What is under the feet of each figure. */
 static void put_plates(struct case_page *page, const struct figure *figure)
 {
     static double point[PLOT_GROUND][2]; /* large, as the figures */
-    const int contacts = plot_case_grounded(page->c->scenario.scene);
+    const int contacts = plot_case_grounded(page->c->scenario->scene);
     gnuplot_series(&page->g, "using " FIGURE_PLACE_ALONE " with lines lw 2 lc rgb 0xa0a0a0");
     for (int i = 0; i <= STEPS * FIGURES; i++) {
         struct plot_range x = PLOT_NOTHING;
@@ -173,17 +160,21 @@ static void put_figures(struct case_page *page)
     gnuplot_set(g, "%s", metre);
     gnuplot_panel(g, 200, "");
     gnuplot_axis(g, 'y', PLOT_LINEAR, height, "height", "m");
-    const int contacts = figure_names(g, c->scenario.scene);
+    const int contacts = figure_colours(g, c->scenario->scene);
     gnuplot_series(g, "using 1:($2 > 0 ? y1_high : y1_low) with lines dt 3 lw 1 lc rgb 0x606060");
     for (size_t k = 0; k < page->marks; k++) {
         GNUPLOT_ROW(g, page->mark[k], 0);
         GNUPLOT_ROW(g, page->mark[k], 1);
         gnuplot_gap(g);
     }
-    if (c->floor)
+    if (c->floor) {
         put_plates(page, figure);
-    else
-        put_plane(page);
+    } else {
+        gnuplot_series(
+            g, "using 1:(-figure_fall*($1 - x_low)/metre(0)) with lines lw 2 lc rgb 0xa0a0a0");
+        GNUPLOT_ROW(g, page->time.low, 0);
+        GNUPLOT_ROW(g, page->time.high, 0);
+    }
     for (int part = FIGURE_SEGMENTS; part <= FIGURE_POINTS; part++) {
         gnuplot_series(g, "using " FIGURE_PLACE " with %s lc rgb variable",
                        part == FIGURE_SEGMENTS ? "lines lw 1.8" : "points pt 7 ps 0.45");
@@ -193,20 +184,17 @@ static void put_figures(struct case_page *page)
     }
 }
 
-/* Whether it still steps at its end, with instants enough in steps that take so long. */
-static bool still_walks(const struct plot_case *c, double last, double steps)
-{
-    const enum results_kind kind = c->plot->r->kind[c->plot->r->single ? 0 : c->t->index];
-    return (kind == RESULTS_WALKS || kind == RESULTS_UNDECIDED) && walk_end(c) - last < steps &&
-           steps > FIGURES * (c->t->time[1] - c->t->time[0]);
-}
-
 bool plot_steps(const struct plot_case *c, bool *drawn)
 {
     static double time[WALK_FOOTFALLS];
     const size_t count = c->other ? 0 : walk_footfalls(c, time);
     const double *const first = time + (count > STEPS ? count - STEPS - 1 : 0);
-    *drawn = count > STEPS && still_walks(c, first[STEPS], first[STEPS] - first[0]);
+    const double steps = count > STEPS ? first[STEPS] - first[0] : 0;
+    const enum results_kind kind = c->plot->r->kind[c->plot->r->single ? 0 : c->t->index];
+    /* It still steps at its end, with instants enough in steps that take so long. */
+    *drawn = count > STEPS && (kind == RESULTS_WALKS || kind == RESULTS_UNDECIDED) &&
+             walk_end(c) - first[STEPS] < steps &&
+             steps > FIGURES * (c->t->time[1] - c->t->time[0]);
     if (!*drawn)
         return true;
     struct case_page page = {.c = c, .mark = first, .marks = STEPS + 1};

@@ -10,7 +10,6 @@ extern const struct command command_sensitivity; /* below */
 
 struct request {
     struct report report;
-    struct option_texts by;
     struct look look;
     struct sensitivity_request asked;
     int failed; /* what they count as: its word */
@@ -50,8 +49,6 @@ static int run(int argc, char **argv)
         return code;
     const bool draws = look_given(&request.look);
     asked->fallen = request.failed > 0;
-    asked->by = request.by.text;
-    asked->by_count = request.by.count;
     if (draws && request.report.form != TABLE_AS_TEXT)
         return command_usage(&command_sensitivity, "pictures belong to the text: --json and --csv "
                                                    "print nothing else");
@@ -78,7 +75,7 @@ static const struct option options[] = {
      .text = "the response is the mean of the answer A (friction_used, settle_time ...)"},
     {"--of", "OUTCOME", TO(asked.of), .word = results_outcome_word,
      .text = "the share of, or the mean over, the cases with this outcome"},
-    {"--by", "PATH", TO(by), .most = SCENARIO_MAX_AXES,
+    {"--by", "PATH", TO(asked.by), .most = SCENARIO_MAX_AXES,
      .text = "a table for each value of this grid axis, the mean over all others; repeatable; "
              "none: a single table"},
     {"--failed", TO(failed), .word = failed_word,
@@ -97,7 +94,7 @@ static const struct option options[] = {
      .text = "a row for each table and factor: values of the axes kept apart, factor (its first "
              "path), estimate, _low and _high of each measure, response, failed_cases (the "
              "policy), blocks, mean, deviation (of the response)"},
-    {REPORT_JSON, .text = "the same as JSON, with the keys"},
+    {REPORT_JSON, .keys = sensitivity_keys, .text = "the same as JSON, with the keys"},
     {0},
 };
 
@@ -128,11 +125,5 @@ const struct command command_sensitivity = {
     "or the two effects that need it (morris) out with it. Where failed cases counted as fallen "
     "would take an estimate out of its interval a warning says so. Blocks with a case that is "
     "still pending wait; how many are complete is printed.\n",
-    "    file, title, method, count, block (points in one), response, answer, of, unit,\n"
-    "    over         grid axes that the response is a mean over\n"
-    "    failed_cases drop or fallen; level; resamples, seed: null for saltelli, morris\n"
-    "    tables       [{at: {path: value}, cases, failed, pending, blocks, used, incomplete, lost "
-    "(morris: lost_effects), mean, deviation, policies_differ, factors: [{path, paths, first, "
-    "total | mu, mu_star, sigma}], most important first, first_sum, pairs: [{paths, estimate, "
-    "low, high}]}]; a measure is {estimate, low, high}, null where it cannot be had\n",
+    NULL,
 };

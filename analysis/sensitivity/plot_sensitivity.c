@@ -66,9 +66,7 @@ static void say(struct drawing *d)
     const struct sensitivity_study *const study = d->study;
     const struct doe *design = study->design;
     char response[200];
-    uint64_t failed = 0;
-    for (size_t t = 0; t < study->response.tables; t++)
-        failed += study->response.table[t].failed;
+    const uint64_t failed = study->failed;
     sensitivity_response_text(study, response, sizeof response);
     gnuplot_say(&d->g, "What the %s depends on: %s with %g %% intervals, %llu %s.", response,
                 d->morris ? "Morris's elementary effects over the ranges" : "Sobol' indices",
@@ -207,7 +205,7 @@ static void put_axes(struct drawing *d)
 bool sensitivity_picture(const struct sensitivity_study *study, const struct plot *plot)
 {
     const char *const answer = study->request.answer;
-    const size_t tables = study->response.tables;
+    const size_t tables = study->tables;
     struct drawing d = {.study = study,
                         .morris = study->design->method == DOE_MORRIS,
                         .panels = tables < MOST_PANELS ? tables : MOST_PANELS};

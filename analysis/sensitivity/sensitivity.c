@@ -240,21 +240,30 @@ static void choose(const struct sensitivity_bootstrap *bootstrap, size_t resampl
     }
 }
 
-/* Index q < factors, or the sum of them, from the whole and from subsamples[n]. */
-static struct sensitivity_value value_of(const struct points *p, const double *share,
-                                         const double *chance, size_t first, size_t last,
-                                         double *line, const double *table, size_t n, double level)
+/* What bins say: a row of shares and chances for each subsample, and behind these of the whole. */
+struct binned {
+    const struct points *points;
+    size_t subsamples;
+    double *table; /* [subsamples + 1][2 factors] */
+    double *line;  /* [subsamples] */
+};
+
+/* The sum of the indices from `first` to before `last`. */
+static struct sensitivity_value value_of(const struct binned *binned, size_t first, size_t last,
+                                         double level)
 {
     struct sensitivity_value value = {0, NAN, NAN};
-    const size_t size = p->count / PART, k = p->factors;
-    double taken = 0;
+    const struct points *const p = binned->points;
+    const size_t size = p->count / PART, k = p->factors, n = binned->subsamples;
+    const double *const whole = binned->table + n * 2 * k;
+    double *const line = binned->line, taken = 0;
     struct moments m = {0, 0, 0};
     memset(line, 0, n * sizeof *line);
     for (size_t j = first; j < last; j++) {
-        value.estimate += share[j];
-        taken += chance[j];
+        value.estimate += whole[j];
+        taken += whole[k + j];
         for (size_t s = 0; s < n; s++)
-            line[s] += table[s * 2 * k + j] - table[s * 2 * k + k + j];
+            line[s] += binned->table[s * 2 * k + j] - binned->table[s * 2 * k + k + j];
     }
     const double corrected = value.estimate - taken;
     value.estimate = isfinite(corrected) ? p->even ? value.estimate : corrected : NAN;
@@ -281,9 +290,11 @@ static bool estimate_given(const struct points *p, const struct sensitivity_boot
                            struct sensitivity_value *value)
 {
     const size_t k = p->factors, n = bootstrap->resamples;
-    double *table = malloc((n + 1) * 2 * k * sizeof *table), *line = malloc(n * sizeof *line);
-    uint32_t *deck = malloc((p->count + 1) * sizeof *deck);
-    bool *chosen = malloc(p->count + 1);
+    double *const table = malloc((n + 1) * 2 * k * sizeof *table), *const line =
+                                                                       malloc(n * sizeof *line);
+    uint32_t *const deck = malloc((p->count + 1) * sizeof *deck);
+    bool *const chosen = malloc(p->count + 1);
+    const struct binned binned = {p, n, table, line};
     const bool good = table && line && deck && chosen;
     for (size_t i = 0; good && i < p->count; i++)
         deck[i] = (uint32_t)i;
@@ -291,14 +302,10 @@ static bool estimate_given(const struct points *p, const struct sensitivity_boot
         choose(bootstrap, s, p->count / PART, p->count, deck, chosen);
         bin_all(p, chosen, table + s * 2 * k);
     }
-    if (good) {
-        double *whole = table + n * 2 * k;
-        bin_all(p, NULL, whole);
-        for (size_t q = 0; q <= k; q++) {
-            value[q] = value_of(p, whole, whole + k, q < k ? q : 0, q < k ? q + 1 : k, line, table,
-                                n, bootstrap->level);
-        }
-    }
+    if (good)
+        bin_all(p, NULL, table + n * 2 * k);
+    for (size_t q = 0; good && q <= k; q++)
+        value[q] = value_of(&binned, q < k ? q : 0, q < k ? q + 1 : k, bootstrap->level);
     free(table);
     free(line);
     free(deck);

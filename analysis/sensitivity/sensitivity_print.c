@@ -54,13 +54,13 @@ static void add_factors(struct table *t, const struct sensitivity_study *study,
     int kept[SCENARIO_MAX_AXES], count = 0;
     char name[128], response[200];
     for (int a = 0; a < study->r->axes; a++)
-        if (study->response.kept[a])
+        if (study->kept[a])
             kept[count++] = a;
     sensitivity_response_text(study, response, sizeof response);
     for (size_t i = 0; i < study->factors; i++) {
         const size_t j = study->order[i];
         if (form == TABLE_AS_CSV)
-            table_axes(t, study->r, kept, count, table->response->point);
+            table_axes(t, study->r, kept, count, table->point);
         sensitivity_factor_text(study, j, name, sizeof name);
         json_t *paths = json_array();
         const char *path;
@@ -142,13 +142,22 @@ static void add_moved(const struct sensitivity_study *study, const struct sensit
     say_add(facts, ".moved", isfinite(estimate) ? "%.4f" : "nothing", estimate);
 }
 
+/* What is told of a table before its factors. */
+#define TABLE(X)                                                                                   \
+    X("at", "{path: value}", as_tree(table_at(study->r, study->kept, table->point)))               \
+    X("cases", "", as_whole(table->cases))                                                         \
+    X("failed", "", as_whole(table->failed))                                                       \
+    X("pending", "", as_whole(table->pending))                                                     \
+    X("blocks", "", as_whole(study->blocks))                                                       \
+    X("used", "", as_whole(s->blocks))                                                             \
+    X("incomplete", "", as_whole(table->waiting))
+
 static json_t *table_facts_of(const struct sensitivity_study *study, size_t k)
 {
     const struct sensitivity_table *const table = &study->table[k];
     const struct sensitivity *const s = &table->s;
-    const struct response_table *const response = table->response;
     const bool morris = is_morris(study), shown = s->blocks > 1 && s->deviation > 0;
-    const size_t all = table->blocks * (morris ? study->factors : 1),
+    const size_t all = study->blocks * (morris ? study->factors : 1),
                  /* with fewer a mean is not yet normal: measured, see tests/test_sensitivity.c */
         least = is_sobol(study) ? 128
                 : morris        ? 10
@@ -157,14 +166,10 @@ static json_t *table_facts_of(const struct sensitivity_study *study, size_t k)
     char at[400];
     sensitivity_table_text(study, k, at, sizeof at);
     json_t *const facts = TABLE_OBJECT(
-        {"at", as_tree(table_at(study->r, study->response.kept, response->point))},
-        {".at", as_text(at)}, {"cases", as_whole(response->cases)},
-        {"failed", as_whole(response->failed)}, {"pending", as_whole(response->pending)},
-        {"blocks", as_whole(table->blocks)}, {"used", as_whole(s->blocks)},
-        {".used", as_text(block_word(study, s->blocks))}, {"incomplete", as_whole(table->waiting)},
-        {morris ? "lost_effects" : "lost", as_whole(table->lost)}, {".lost", as_whole(table->lost)},
+        TABLE(TABLE_MEMBER){morris ? "lost_effects" : "lost", as_whole(table->lost)},
+        {"mean", as_number(s->mean)}, {"deviation", as_number(s->deviation)}, {".at", as_text(at)},
+        {".used", as_text(block_word(study, s->blocks))}, {".lost", as_whole(table->lost)},
         {".what", as_text(morris ? "effects" : block_word(study, table->lost))},
-        {"mean", as_number(s->mean)}, {"deviation", as_number(s->deviation)},
         {".varies", as_truth(isfinite(s->deviation))},
         {".unfair", as_truth(10 * table->lost > all)}, {".same", as_truth(s->deviation == 0)},
         {".least", s->blocks < least ? as_whole(least) : as_nothing(NULL)});
@@ -179,6 +184,41 @@ static json_t *table_facts_of(const struct sensitivity_study *study, size_t k)
     return facts;
 }
 
+/* What is told of all of them, of study_facts. */
+#define STUDY(X)                                                                                   \
+    X("file", "", as_text(r->file))                                                                \
+    X("title", "", as_text(r->title))                                                              \
+    X("method", "", as_text(doe_words[study->design->method]))                                     \
+    X("count", "", as_whole(study->design->count))                                                 \
+    X("block", "points in one", as_whole(study->block))                                            \
+    X("response", "", as_text(text))                                                               \
+    X("answer", "", as_text(request->answer))                                                      \
+    X("of", "",                                                                                    \
+      as_text(request->of == RESULTS_KIND_COUNT ? NULL : results_kind_names[request->of]))         \
+    X("unit", "", as_text(request->unit))                                                          \
+    X("over", "grid axes that the response is a mean over", as_tree(over))                         \
+    X("failed_cases", "drop or fallen", as_text(policy_word(study)))                               \
+    X("level", "", as_number(request->bootstrap.level))                                            \
+    X("resamples", "", drawn ? as_whole(request->bootstrap.resamples) : as_nothing(NULL))          \
+    X("seed", "these two are null for saltelli, morris",                                           \
+      drawn ? as_whole(request->bootstrap.seed) : as_nothing(NULL))
+
+static const struct say_key table_keys[] = {
+    TABLE(TABLE_KEY){"lost", "morris: lost_effects", NULL},
+    {"mean", "", NULL},
+    {"deviation", "", NULL},
+    {"policies_differ", "", NULL},
+    {"factors", "[{path, paths, first, total | mu, mu_star, sigma}], most important first", NULL},
+    {"first_sum", "", NULL},
+    {"pairs", "[{paths, estimate, low, high}]", NULL},
+    {0},
+};
+const struct say_key sensitivity_keys[] = {
+    STUDY(TABLE_KEY){"tables", "a measure is {estimate, low, high}, null where it cannot be had",
+                     table_keys},
+    {0},
+};
+
 static json_t *study_facts(const struct sensitivity_study *study)
 {
     const struct sensitivity_request *const request = &study->request;
@@ -186,31 +226,21 @@ static json_t *study_facts(const struct sensitivity_study *study)
     const bool drawn = !is_sobol(study) && !is_morris(study); /* intervals of these draw nothing */
     json_t *const tables = json_array(), *const over = json_array();
     char text[200];
-    uint64_t failed = 0, cases = 1;
-    for (size_t k = 0; k < study->response.tables; k++) {
+    uint64_t cases = 1;
+    for (size_t k = 0; k < study->tables; k++)
         json_array_append_new(tables, table_facts_of(study, k));
-        failed += study->response.table[k].failed;
-    }
     for (int a = 0; a < r->sample; a++) {
-        if (!study->response.kept[a]) {
+        if (!study->kept[a]) {
             table_append(over, as_text(r->axis[a].name));
             cases *= r->axis[a].count;
         }
     }
     sensitivity_response_text(study, text, sizeof text);
     return TABLE_OBJECT(
-        {"file", as_text(r->file)}, {"title", as_text(r->title)},
-        {".name", as_text(r->title[0] ? r->title : r->name)},
-        {"method", as_text(doe_words[study->design->method])},
-        {".factors_count", as_whole(study->factors)}, {"count", as_whole(study->design->count)},
-        {".blocks", as_text(block_word(study, 0))}, {"block", as_whole(study->block)},
-        {"response", as_text(text)}, {"answer", as_text(request->answer)},
-        {"of", as_text(request->of == RESULTS_KIND_COUNT ? NULL : results_kind_names[request->of])},
-        {"unit", as_text(request->unit)}, {"over", as_tree(over)}, {".cases", as_whole(cases)},
-        {"failed_cases", as_text(policy_word(study))}, {".failed", as_whole(failed)},
-        {".total", as_whole(r->cases)}, {"level", as_number(request->bootstrap.level)},
-        {"resamples", drawn ? as_whole(request->bootstrap.resamples) : as_nothing(NULL)},
-        {"seed", drawn ? as_whole(request->bootstrap.seed) : as_nothing(NULL)},
+        STUDY(TABLE_MEMBER){".name", as_text(r->title[0] ? r->title : r->name)},
+        {".factors_count", as_whole(study->factors)}, {".blocks", as_text(block_word(study, 0))},
+        {".cases", as_whole(cases)}, {".failed", as_whole(study->failed)},
+        {".total", as_whole(r->cases)},
         {".replicates", is_sobol(study) ? as_whole(DOE_REPLICATES) : as_nothing(NULL)},
         {".conservative", as_truth(study->design->method == DOE_SOBOL)},
         {"tables", as_tree(tables)});
@@ -247,7 +277,7 @@ static const char text[] =
 bool sensitivity_print(const struct sensitivity_study *study, enum table_form form)
 {
     struct table csv = {0};
-    for (size_t k = 0; form == TABLE_AS_CSV && k < study->response.tables; k++)
+    for (size_t k = 0; form == TABLE_AS_CSV && k < study->tables; k++)
         add_factors(&csv, study, &study->table[k], form);
     return table_say(form, form == TABLE_AS_CSV ? NULL : study_facts(study), text, &csv);
 }

@@ -15,8 +15,8 @@
 
 const char *sensitivity_factor_path(const struct sensitivity_study *study, size_t factor, int k)
 {
-    const struct scenario_factor *f = &study->scenario->sample.factor[factor];
-    const struct scenario_axis *axis = &study->scenario->axis[study->scenario->axes - 1];
+    const struct scenario_factor *f = &study->r->read->sample.factor[factor];
+    const struct scenario_axis *axis = &study->r->read->axis[study->r->sample];
     return k < f->paths ? axis->path[f->first + k] : NULL;
 }
 
@@ -24,7 +24,7 @@ void sensitivity_factor_text(const struct sensitivity_study *study, size_t facto
                              size_t size)
 {
     enum { NAMED = 3 }; /* most paths that are named */
-    const int paths = study->scenario->sample.factor[factor].paths;
+    const int paths = study->r->read->sample.factor[factor].paths;
     const char *before = sensitivity_factor_path(study, factor, 0);
     snprintf(text, size, "%s", before ? before : "");
     for (int k = 1; k < paths; k++) {
@@ -55,7 +55,7 @@ void sensitivity_response_text(const struct sensitivity_study *study, char *text
 void sensitivity_table_text(const struct sensitivity_study *study, size_t table, char *text,
                             size_t size)
 {
-    table_at_text(study->r, study->response.kept, study->response.table[table].point, text, size);
+    table_at_text(study->r, study->kept, study->table[table].point, text, size);
 }
 
 /* ---- what is asked ------------------------------------------------------------------------ */
@@ -67,29 +67,31 @@ static int refuse(stance_message *message, const struct results *r, const char *
 }
 
 /* Which grid axes are kept apart. */
-static int choose_axes(const struct results *r, const struct sensitivity_request *request,
-                       bool *kept, stance_message *message)
+static int choose_axes(struct sensitivity_study *study, stance_message *message)
 {
+    const struct results *const r = study->r;
+    const struct option_texts *const by = &study->request.by;
     const int grid = r->sample;
-    for (int a = 0; a < grid; a++)
-        kept[a] = request->by_count == 0 && strncmp(r->axis[a].name, "initial.", 8) != 0;
-    for (size_t b = 0; b < request->by_count; b++) {
-        const char *names[SCENARIO_MAX_AXES];
+    const char *names[SCENARIO_MAX_AXES];
+    for (int a = 0; a < grid; a++) {
+        names[a] = r->axis[a].name;
+        study->kept[a] = by->count == 0 && strncmp(names[a], "initial.", 8) != 0;
+    }
+    for (size_t b = 0; b < by->count; b++) {
+        const char *const name = by->text[b];
         int a = 0;
-        if (strcmp(request->by[b], "none") == 0 && request->by_count == 1)
+        if (strcmp(name, "none") == 0 && by->count == 1)
             continue;
-        while (a < grid && strcmp(r->axis[a].name, request->by[b]) != 0) {
-            names[a] = r->axis[a].name;
+        while (a < grid && strcmp(names[a], name) != 0)
             a++;
-        }
         if (a == grid) {
-            const char *near = nearest_word(request->by[b], names, (size_t)grid);
+            const char *const near = nearest_word(name, names, (size_t)grid);
             complain(message, "stance sensitivity: --by %.50s: not a grid axis of %.50s%s%.50s%s",
-                     request->by[b], r->file, near ? "; did you mean '" : "", near ? near : "",
+                     name, r->file, near ? "; did you mean '" : "", near ? near : "",
                      near ? "'?" : "");
             return EXIT_USAGE;
         }
-        kept[a] = true;
+        study->kept[a] = true;
     }
     return EXIT_DONE;
 }
@@ -114,7 +116,6 @@ static int read_design(struct sensitivity_study *study, stance_message *message)
         complain(message, "%.150s: its scenario cannot be read by this version", r->file);
         return EXIT_IO;
     }
-    study->scenario = s;
     study->design = &s->sample.design;
     if (!s->sample.given || s->axes != r->axes ||
         doe_points(study->design) != r->axis[r->sample].count) {
@@ -130,7 +131,9 @@ static int read_design(struct sensitivity_study *study, stance_message *message)
         return refuse(message, r,
                       "samples directions (method sphere), which have no factors of their own");
     }
+    study->points = r->axis[r->sample].count;
     study->block = (size_t)doe_block(study->design);
+    study->blocks = study->points / study->block;
     study->factors = study->design->factors;
     return EXIT_DONE;
 }
@@ -141,16 +144,16 @@ static int read_design(struct sensitivity_study *study, stance_message *message)
  * means the same value. Freed by the caller; NULL: no memory. */
 static double *make_points(const struct sensitivity_study *study)
 {
-    const struct scenario_axis *axis = &study->scenario->axis[study->scenario->axes - 1];
+    const struct scenario_axis *axis = &study->r->read->axis[study->r->sample];
     struct doe design = *study->design;
-    const size_t k = study->factors, points = study->response.points;
+    const size_t k = study->factors, points = study->points;
     double *u = malloc(points * k * sizeof *u);
     const bool good = doe_begin(&design) && u;
 
     for (size_t i = 0; good && i < points; i++)
         doe_unit(&design, i, u + i * k);
     for (size_t j = 0; good && design.method != DOE_MORRIS && j < k; j++) {
-        const struct scenario_factor *f = &study->scenario->sample.factor[j];
+        const struct scenario_factor *f = &study->r->read->sample.factor[j];
         double parts = f->listed ? (double)f->points : 0;
         bool whole = true; /* it takes whole numbers only */
         for (int p = 0; p < f->paths; p++)
@@ -168,13 +171,135 @@ static double *make_points(const struct sensitivity_study *study)
     return u;
 }
 
+/* ---- responses ---------------------------------------------------------------------------- */
+
+static int lacks_memory(const struct results *r, stance_message *message)
+{
+    statistics_no_memory(r, message);
+    return EXIT_IO;
+}
+
+/* The table of the cases at a grid point. */
+static size_t table_at_point(const struct sensitivity_study *study, const size_t *point)
+{
+    size_t t = 0;
+    for (int a = 0; a < study->r->sample; a++)
+        t = study->kept[a] ? t * study->r->axis[a].count + point[a] : t;
+    return t;
+}
+
+/* The tables, and what became of their cases. */
+static bool count_cases(struct sensitivity_study *study)
+{
+    const struct results *const r = study->r;
+    study->tables = 1;
+    for (int a = 0; a < r->axes; a++)
+        study->tables *= study->kept[a] ? r->axis[a].count : 1;
+    study->table = calloc(study->tables, sizeof *study->table);
+    study->waits = calloc(study->tables * study->blocks, sizeof *study->waits);
+    for (uint64_t i = 0; study->table && study->waits && i < r->cases; i += study->points) {
+        size_t point[SCENARIO_MAX_AXES];
+        results_point(r, i, point);
+        const size_t t = table_at_point(study, point);
+        struct sensitivity_table *const table = &study->table[t];
+        for (int a = 0; a < r->axes; a++)
+            table->point[a] = study->kept[a] ? point[a] : 0;
+        table->cases += study->points;
+        for (size_t p = 0; p < study->points; p++) {
+            const bool pending = r->kind[i + p] == RESULTS_PENDING;
+            bool *const waits = &study->waits[t * study->blocks + p / study->block];
+            table->failed += r->kind[i + p] == RESULTS_FAILED;
+            table->pending += pending;
+            table->waiting += pending && !*waits;
+            *waits |= pending;
+        }
+    }
+    for (size_t t = 0; study->table && t < study->tables; t++)
+        study->failed += study->table[t].failed;
+    return study->table && study->waits;
+}
+
+/* The answers, NAN where a refined map has not simulated a case; NULL without one. Returns an exit
+ * code. */
+static int read_answers(const struct sensitivity_study *study, double **answers,
+                        stance_message *message)
+{
+    const struct results *const r = study->r;
+    const char *const name = study->request.answer;
+    uint64_t inferred;
+    bool *which = NULL;
+    *answers = NULL;
+    if (study->request.of != RESULTS_KIND_COUNT && memchr(r->kind, RESULTS_DONE, r->cases)) {
+        complain(message, "%.200s: does not store outcomes", r->file);
+        return EXIT_USAGE;
+    }
+    if (!name)
+        return EXIT_DONE;
+    int code = statistics_inferred(r, &inferred, &which, message) &&
+                       results_answer(r, name, answers, message)
+                   ? EXIT_DONE
+                   : EXIT_IO;
+    if (code == EXIT_DONE && !*answers) {
+        complain(message, "%.150s: does not store %.60s", r->file, name);
+        code = EXIT_USAGE;
+    }
+    for (uint64_t i = 0; code == EXIT_DONE && which && i < r->cases; i++)
+        (*answers)[i] = which[i] ? NAN : (*answers)[i];
+    free(which);
+    return code;
+}
+
+/* What a case adds to the mean of its point; NAN: nothing. */
+static double value_of(const struct sensitivity_request *request, bool fallen,
+                       enum results_kind kind, double answer)
+{
+    if (fallen && kind == RESULTS_FAILED)
+        kind = RESULTS_FELL;
+    if (kind == RESULTS_FAILED || kind == RESULTS_PENDING)
+        return NAN;
+    if (!request->answer)
+        return kind == request->of;
+    return request->of == RESULTS_KIND_COUNT || kind == request->of ? answer : NAN;
+}
+
+/* y[tables][points], with failed cases left out or `fallen`; NAN where a point is missing or its
+ * block waits. Freed by the caller; NULL: no memory. */
+static double *take_means(const struct sensitivity_study *study, const double *answers, bool fallen)
+{
+    const struct results *const r = study->r;
+    const size_t points = study->points, all = study->tables * points;
+    double *y = calloc(all, sizeof *y);
+    uint32_t *const numbers = calloc(all, sizeof *numbers);
+    for (uint64_t i = 0; y && numbers && i < r->cases; i += points) {
+        size_t point[SCENARIO_MAX_AXES];
+        results_point(r, i, point);
+        const size_t first = table_at_point(study, point) * points;
+        for (size_t p = 0; p < points; p++) {
+            const double value =
+                value_of(&study->request, fallen, (enum results_kind)r->kind[i + p],
+                         answers ? answers[i + p] : NAN);
+            if (isfinite(value)) /* a mean as it comes, which does not overflow or cancel */
+                y[first + p] += (value - y[first + p]) / ++numbers[first + p];
+        }
+    }
+    for (size_t k = 0; y && numbers && k < all; k++) /* blocks and tables have whole points */
+        if (numbers[k] == 0 || study->waits[k / study->block])
+            y[k] = NAN;
+    if (!numbers) {
+        free(y);
+        y = NULL;
+    }
+    free(numbers);
+    return y;
+}
+
 /* ---- tables ------------------------------------------------------------------------------- */
 
 static bool analyse(const struct sensitivity_study *study, const double *y, const double *u,
                     const struct sensitivity_bootstrap *bootstrap, struct sensitivity *s)
 {
     const struct doe *d = study->design;
-    const size_t blocks = study->response.points / study->block, k = study->factors;
+    const size_t blocks = study->blocks, k = study->factors;
     switch (d->method) {
     case DOE_SALTELLI:
         return sensitivity_sobol(s, y, blocks, k, d->second_order, bootstrap->level);
@@ -208,96 +333,59 @@ static void compare(struct sensitivity_table *table, const struct sensitivity *o
     }
 }
 
-/* Blocks with a pending case wait as a whole. */
-static void drop_waiting(const struct sensitivity_study *study, struct response_table *response)
-{
-    for (size_t i = 0; i < study->response.points; i += study->block) {
-        bool waits = false;
-        for (size_t j = i; j < i + study->block; j++)
-            waits = waits || response->waiting[j];
-        for (size_t j = i; waits && j < i + study->block; j++)
-            response->y[j] = NAN;
-    }
-}
-
-static void count_blocks(const struct sensitivity_study *study, struct sensitivity_table *table)
+/* What failed cases took out. */
+static size_t count_lost(const struct sensitivity_study *study, size_t t, const double *y)
 {
     const size_t block = study->block;
-    const struct response_table *response = table->response;
-    const bool morris = study->design->method == DOE_MORRIS;
-    table->blocks = study->response.points / block;
-    for (size_t b = 0; b < table->blocks; b++) {
-        bool waits = false, misses = false;
+    size_t lost = 0;
+    for (size_t b = 0; b < study->blocks; b++, y += block) {
+        bool misses = isnan(y[0]);
         size_t effects = 0;
-        for (size_t i = b * block; i < (b + 1) * block; i++) {
-            waits = waits || response->waiting[i];
-            misses = misses || isnan(response->y[i]);
-            effects += i > b * block && (isnan(response->y[i]) || isnan(response->y[i - 1]));
+        for (size_t i = 1; i < block; i++) {
+            misses = misses || isnan(y[i]);
+            effects += isnan(y[i]) || isnan(y[i - 1]);
         }
-        table->waiting += waits;
-        table->lost += waits ? 0 : morris ? effects : misses;
+        if (!study->waits[t * study->blocks + b])
+            lost += study->design->method == DOE_MORRIS ? effects : misses;
     }
+    return lost;
 }
 
-static int lacks_memory(const struct results *r, stance_message *message)
+/* The indices of all tables; where cases failed also what they would be counted the other way, of
+ * which only the estimates are wanted. */
+static bool make_tables(struct sensitivity_study *study, const double *answers)
 {
-    statistics_no_memory(r, message);
-    return EXIT_IO;
-}
-
-/* The same with failed cases counted the other way; only the estimates are wanted. */
-static int make_others(struct sensitivity_study *study, const double *u, stance_message *message)
-{
-    const struct response_choice choice = {NULL, study->request.of, !study->request.fallen};
-    const struct sensitivity_bootstrap least = {2, study->request.bootstrap.level, 0};
-    struct response other;
-    int code = response_make(&other, study->r, &choice, study->response.kept, message);
-    if (code != EXIT_DONE)
-        return code;
-    for (size_t t = 0; code == EXIT_DONE && t < other.tables; t++) {
-        struct sensitivity s;
-        if (study->table[t].response->failed == 0)
-            continue;
-        drop_waiting(study, &other.table[t]);
-        if (analyse(study, other.table[t].y, u, &least, &s)) {
-            compare(&study->table[t], &s);
-            sensitivity_free(&s);
-        } else {
-            code = lacks_memory(study->r, message);
-        }
-    }
-    response_free(&other);
-    return code;
-}
-
-static int make_tables(struct sensitivity_study *study, stance_message *message)
-{
-    const size_t tables = study->response.tables;
-    uint64_t failed = 0;
+    const struct sensitivity_request *const request = &study->request;
+    const struct sensitivity_bootstrap least = {2, request->bootstrap.level, 0};
     const bool blind = study->design->method == DOE_SALTELLI; /* where its points are, is known */
-    double *u = blind ? NULL : make_points(study);
-    study->table = calloc(tables, sizeof *study->table);
-    int code = (u || blind) && study->table ? EXIT_DONE : lacks_memory(study->r, message);
-
-    for (size_t t = 0; code == EXIT_DONE && t < tables; t++) {
-        struct sensitivity_table *table = &study->table[t];
-        table->response = &study->response.table[t];
-        failed += table->response->failed;
-        drop_waiting(study, &study->response.table[t]);
-        count_blocks(study, table);
-        if (!analyse(study, table->response->y, u, &study->request.bootstrap, &table->s))
-            code = lacks_memory(study->r, message);
+    const bool both = study->failed > 0 && !request->answer;
+    double *const u = blind ? NULL : make_points(study);
+    double *const y = take_means(study, answers, request->fallen);
+    double *const other = both ? take_means(study, answers, !request->fallen) : NULL;
+    bool good = (u || blind) && y && (other || !both);
+    for (size_t t = 0; good && t < study->tables; t++) {
+        struct sensitivity_table *const table = &study->table[t];
+        struct sensitivity s;
+        table->lost = count_lost(study, t, y + t * study->points);
+        good = analyse(study, y + t * study->points, u, &request->bootstrap, &table->s);
+        if (!good || !both || table->failed == 0)
+            continue;
+        good = analyse(study, other + t * study->points, u, &least, &s);
+        if (good) {
+            compare(table, &s);
+            sensitivity_free(&s);
+        }
     }
-    if (code == EXIT_DONE && failed > 0 && !study->request.answer)
-        code = make_others(study, u, message);
     free(u);
-    return code;
+    free(y);
+    free(other);
+    return good;
 }
 
 /* By the mean over the tables of what a table is ordered by. */
 static bool make_order(struct sensitivity_study *study)
 {
-    const size_t k = study->factors, tables = study->response.tables;
+    const size_t k = study->factors, tables = study->tables;
     double *weight = calloc(k, sizeof *weight);
     study->order = calloc(k, sizeof *study->order);
     const bool good = weight && study->order;
@@ -325,21 +413,19 @@ static bool make_order(struct sensitivity_study *study)
 int sensitivity_study_make(struct sensitivity_study *study, const struct results *r,
                            const struct sensitivity_request *request, stance_message *message)
 {
-    bool kept[SCENARIO_MAX_AXES] = {false};
+    double *answers = NULL;
     *study = (struct sensitivity_study){.r = r, .request = *request};
     int code = read_design(study, message);
     if (code == EXIT_DONE)
-        code = choose_axes(r, request, kept, message);
-    if (code == EXIT_DONE) {
-        if (request->of == RESULTS_KIND_COUNT && !request->answer)
-            study->request.of = summary_judged(study->scenario);
-        const struct response_choice choice = {request->answer, study->request.of, request->fallen};
-        code = response_make(&study->response, r, &choice, kept, message);
-    }
+        code = choose_axes(study, message);
+    if (code == EXIT_DONE && request->of == RESULTS_KIND_COUNT && !request->answer)
+        study->request.of = summary_judged(r);
     if (code == EXIT_DONE)
-        code = make_tables(study, message);
-    if (code == EXIT_DONE && !make_order(study))
+        code = read_answers(study, &answers, message);
+    if (code == EXIT_DONE &&
+        !(count_cases(study) && make_tables(study, answers) && make_order(study)))
         code = lacks_memory(r, message);
+    free(answers);
     if (code != EXIT_DONE)
         sensitivity_study_free(study);
     return code;
@@ -347,10 +433,10 @@ int sensitivity_study_make(struct sensitivity_study *study, const struct results
 
 void sensitivity_study_free(struct sensitivity_study *study)
 {
-    for (size_t t = 0; study->table && t < study->response.tables; t++)
+    for (size_t t = 0; study->table && t < study->tables; t++)
         sensitivity_free(&study->table[t].s);
     free(study->table);
+    free(study->waits);
     free(study->order);
-    response_free(&study->response);
     *study = (struct sensitivity_study){0};
 }

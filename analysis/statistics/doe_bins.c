@@ -3,20 +3,6 @@
 
 #include <stdlib.h>
 
-static bool find_intervals(struct doe_bins *bins, const struct results *r, const uint32_t *part)
-{
-    struct interval interval[SAMPLE_BINS];
-    bool good = true;
-    for (int kind = 0; good && kind < RESULTS_KIND_COUNT; kind++) {
-        if (kind == RESULTS_PENDING || kind == RESULTS_FAILED)
-            continue;
-        good = intervals_find(r, (enum results_kind)kind, -1, part, bins->count, interval);
-        for (size_t b = 0; good && b < bins->count; b++)
-            bins->bin[b].of_kind[kind] = interval[b];
-    }
-    return good;
-}
-
 bool doe_bins_make(struct doe_bins *bins, const struct results *r, int k, size_t most,
                    stance_message *message)
 {
@@ -61,7 +47,12 @@ bool doe_bins_make(struct doe_bins *bins, const struct results *r, int k, size_t
         }
         begin = end;
     }
-    good = good && find_intervals(bins, r, part);
+    for (int kind = 0; good && kind < RESULTS_OUTCOMES; kind++) {
+        struct interval interval[SAMPLE_BINS];
+        good = intervals_find(r, (enum results_kind)kind, -1, part, bins->count, interval);
+        for (size_t b = 0; good && b < bins->count; b++)
+            bins->bin[b].of_kind[kind] = interval[b];
+    }
     free(place);
     free(counts);
     free(part);

@@ -97,11 +97,8 @@ static bool collect(struct summary *summary, struct table *csv)
 static int summarise(struct report *report, const struct results *r, stance_message *message)
 {
     struct table csv = {0};
-    struct summary summary = {.r = r,
-                              .s = r->read,
-                              .judged = r->read ? summary_judged(r->read) : RESULTS_STABILISED,
-                              .facts = json_object(),
-                              .message = message};
+    struct summary summary = {
+        .r = r, .judged = summary_judged(r), .facts = json_object(), .message = message};
     statistics_count(r, -1, 0, &summary.counts);
     summary.known =
         summary.counts.done == 0 || summary.counts.kind[RESULTS_DONE] < summary.counts.done;

@@ -4,8 +4,9 @@
 #include "analysis/statistics/faces.h"
 #include "analysis/statistics/statistics.h"
 #include "runner/plan/ground_line.h"
-#include "runner/store/results_rows.h"
+#include "runner/store/results.h"
 
+#include <ctype.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,13 +14,13 @@
 #define THROUGH 1e-9 /* m: less is rounding of what lies on the ground */
 #define TOUCHES 1e-9 /* m, rad */
 
-enum results_kind summary_judged(const struct scenario *s)
+enum results_kind summary_judged(const struct results *r)
 {
-    return s->base.walk_steps > 0 ? RESULTS_WALKS
-           : scenario_law(&s->base)->designed ||
-                   (scenario_law(&s->base)->program && !s->base.state_given)
-               ? RESULTS_STABILISED
-               : RESULTS_RESTED;
+    const struct scenario_values *const base = r->read ? &r->read->base : NULL;
+    const stance_law *const law = base ? scenario_law(base) : NULL;
+    return base && base->walk_steps > 0                                    ? RESULTS_WALKS
+           : !law || law->designed || (law->program && !base->state_given) ? RESULTS_STABILISED
+                                                                           : RESULTS_RESTED;
 }
 
 double summary_share(const struct summary *summary, const struct statistics_counts *counts)
@@ -28,14 +29,6 @@ double summary_share(const struct summary *summary, const struct statistics_coun
 }
 
 /* ---- the file ----------------------------------------------------------------------------- */
-
-static json_t *axis_facts(const struct results_axis *axis)
-{
-    return TABLE_OBJECT(
-        {"path", as_text(axis->name)}, {"unit", as_text(axis->unit[0] ? axis->unit : NULL)},
-        {"long_name", as_text(axis->text[0] ? axis->text : NULL)}, {"count", as_whole(axis->count)},
-        {"first", as_place(axis, 0)}, {"last", as_place(axis, axis->count - 1)});
-}
 
 /* What a sample varies: its least value and its largest. */
 static json_t *varied_facts(const struct results_varied *v)
@@ -60,7 +53,12 @@ static json_t *axes_facts(const struct results *r, size_t *width)
     char first[128], last[128];
     for (int a = 0; !r->single && a < r->axes; a++) {
         const struct results_axis *const axis = &r->axis[a];
-        json_t *const facts = axis_facts(axis), *const varied = json_array();
+        json_t *const varied = json_array();
+        json_t *const facts = TABLE_OBJECT(
+            {"path", as_text(axis->name)}, {"unit", as_text(axis->unit[0] ? axis->unit : NULL)},
+            {"long_name", as_text(axis->text[0] ? axis->text : NULL)},
+            {"count", as_whole(axis->count)}, {"first", as_place(axis, 0)},
+            {"last", as_place(axis, axis->count - 1)}, {".varied", as_tree(varied)});
         const char *const order = results_ends_text(axis, first, last, sizeof first);
         *width = strlen(axis->name) > *width ? strlen(axis->name) : *width;
         for (int k = 0; a == r->sample && k < r->varied; k++) {
@@ -73,7 +71,6 @@ static json_t *axes_facts(const struct results *r, size_t *width)
         else
             say_add(facts, ".range", "%s ... %s, %zu value%s%s%s%s", first, last, axis->count,
                     axis->count == 1 ? "" : "s", order, axis->text[0] ? "; " : "", axis->text);
-        json_object_set_new(facts, ".varied", varied);
         json_array_append_new(list, facts);
     }
     return list;
@@ -85,6 +82,9 @@ bool summary_head(const struct summary *summary)
     json_t *const facts = summary->facts, *const scenarios = json_array();
     struct ancestry ancestry;
     size_t width = 0;
+    char judged[SCENARIO_NAME];
+    snprintf(judged, sizeof judged, "%s", results_kind_names[summary->judged]);
+    judged[0] = (char)toupper(judged[0]);
     if (!ancestry_read(r, &ancestry, summary->message))
         return false;
     for (size_t k = 0; k < ancestry.scenarios; k++)
@@ -96,10 +96,7 @@ bool summary_head(const struct summary *summary)
               {".name", as_text(r->title[0] ? r->title : r->name)},
               {".sampled", as_truth(r->sample >= 0)}, {".shards", as_whole(r->shard.count)},
               {".judged", as_text(results_kind_names[summary->judged])},
-              {".Judged", as_text(summary->judged == RESULTS_RESTED  ? "Rested"
-                                  : summary->judged == RESULTS_WALKS ? "Walks"
-                                                                     : "Stabilised")},
-              {".scenarios", as_whole(ancestry.scenarios)});
+              {".Judged", as_text(judged)}, {".scenarios", as_whole(ancestry.scenarios)});
     if (r->shard.count > 0 && r->shard.count <= r->cases) {
         const struct shard shard = shard_of(&r->shard, r->cases);
         table_put(facts, ".shard",
@@ -262,7 +259,7 @@ bool summary_outcomes(struct summary *summary)
 static void add_touching(const struct summary *summary, json_t *facts)
 {
     const struct results *const r = summary->r;
-    const struct scenario *const s = summary->s;
+    const struct scenario *const s = r->read;
     double state[SCENARIO_MAX_STATES], gap[STANCE_MAX_CONTACTS];
     if (!s || (s->axes > 0 && r->index >= s->cases) ||
         results_numbers(r, "final_state", state, SCENARIO_MAX_STATES) !=
@@ -343,47 +340,46 @@ bool summary_case(const struct summary *summary)
 /* An answer that is summarised, of the cases of a kind: RESULTS_STABILISED is what the study judges
  * by, RESULTS_KIND_COUNT all that are done. */
 static const struct number {
-    const char *name, *unit;
-    const char *residual; /* how far cases are from a law that they ought to obey: its name */
+    int answer;
     enum results_kind of;
+    bool idle;            /* 0 throughout is nothing to tell: nothing is actuated, nothing struck */
+    const char *residual; /* how far cases are from a law that they ought to obey: its name */
 } number[] = {
-    {"settle_time", "s", NULL, RESULTS_STABILISED},
-    {"step_time", "s", NULL, RESULTS_STABILISED},
-    {"step_length", "m", NULL, RESULTS_STABILISED},
-    {"walking_speed", "m/s", NULL, RESULTS_STABILISED},
-    {"cost_of_transport", "", NULL, RESULTS_STABILISED},
-    {"gait_period", "", NULL, RESULTS_STABILISED},
-    {"friction_used", "", NULL, RESULTS_STABILISED},
-    {"impact_friction", "", NULL, RESULTS_STABILISED},
-    {"least_normal_force", "N", NULL, RESULTS_STABILISED},
-    {"excursion", "rad", NULL, RESULTS_STABILISED},
-    {"slip_distance", "m", NULL, RESULTS_STABILISED},
-    {"fall_time", "s", NULL, RESULTS_FELL},
-    {"footfalls", "", NULL, RESULTS_KIND_COUNT},
-    {"peak_torque", "N m", NULL, RESULTS_KIND_COUNT},
-    {"max_penetration", "m", NULL, RESULTS_KIND_COUNT},
-    {"through_ground", "m", NULL, RESULTS_KIND_COUNT},
-    {"impact_energy", "J", NULL, RESULTS_KIND_COUNT},
-    {"projection_energy", "J", NULL, RESULTS_KIND_COUNT},
-    {"signorini_residual", "m/s", "Signorini", RESULTS_KIND_COUNT},
-    {"coulomb_residual", "", "Coulomb", RESULTS_KIND_COUNT},
-    {"dissipation_residual", "m/s", "dissipation", RESULTS_KIND_COUNT},
-    {"energy_gain", "J", "energy gained", RESULTS_KIND_COUNT},
-    {"energy_drift", "J", "drifted", RESULTS_KIND_COUNT},
+    {STANCE_ANSWER_settle_time, RESULTS_STABILISED, false, NULL},
+    {STANCE_ANSWER_step_time, RESULTS_STABILISED, false, NULL},
+    {STANCE_ANSWER_step_length, RESULTS_STABILISED, false, NULL},
+    {STANCE_ANSWER_walking_speed, RESULTS_STABILISED, false, NULL},
+    {STANCE_ANSWER_cost_of_transport, RESULTS_STABILISED, false, NULL},
+    {STANCE_ANSWER_gait_period, RESULTS_STABILISED, false, NULL},
+    {STANCE_ANSWER_friction_used, RESULTS_STABILISED, false, NULL},
+    {STANCE_ANSWER_impact_friction, RESULTS_STABILISED, true, NULL},
+    {STANCE_ANSWER_least_normal_force, RESULTS_STABILISED, false, NULL},
+    {STANCE_ANSWER_excursion, RESULTS_STABILISED, true, NULL},
+    {STANCE_ANSWER_slip_distance, RESULTS_STABILISED, false, NULL},
+    {STANCE_ANSWER_fall_time, RESULTS_FELL, false, NULL},
+    {STANCE_ANSWER_footfalls, RESULTS_KIND_COUNT, true, NULL},
+    {STANCE_ANSWER_peak_torque, RESULTS_KIND_COUNT, true, NULL},
+    {STANCE_ANSWER_max_penetration, RESULTS_KIND_COUNT, false, NULL},
+    {STANCE_ANSWER_through_ground, RESULTS_KIND_COUNT, false, NULL},
+    {STANCE_ANSWER_impact_energy, RESULTS_KIND_COUNT, false, NULL},
+    {STANCE_ANSWER_projection_energy, RESULTS_KIND_COUNT, false, NULL},
+    {STANCE_ANSWER_signorini_residual, RESULTS_KIND_COUNT, false, "Signorini"},
+    {STANCE_ANSWER_coulomb_residual, RESULTS_KIND_COUNT, false, "Coulomb"},
+    {STANCE_ANSWER_dissipation_residual, RESULTS_KIND_COUNT, false, "dissipation"},
+    {STANCE_ANSWER_energy_gain, RESULTS_KIND_COUNT, false, "energy gained"},
+    {STANCE_ANSWER_energy_drift, RESULTS_KIND_COUNT, false, "drifted"},
 };
 
-static void add_number(struct table *t, const struct number *row, const char *of,
-                       const struct statistics_numbers *n)
+static void add_number(struct table *t, const stance_answer *answer, const char *unit,
+                       const char *of, const struct statistics_numbers *n)
 {
     char label[64];
-    snprintf(label, sizeof label, "  %s%s%s%s", row->name, row->unit[0] ? " (" : "", row->unit,
-             row->unit[0] ? ")" : "");
+    snprintf(label, sizeof label, unit ? "  %s (%s)" : "  %s", answer->name, unit);
     TABLE_FACTS(
-        t, {{"answer", .hidden = TABLE_NO_JSON}, as_text(row->name)},
+        t, {{"answer", .hidden = TABLE_NO_JSON}, as_text(answer->name)},
         {{"label", "Numbers", .hidden = TABLE_VIEW_ONLY, .before = "", .width = 26, .left = true},
          as_text(label)},
-        {{"of", .joined = true, .before = " "}, as_text(of)},
-        {{.name = "unit"}, as_text(row->unit[0] ? row->unit : NULL)},
+        {{"of", .joined = true, .before = " "}, as_text(of)}, {{.name = "unit"}, as_text(unit)},
         {{"count", "cases", .before = "  ", .left = true}, as_whole(n->n)},
         {{"smallest", "smallest", "%.4g", .width = 10}, as_number(n->low)},
         {{"median", "median", "%.4g", .width = 10}, as_number(n->median)},
@@ -417,34 +413,34 @@ bool summary_numbers(const struct summary *summary)
     add_through(summary, NULL);
     for (size_t k = 0; good && k < sizeof number / sizeof *number; k++) {
         const struct number *const row = &number[k];
+        const stance_answer *const answer = &stance_answers[row->answer];
+        const char *const unit = strcmp(answer->unit, "1") == 0 ? NULL : answer->unit;
         const enum results_kind of = row->of == RESULTS_STABILISED ? summary->judged : row->of;
+        const char *const of_word = of == RESULTS_KIND_COUNT ? "done" : results_kind_names[of];
         struct statistics_numbers n;
         double *values;
-        if (!(good = results_answer(r, row->name, &values, summary->message)) || !values)
+        if (!(good = results_answer(r, answer->name, &values, summary->message)) || !values)
             continue;
-        bool idle = strcmp(row->name, "through_ground") == 0 && add_through(summary, values) == 0;
+        const bool around =
+            row->answer == STANCE_ANSWER_through_ground && add_through(summary, values) == 0;
         const double one = r->single ? values[0] : NAN;
         for (uint64_t i = 0; of != RESULTS_KIND_COUNT && i < r->cases; i++)
             values[i] = r->kind[i] == of ? values[i] : NAN;
         statistics_summarise(values, (size_t)r->cases, &n);
         free(values);
-        /* nothing is actuated, there is no target, nothing struck the ground, no foot lands */
-        static const char *const nothing[] = {"peak_torque", "excursion", "impact_friction",
-                                              "footfalls"};
-        for (size_t i = 0; i < sizeof nothing / sizeof *nothing; i++)
-            idle = idle || (strcmp(row->name, nothing[i]) == 0 && n.high == 0);
-        const char *const of_word = of == RESULTS_KIND_COUNT ? "done" : results_kind_names[of];
-        add_number(&all, row, of_word, &n);
-        if (!row->residual && n.n > 0 && !idle)
-            add_number(&seen, row, of_word, &n);
+        add_number(&all, answer, unit, of_word, &n);
         if (row->residual && n.n > 0)
             TABLE_APPEND(residuals, {"law", as_text(row->residual)}, {"largest", as_number(n.high)},
-                         {"unit", as_text(row->unit)});
-        if (!row->residual &&
-            (!strstr(row->name, "_time") || strcmp(row->name, "step_time") == 0) && !isnan(one) &&
-            !(strcmp(row->name, "footfalls") == 0 && one == 0))
-            TABLE_APPEND(single, {"answer", as_text(row->name)}, {"is", as_number(one)},
-                         {"unit", as_text(row->unit)});
+                         {"unit", as_text(unit ? unit : "")});
+        if (row->residual)
+            continue;
+        if (n.n > 0 && !around && !(row->idle && n.high == 0))
+            add_number(&seen, answer, unit, of_word, &n);
+        if (!isnan(one) && row->answer != STANCE_ANSWER_settle_time &&
+            row->answer != STANCE_ANSWER_fall_time &&
+            !(row->answer == STANCE_ANSWER_footfalls && one == 0))
+            TABLE_APPEND(single, {"answer", as_text(answer->name)}, {"is", as_number(one)},
+                         {"unit", as_text(unit ? unit : "")});
     }
     table_put(summary->facts, ".residuals", as_tree(residuals));
     table_put(summary->facts, ".single", as_tree(single));

@@ -5,14 +5,13 @@
 #include "analysis/statistics/intervals.h"
 #include "analysis/table/table.h"
 
-/* What the cases of a scenario are judged by: STABILISED, or where no controller has a target
- * RESTED. */
-enum results_kind summary_judged(const struct scenario *s);
+/* What the cases of a file are judged by, as its scenario says: WALKS with stop.walks, RESTED where
+ * no controller has a target, else STABILISED. */
+enum results_kind summary_judged(const struct results *r);
 
 /* The file, read once. */
 struct summary {
     const struct results *r;
-    const struct scenario *s; /* NULL: of another version, which cannot be read */
     enum results_kind judged;
     bool known; /* outcomes are stored, or no case is done */
     struct statistics_counts counts;

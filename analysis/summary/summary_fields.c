@@ -3,7 +3,7 @@
 
 #include "runner/base/problem.h"
 #include "runner/scenario/schema.h"
-#include "runner/store/results_rows.h"
+#include "runner/store/results.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -104,16 +104,6 @@ static bool is_controlled(const struct results *r, const struct scenario *s,
     return found;
 }
 
-static bool has_answer(const struct results *r, const char *name)
-{
-    struct results_column column = {.id = -1};
-    stance_message message;
-    const bool has = results_column_open(r, name, &column, &message) && column.id >= 0;
-    if (has)
-        results_column_close(&column);
-    return has;
-}
-
 /* The number that a case has where the scenario leaves it open: of the posture at which all cases
  * begin, of a method's tolerance. How far a support may have moved nothing was judged by in files
  * of before: they lack the answer that came with it. */
@@ -125,8 +115,15 @@ static double completed(const struct results *r, const struct scenario *s,
         (field->offset - offsetof(struct scenario_values, equilibrium.posture)) / sizeof number;
     const double tolerance = stance_methods()[v->method]->tolerance;
     double start[STANCE_MAX_COORDINATES];
-    if (field->offset == offsetof(struct scenario_values, settle_place))
-        return has_answer(r, "through_ground") ? number : NAN;
+    if (field->offset == offsetof(struct scenario_values, settle_place)) {
+        struct results_column column = {.id = -1};
+        stance_message ignored;
+        const bool has =
+            results_column_open(r, "through_ground", &column, &ignored) && column.id >= 0;
+        if (has)
+            results_column_close(&column);
+        return has ? number : NAN;
+    }
     if (field->offset == offsetof(struct scenario_values, tolerance))
         return !(tolerance > 0) ? NAN : isnan(number) ? tolerance : number;
     return posture < STANCE_MAX_POSTURE &&
@@ -140,7 +137,7 @@ static void add_fields(const struct summary *summary, const struct schema *schem
                        struct paragraphs *p)
 {
     const struct results *const r = summary->r;
-    const struct scenario *const s = summary->s;
+    const struct scenario *const s = summary->r->read;
     struct scenario_values v = s->base;
     if (r->single && s->axes > 0 && r->index < s->cases)
         scenario_case_values(s, r->index, &v);
@@ -172,12 +169,12 @@ static void add_fields(const struct summary *summary, const struct schema *schem
 
 bool summary_fields(const struct summary *summary)
 {
+    const struct scenario *const s = summary->r->read;
     char *text = NULL;
     size_t size;
     struct schema *own = NULL;
     struct paragraphs p = {.fixed = json_object(), .text = open_memstream(&text, &size)};
-    const struct schema *const schema =
-        summary->s ? schema_of(summary->s->scene, &summary->s->law, &own) : NULL;
+    const struct schema *const schema = s ? schema_of(s->scene, &s->law, &own) : NULL;
     if (schema && p.text)
         add_fields(summary, schema, &p);
     free(own);

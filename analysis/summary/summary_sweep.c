@@ -104,15 +104,10 @@ static bool add_extents(struct table *t, const struct results *r, int axis, size
 
 /* ---- parameters --------------------------------------------------------------------------- */
 
-void summary_add_counts(struct table *t, const struct summary *summary,
-                        const struct statistics_counts *counts, const struct interval *interval)
+static void add_share(struct table *t, const struct summary *summary,
+                      const struct statistics_counts *counts, const struct interval *interval)
 {
     const bool known = counts->done > 0 && summary->known;
-    TABLE_FACTS(t, {{"done", "done", .width = 10}, as_whole(counts->done)},
-                {{.name = "failed"}, as_whole(counts->kind[RESULTS_FAILED])},
-                {{.name = "pending"}, as_whole(counts->kind[RESULTS_PENDING])});
-    for (int k = 0; k < RESULTS_OUTCOMES; k++)
-        TABLE_FACTS(t, {{.name = results_kind_names[k]}, as_whole(counts->kind[k])});
     TABLE_FACTS(
         t,
         {{"share", "share", "%.3f %%", .width = 10, .percent = true},
@@ -124,21 +119,15 @@ void summary_add_counts(struct table *t, const struct summary *summary,
          as_number(known ? interval->high : NAN)});
 }
 
-/* From which value to the next the share changes most, by how much. */
-static size_t find_steepest(const struct summary *summary, const struct statistics_counts *counts,
-                            size_t count, double *largest)
+void summary_add_counts(struct table *t, const struct summary *summary,
+                        const struct statistics_counts *counts, const struct interval *interval)
 {
-    size_t steepest = 0;
-    *largest = 0;
-    for (size_t i = 0; i + 1 < count; i++) {
-        const double change =
-            fabs(summary_share(summary, &counts[i + 1]) - summary_share(summary, &counts[i]));
-        if (change > *largest) {
-            *largest = change;
-            steepest = i;
-        }
-    }
-    return steepest;
+    TABLE_FACTS(t, {{"done", "done", .width = 10}, as_whole(counts->done)},
+                {{.name = "failed"}, as_whole(counts->kind[RESULTS_FAILED])},
+                {{.name = "pending"}, as_whole(counts->kind[RESULTS_PENDING])});
+    for (int k = 0; k < RESULTS_OUTCOMES; k++)
+        TABLE_FACTS(t, {{.name = results_kind_names[k]}, as_whole(counts->kind[k])});
+    add_share(t, summary, counts, interval);
 }
 
 /* A row for every value of an axis; `only`: no other axis is none of offsets. */
@@ -165,8 +154,14 @@ static bool parameter_facts(const struct summary *summary, int a, bool only, jso
         same = same && summary_share(summary, &counts[i]) == summary_share(summary, &counts[0]);
     }
     if (good) {
-        double change;
-        const size_t i = find_steepest(summary, counts, axis->count, &change);
+        double change = 0; /* the largest from one value to the next, behind i */
+        size_t i = 0;
+        for (size_t k = 0; k + 1 < axis->count; k++) {
+            const double own =
+                fabs(summary_share(summary, &counts[k + 1]) - summary_share(summary, &counts[k]));
+            if (own > change)
+                change = own, i = k;
+        }
         json_t *const facts = TABLE_OBJECT(
             {"path", as_text(axis->name)}, {"unit", as_text(unit_of(axis->unit))},
             {"share_of", as_text(results_kind_names[summary->judged])},
@@ -237,7 +232,6 @@ static void add_parts(struct table *t, const struct summary *summary, int k,
     const struct results_varied *const v = &summary->r->vary[k];
     for (size_t b = 0; b < bins->count; b++) {
         const struct doe_bin *const bin = &bins->bin[b];
-        const struct interval *const interval = &bin->of_kind[summary->judged];
         double value = bin->low;
         struct results_varied one = *v;
         char text[160]; /* "0.1 ... 0.3", a value or a word */
@@ -246,20 +240,14 @@ static void add_parts(struct table *t, const struct summary *summary, int k,
             results_varied_text(&one, 0, false, text, sizeof text);
         else
             snprintf(text, sizeof text, "%.4g ... %.4g", bin->low, bin->high);
-        TABLE_FACTS(
-            t,
-            {{"path", "", .hidden = TABLE_VIEW_ONLY, .width = 32, .left = true},
-             as_text(b ? "" : v->of.name)},
-            {{"values", "values", .hidden = TABLE_VIEW_ONLY, .width = 24}, as_text(text)},
-            {{.name = "from"}, as_varied(v, bin->low)}, {{.name = "to"}, as_varied(v, bin->high)},
-            {{"done", "done", .width = 9}, as_whole(bin->counts.done)},
-            {{"share", "share", "%.3f %%", .width = 10, .percent = true},
-             as_number(summary_share(summary, &bin->counts))},
-            {{"low", "95 % interval", "%.3f", .before = "   ", .left = true, .empty = "none done",
-              .percent = true},
-             as_number(interval->low)},
-            {{"high", .format = "%.3f %%", .joined = true, .before = " ... ", .percent = true},
-             as_number(interval->high)});
+        TABLE_FACTS(t,
+                    {{"path", "", .hidden = TABLE_VIEW_ONLY, .width = 32, .left = true},
+                     as_text(b ? "" : v->of.name)},
+                    {{"values", "values", .hidden = TABLE_VIEW_ONLY, .width = 24}, as_text(text)},
+                    {{.name = "from"}, as_varied(v, bin->low)},
+                    {{.name = "to"}, as_varied(v, bin->high)},
+                    {{"done", "done", .width = 9}, as_whole(bin->counts.done)});
+        add_share(t, summary, &bin->counts, &bin->of_kind[summary->judged]);
         table_end_row(t);
     }
 }

@@ -4,7 +4,7 @@
 #include "analysis/statistics/statistics.h"
 #include "runner/base/message.h"
 #include "runner/base/words.h"
-#include "runner/store/results_rows.h"
+#include "runner/store/results.h"
 #include "runner/store/store.h"
 
 #include <stdlib.h>

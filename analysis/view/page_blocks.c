@@ -20,8 +20,9 @@ void page_base64(FILE *out, const char *id, const uint8_t *bytes, size_t size)
 }
 
 bool page_block(FILE *out, json_t *blocks, const char *name, const char *type, const void *numbers,
-                size_t size, size_t count, size_t limit, size_t *bytes)
+                size_t count, size_t *bytes)
 {
+    const size_t size = strtoul(type + 1, NULL, 10) / 8;
     const uLong plain = (uLong)(size * count);
     uLongf length = compressBound(plain);
     uint8_t *const shuffled = malloc(plain ? plain : 1), *const packed = malloc(length);
@@ -32,7 +33,7 @@ bool page_block(FILE *out, json_t *blocks, const char *name, const char *type, c
     good = good && compress2(packed, &length, shuffled, plain, 6) == Z_OK;
     if (bytes)
         *bytes = good ? length : 0;
-    if (good && length <= limit) {
+    if (good) {
         char id[96];
         snprintf(id, sizeof id, "block-%s", name);
         page_base64(out, id, packed, length);

@@ -120,48 +120,36 @@ static void put_basin(json_t *charts, const struct results *r, int k)
 
 /* ---- sensitivity -------------------------------------------------------------------------- */
 
-static json_t *factor_names(const struct sensitivity_study *study)
-{
-    json_t *const list = json_array();
-    for (size_t i = 0; i < study->factors; i++) {
-        char text[160];
-        sensitivity_factor_text(study, study->order[i], text, sizeof text);
-        table_append(list, as_text(text));
-    }
-    return list;
-}
-
-static void put_measure(json_t *series, const struct sensitivity_study *study,
-                        const struct sensitivity *s, enum sensitivity_measure measure,
-                        const char *name)
-{
-    if (!s->measure[measure])
-        return;
-    json_t *const curve = add_curve(series, name, false);
-    for (size_t i = 0; i < study->factors; i++) {
-        const struct sensitivity_value *const v = &s->measure[measure][study->order[i]];
-        add_point(curve, (double)i, v->estimate, (struct interval){v->low, v->high});
-    }
-}
-
 static void put_table(json_t *charts, const struct sensitivity_study *study, size_t t)
 {
+    static const char *const names[SENSITIVITY_MEASURE_COUNT] = {
+        [SENSITIVITY_FIRST] = "first: the factor alone",
+        [SENSITIVITY_TOTAL] = "total: with interactions",
+        [SENSITIVITY_MU_STAR] = "mean magnitude of the effects",
+        [SENSITIVITY_SIGMA] = "their standard deviation"};
     const struct sensitivity *const s = &study->table[t].s;
     const bool morris = s->measure[SENSITIVITY_MU_STAR] != NULL;
-    char response[200], where[200], title[460];
-    json_t *const series = json_array();
+    char factor[160], response[200], where[200], title[460];
+    json_t *const series = json_array(), *const factors = json_array();
     sensitivity_response_text(study, response, sizeof response);
     sensitivity_table_text(study, t, where, sizeof where);
     snprintf(title, sizeof title, "What the %s depends on%s%s", response, where[0] ? ": " : "",
              where);
-    put_measure(series, study, s, SENSITIVITY_FIRST, "first: the factor alone");
-    put_measure(series, study, s, SENSITIVITY_TOTAL, "total: with interactions");
-    put_measure(series, study, s, SENSITIVITY_MU_STAR, "mean magnitude of the effects");
-    put_measure(series, study, s, SENSITIVITY_SIGMA, "their standard deviation");
+    for (size_t i = 0; i < study->factors; i++) {
+        sensitivity_factor_text(study, study->order[i], factor, sizeof factor);
+        table_append(factors, as_text(factor));
+    }
+    for (int m = 0; m < SENSITIVITY_MEASURE_COUNT; m++) {
+        json_t *const curve = names[m] && s->measure[m] ? add_curve(series, names[m], false) : NULL;
+        for (size_t i = 0; curve && i < study->factors; i++) {
+            const struct sensitivity_value *const v = &s->measure[m][study->order[i]];
+            add_point(curve, (double)i, v->estimate, (struct interval){v->low, v->high});
+        }
+    }
     add_chart(charts, title,
               morris ? "Morris's elementary effects over the ranges, with 95 % intervals"
                      : "Sobol' indices with 95 % intervals, what matters most first",
-              axis("factor", "", false, factor_names(study)),
+              axis("factor", "", false, factors),
               axis(morris ? "effect" : "index", "", false, NULL), series);
 }
 
@@ -173,7 +161,7 @@ static bool put_sensitivity(json_t *charts, const struct results *r, stance_mess
     const int code = sensitivity_study_make(&study, r, &request, message);
     if (code != EXIT_DONE) /* too short, say: then there is no chart */
         return code == EXIT_USAGE;
-    for (size_t t = 0; t < study.response.tables && t < MOST_TABLES; t++)
+    for (size_t t = 0; t < study.tables && t < MOST_TABLES; t++)
         put_table(charts, &study, t);
     sensitivity_study_free(&study);
     return true;

@@ -9,7 +9,6 @@
 #include "runner/plan/plan.h"
 #include "runner/store/build_info.h"
 #include "runner/store/results.h"
-#include "runner/store/results_rows.h"
 
 #include "runner/base/command.h"
 
@@ -31,9 +30,9 @@ struct page {
 };
 
 static bool put_block(struct page *p, const char *name, const char *type, const void *numbers,
-                      size_t size, size_t count)
+                      size_t count)
 {
-    return page_block(p->more, p->blocks, name, type, numbers, size, count, SIZE_MAX, NULL) ||
+    return page_block(p->more, p->blocks, name, type, numbers, count, NULL) ||
            no_memory(p->message);
 }
 
@@ -96,7 +95,7 @@ static bool put_axis_values(struct page *p)
             value[i] =
                 scenario_axis_value(axis, i / (size_t)axis->paths, (int)(i % (size_t)axis->paths));
         snprintf(name, sizeof name, "axis-%d", a);
-        good = good && put_block(p, name, "f64", value, sizeof *value, count);
+        good = good && put_block(p, name, "f64", value, count);
         free(value);
     }
     return good;
@@ -119,9 +118,8 @@ static bool put_designs(struct page *p)
               as_tree(TABLE_OBJECT({"count", as_whole(plan->designs)},
                                    {"numbers", as_whole(plan->design_size)})));
     return good &&
-           put_block(p, "designs", "f64", plan->design, sizeof *plan->design,
-                     plan->designs * plan->design_size) &&
-           put_block(p, "design-status", "u8", plan->design_status, 1, plan->designs);
+           put_block(p, "designs", "f64", plan->design, plan->designs * plan->design_size) &&
+           put_block(p, "design-status", "u8", plan->design_status, plan->designs);
 }
 
 /* Which answers a case's checksum covers, a bit each. */
@@ -157,7 +155,7 @@ static bool put_law(struct page *p)
                 why.text);
         return false;
     }
-    const bool good = put_block(p, "law", "u8", image.bytes, 1, image.size);
+    const bool good = put_block(p, "law", "u8", image.bytes, image.size);
     image_free(&image);
     return good;
 }
@@ -206,7 +204,7 @@ static bool put_checksums(struct page *p)
     results_column_close(&column);
     free(rows);
     table_put(p->head, "checksums", as_truth(there));
-    good = good && (!there || put_block(p, "checksum", "u32", crc, sizeof *crc, cases));
+    good = good && (!there || put_block(p, "checksum", "u32", crc, cases));
     free(crc);
     return good;
 }
@@ -239,7 +237,7 @@ static bool put_answer(struct page *p, int answer, json_t *list)
     bool asked = p->request->whole || code;
     for (size_t i = 0; i < p->request->answers; i++)
         asked |= strcmp(p->request->answer[i], a->name) == 0;
-    const size_t limit = asked || p->bytes < PAGE_BYTES ? SIZE_MAX : 0;
+    const bool carried = asked || (p->request->answers == 0 && p->bytes < PAGE_BYTES);
     void *const numbers = malloc(cases * (code ? 1 : sizeof(float)));
     bool good = numbers != NULL || no_memory(p->message);
     for (size_t i = 0; good && i < cases; i++)
@@ -249,11 +247,10 @@ static bool put_answer(struct page *p, int answer, json_t *list)
             ((float *)numbers)[i] = (float)value[i];
     free(value);
     snprintf(name, sizeof name, "answer-%s", a->name);
-    const bool carried = asked || (p->request->answers == 0 && limit > 0);
-    good = good && (!carried ||
-                    page_block(p->more, p->blocks, name, code ? "u8" : "f32", numbers,
-                               code ? 1 : sizeof(float), cases, limit, &bytes) ||
-                    no_memory(p->message));
+    good = good &&
+           (!carried ||
+            page_block(p->more, p->blocks, name, code ? "u8" : "f32", numbers, cases, &bytes) ||
+            no_memory(p->message));
     free(numbers);
     p->bytes += asked ? 0 : (double)bytes;
     const char *const type = code ? "code" : a->type == STANCE_DOUBLE ? "number" : "count";
@@ -284,8 +281,7 @@ static bool put_scenario_numbers(struct page *p)
     for (size_t i = 0; number && i < cases; i++)
         number[i] = isnan(value[i]) ? (uint8_t)last : (uint8_t)value[i];
     free(value);
-    const bool good =
-        number ? put_block(p, "number", "u8", number, 1, cases) : no_memory(p->message);
+    const bool good = number ? put_block(p, "number", "u8", number, cases) : no_memory(p->message);
     free(number);
     return good;
 }
@@ -293,8 +289,7 @@ static bool put_scenario_numbers(struct page *p)
 /* A code of each case that the map is drawn from. */
 static bool put_drawn(struct page *p, const char *name, const void *code)
 {
-    return page_block(p->out, p->blocks, name, "u8", code, 1, (size_t)p->r->cases, SIZE_MAX,
-                      NULL) ||
+    return page_block(p->out, p->blocks, name, "u8", code, (size_t)p->r->cases, NULL) ||
            no_memory(p->message);
 }
 

@@ -32,11 +32,10 @@ bool page_data_write(FILE *out, FILE *more, const struct results *r,
 /* The same of the file of a search: its charts. */
 bool page_search_write(FILE *out, const char *file, stance_message *message);
 
-/* page_blocks.c: a block of `count` numbers of `size` bytes, and its entry in the head's object
- * `blocks`. *bytes, not NULL: what it takes, compressed; with a limit below that nothing is
- * written. False: no memory. */
+/* page_blocks.c: a block of `count` numbers, of the type "u8", "u32", "f32" or "f64", and its entry
+ * in the head's object `blocks`. *bytes, not NULL: what it takes, compressed. False: no memory. */
 bool page_block(FILE *out, json_t *blocks, const char *name, const char *type, const void *numbers,
-                size_t size, size_t count, size_t limit, size_t *bytes);
+                size_t count, size_t *bytes);
 /* A script element of bytes as base64. */
 void page_base64(FILE *out, const char *id, const uint8_t *bytes, size_t size);
 /* One of JSON, without '<' and '&'. */

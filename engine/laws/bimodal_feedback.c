@@ -9,10 +9,9 @@
  * robot whose equilibrium takes torque has more of it left one way than the other, so that the
  * torques of a fall forward are cut where those of a fall backward are not, and no single gain
  * matrix suits both. */
-#include "engine/stance.h"
+#include "engine/refuse.h"
 
 #include <math.h>
-#include <stdio.h>
 
 enum { NORMAL, NORMAL_RATE, PUSH, PARAMETERS };
 #define LARGE 1e9
@@ -49,11 +48,9 @@ static stance_error set(const stance_scene *scene, const double *value, const do
     for (int i = 0; i < scene->actuators; i++)
         sum += c->bend.push[i] = value[PUSH * STANCE_LAW_ROOM + i];
     c->bends = true;
-    if (isfinite(sum))
-        return STANCE_OK;
-    snprintf(message->text, sizeof message->text,
-             "a normal or a push of the bimodal law is not finite");
-    return STANCE_BAD_ARGUMENT;
+    return isfinite(sum) ? STANCE_OK
+                         : stance_refuse(message, STANCE_BAD_ARGUMENT,
+                                         "a normal or a push of the bimodal law is not finite");
 }
 
 const stance_law stance_law_bimodal_feedback = {

@@ -1,10 +1,9 @@
 /* decoupling.c - as many coordinates as there are actuators follow set-points, each as a PID on it
  * asks (the paper's section 3.3 has two); how torques and reactions are found for that stands in
  * core/mode/decoupling.h. */
-#include "engine/stance.h"
+#include "engine/refuse.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 enum { CONTROLLED, KP, KD, KI, LIMIT, SETPOINT, RAMP, RAMP_TIME, PARAMETERS };
@@ -58,11 +57,9 @@ static stance_error set(const stance_scene *scene, const double *value, const do
     int selection, controlled[STANCE_MAX_ACTUATORS];
     (void)linear;
     memcpy(&selection, &value[CONTROLLED * STANCE_LAW_ROOM], sizeof selection);
-    if (!stance_selection(scene, selection, controlled)) {
-        snprintf(message->text, sizeof message->text,
-                 "controller.controlled is no selection of coordinates");
-        return STANCE_BAD_ARGUMENT;
-    }
+    if (!stance_selection(scene, selection, controlled))
+        return stance_refuse(message, STANCE_BAD_ARGUMENT,
+                             "controller.controlled is no selection of coordinates");
     c->decouples = true;
     for (int i = 0; i < scene->actuators; i++) {
         const double *const of = &value[controlled[i]];
@@ -79,11 +76,9 @@ static stance_error set(const stance_scene *scene, const double *value, const do
             .integral_limit = of[LIMIT * STANCE_LAW_ROOM],
         };
         if (!isfinite(servo->setpoint + servo->ramp + servo->kp + servo->ki + servo->kd) ||
-            !(servo->duration >= 0 && servo->integral_limit >= 0)) {
-            snprintf(message->text, sizeof message->text,
-                     "a gain or set-point of the decoupling law is not finite");
-            return STANCE_BAD_ARGUMENT;
-        }
+            !(servo->duration >= 0 && servo->integral_limit >= 0))
+            return stance_refuse(message, STANCE_BAD_ARGUMENT,
+                                 "a gain or set-point of the decoupling law is not finite");
     }
     return STANCE_OK;
 }

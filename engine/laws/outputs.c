@@ -5,10 +5,10 @@
  *
  * The polynomials are given by Bernstein's coefficients, h(s) = sum b_i C(n, i) s^i (1 - s)^(n - i)
  * = sum_j s^j C(n, j) sum_i (-1)^(j - i) C(j, i) b_i. */
-#include "engine/stance.h"
+#include "engine/refuse.h"
+#include "engine/rows.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 enum { OF, CLOCK, FROM, TO, FIRST }; /* of the phase; then by output */
@@ -105,37 +105,9 @@ static bool is_zero(const double *v, int n)
     return zero;
 }
 
-/* The rank of the rows and the phase together is that of all rows: else one follows from others. */
-static int rank_of(double (*row)[STANCE_MAX_COORDINATES], int rows, int n)
+static stance_error refuse(stance_message *message, const char *what)
 {
-    int rank = 0;
-    for (int k = 0; k < n && rank < rows; k++) {
-        int best = rank;
-        for (int i = rank; i < rows; i++)
-            best = fabs(row[i][k]) > fabs(row[best][k]) ? i : best;
-        if (!(fabs(row[best][k]) > 1e-9))
-            continue;
-        for (int j = 0; j < n; j++) {
-            const double x = row[best][j];
-            row[best][j] = row[rank][j], row[rank][j] = x;
-        }
-        for (int i = rank + 1; i < rows; i++) {
-            const double factor = row[i][k] / row[rank][k];
-            for (int j = k; j < n; j++)
-                row[i][j] -= factor * row[rank][j];
-        }
-        rank++;
-    }
-    return rank;
-}
-
-static stance_error refuse(stance_message *message, const char *what, int output)
-{
-    if (output > 0)
-        snprintf(message->text, sizeof message->text, "controller.outputs.y%d: %s", output, what);
-    else
-        snprintf(message->text, sizeof message->text, "controller.%s", what);
-    return STANCE_BAD_ARGUMENT;
+    return stance_refuse(message, STANCE_BAD_ARGUMENT, "controller.%s", what);
 }
 
 static stance_error set(const stance_scene *scene, const double *value, const double *begin,
@@ -144,7 +116,7 @@ static stance_error set(const stance_scene *scene, const double *value, const do
     stance_outputs *const of = &c->outputs;
     const stance_exchange *const exchange = &scene->exchange;
     const int n = scene->coordinates, m = scene->actuators;
-    double rows[STANCE_MAX_ACTUATORS + 1][STANCE_MAX_COORDINATES] = {{0}}, sum = 0;
+    double rows[STANCE_MAX_ACTUATORS + 1][STANCE_ROWS_STRIDE] = {{0}}, sum = 0;
     int weighted = 0, bends = 0;
     bool clocked = false;
     (void)begin, (void)linear;
@@ -157,7 +129,7 @@ static stance_error set(const stance_scene *scene, const double *value, const do
     of->from = value[FROM * STANCE_LAW_ROOM], of->to = value[TO * STANCE_LAW_ROOM];
     sum += of->from + of->to;
     if (!(fabs(of->to - of->from) > 1e-9))
-        return refuse(message, "phase: from and to are the same", 0);
+        return refuse(message, "phase: from and to are the same");
     for (int k = 0; k < n; k++) {
         sum += rows[m][k] = of->phase[0][k] = value[OF * STANCE_LAW_ROOM + k];
         for (int j = 0; j < n; j++)
@@ -172,9 +144,13 @@ static stance_error set(const stance_scene *scene, const double *value, const do
         while (terms < STANCE_MAX_COEFFICIENTS && !isnan(along[terms]))
             sum += along[terms++];
         if (terms == 0)
-            return refuse(message, "along is missing: what its row follows", i + 1);
+            return stance_refuse(message, STANCE_BAD_ARGUMENT,
+                                 "controller.outputs.y%d: along is missing: what its row follows",
+                                 i + 1);
         if (is_zero(&own[ROW * STANCE_LAW_ROOM], n))
-            return refuse(message, "of is missing: what it is a row of", i + 1);
+            return stance_refuse(message, STANCE_BAD_ARGUMENT,
+                                 "controller.outputs.y%d: of is missing: what it is a row of",
+                                 i + 1);
         powers_of(along, terms, output->along);
         bends += terms > 1;
         output->kp = own[KP * STANCE_LAW_ROOM], output->kd = own[KD * STANCE_LAW_ROOM];
@@ -195,22 +171,20 @@ static stance_error set(const stance_scene *scene, const double *value, const do
             .kp = output->kp, .kd = output->kd, .duration = INFINITY, .integral_limit = INFINITY};
     }
     if (!isfinite(sum))
-        return refuse(message, "outputs: a number is not finite", 0);
+        return refuse(message, "outputs: a number is not finite");
     if (weighted != 0 && weighted != m)
-        return refuse(message, "outputs: torques of some outputs and not of all", 0);
+        return refuse(message, "outputs: torques of some outputs and not of all");
     const bool phased = !is_zero(of->phase[0], n);
     if (phased && clocked)
-        return refuse(message, "phase: give one of of and clock", 0);
+        return refuse(message, "phase: give one of of and clock");
     if (bends && !phased && !clocked)
-        return refuse(message, "phase.of is missing: what the outputs follow", 0);
-    if (weighted == 0 &&
-        rank_of(rows, bends && phased ? m + 1 : m, n) < (bends && phased ? m + 1 : m))
-        return refuse(message,
-                      bends
-                          ? "outputs: the rows and the phase depend on each other: no torques can "
-                            "hold them all"
-                          : "outputs: the rows depend on each other: no torques can hold them all",
-                      0);
+        return refuse(message, "phase.of is missing: what the outputs follow");
+    const int count = bends && phased ? m + 1 : m; /* of rows that may not follow from each other */
+    if (weighted == 0 && stance_rows_turn(count, n, n, rows) < count)
+        return stance_refuse(message, STANCE_BAD_ARGUMENT,
+                             "controller.outputs: the rows%s depend on each other: no torques can "
+                             "hold them all",
+                             bends ? " and the phase" : "");
     of->constant = weighted > 0;
     c->decouples = c->follows = true;
     return STANCE_OK;

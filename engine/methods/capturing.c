@@ -92,18 +92,10 @@ struct advance {
 
 static void advance_load(struct advance *a, int lane, const stance_case *c)
 {
+    lane_clear(a, sizeof *a, lane);
     lane_set(&a->tolerance, lane, c->tolerance);
-    lane_set(&a->done, lane, 0);
     lane_set(&a->part, lane, INFINITY);
-    lane_set(&a->hunting, lane, 0);
-    lane_set(&a->attempts, lane, 0);
-    lane_set(&a->crossings, lane, 0);
     lane_set(&a->near, lane, 1);
-    lane_set(&a->ordinary, lane, 0);
-    lane_set(&a->wait, lane, 0);
-    lane_set(&a->turns, lane, 0);
-    for (int i = 0; i < OWN_CONTACTS; i++)
-        lane_set(&a->stood[i], lane, 0);
     report_clear_lane(&a->sum, lane);
 }
 static void advance_forget(struct advance *a, mask m)
@@ -115,11 +107,7 @@ static void advance_forget(struct advance *a, mask m)
 #define ADVANCE_WATCHES
 HOT void advance_watch(struct advance *a, mask m, mask near)
 {
-    a->near = choose(m, choose(near, lanes_of(1), lanes_of(0)), a->near);
-}
-static void advance_free(struct advance *a)
-{
-    (void)a;
+    a->near = choose(m, lanes_where(near), a->near);
 }
 
 /* What happens in a step that ends in *to, between its ends. */
@@ -155,8 +143,7 @@ static inline mask capture_strikes(const struct setting *set, const struct motio
 {
     mask lost = MASK_NONE;
     for (int c = 0; c < OWN_CONTACTS; c++)
-        lost |= mask_less(lanes_of(0), set->may_touch[c]) &
-                mask_less_equal(now->gap[c], lanes_of(STEP_CLOSED)) &
+        lost |= motion_closed(set, now->gap, c) &
                 mask_less(now->approach[c], lanes_of(-BETWEEN_REST)) &
                 mask_less_equal(report->impulse[c][0], lanes_of(0));
     return LANES_NOT(lost);
@@ -215,29 +202,10 @@ static inline mask capture_implicit(const struct step *interval, const lanes *st
 static inline void capture_add(struct advance *a, mask taken, mask tried,
                                const struct step_report *part)
 {
-    struct step_report sum = a->sum;
-    report_add(&sum, part);
-    choose_all(taken, &sum, &a->sum, sizeof sum);
+    report_add_where(taken, &a->sum, part);
     const mask wasted = tried & LANES_NOT(taken);
     a->sum.evaluations += choose(wasted, part->evaluations, lanes_of(0));
     a->sum.iterations += choose(wasted, part->iterations, lanes_of(0));
-}
-
-/* Angles stay in the range of sine and cosine during the next two steps. */
-static inline mask capture_in_range(const struct motion *now, lanes h)
-{
-    lanes ahead[SCENE_COORDINATES];
-    for (int i = 0; i < SCENE_COORDINATES; i++)
-        ahead[i] = now->s[i] + 2 * h * now->w[i];
-    return scene_angles_in_range(ahead);
-}
-
-static inline lanes capture_largest(const struct dynamics *e)
-{
-    lanes largest = lanes_of(0);
-    for (int i = 0; i < SCENE_COORDINATES; i++)
-        largest = lanes_max(lanes_abs(e->acceleration[i]), largest);
-    return largest;
 }
 
 /* Smooth motion over an interval in the lanes of `try`; *stuck: there is none. Returns the lanes
@@ -250,20 +218,16 @@ static inline mask capture_smooth(const struct step *asked, mask try, lanes *sto
     struct dynamics begin;
     struct contact_state mode;
     struct between_trouble trouble;
-    const contact_set touching = step_touching(set, now->gap, LANES_ALL);
-    const struct drive drive = {asked->torque, asked->coupled, NULL};
-    const struct state at = state_of(now);
-    between_evaluate(set, &at, &drive, touching, &begin);
-    between_mode(set, &begin, touching, stood, &mode, &trouble);
+    const contact_set touching = between_begin(asked, stood, &begin, &mode, &trouble);
     between_stands(&mode, stood);
-    *acceleration = capture_largest(&begin);
+    *acceleration = lanes_largest(begin.acceleration, SCENE_COORDINATES, lanes_of(0));
     if (touching)
         between_solve(set, &mode, &begin);
-    *acceleration = lanes_max(capture_largest(&begin), *acceleration);
+    *acceleration = lanes_largest(begin.acceleration, SCENE_COORDINATES, *acceleration);
     explicit_take(asked, try, &mode, &begin, step);
     step->report.ambiguous_steps =
         choose(trouble.chosen, lanes_of(1), step->report.ambiguous_steps);
-    step->report.unranked_steps = choose(trouble.unranked, lanes_of(1), lanes_of(0));
+    step->report.unranked_steps = lanes_where(trouble.unranked);
     *stuck =
         try & (trouble.impact | trouble.none | trouble.several |
                between_violated(set, &mode, &begin) | between_hops(set, &mode, &begin, now->w));
@@ -273,10 +237,7 @@ static inline mask capture_smooth(const struct step *asked, mask try, lanes *sto
 /* What errors are measured by: the largest rate, at least 1 m/s or rad/s. */
 static inline lanes capture_size(const struct motion *now)
 {
-    lanes size = lanes_of(1);
-    for (int i = 0; i < SCENE_COORDINATES; i++)
-        size = lanes_max(lanes_abs(now->w[i]), size);
-    return size;
+    return lanes_largest(now->w, SCENE_COORDINATES, lanes_of(1));
 }
 
 /* ---- the standing step -----------------------------------------------------------------------*/
@@ -293,8 +254,7 @@ HOT mask capture_stands(contact_set touching, const struct advance *a, const str
                mask_less_equal(a->done, none) & mask_less_equal(h, a->part) &
                mask_less_equal(h, scene_longest_step(&set->body));
     EACH_CONTACT (c, 0) {
-        const mask closed = mask_less(none, set->may_touch[c]) &
-                            mask_less_equal(step->from->gap[c], lanes_of(STEP_CLOSED));
+        const mask closed = motion_closed(set, step->from->gap, c);
         fit &= touching >> c & 1 ? closed & mask_less(none, a->stood[c]) : LANES_NOT(closed);
     }
     return fit;
@@ -384,7 +344,7 @@ COLD mask capture_standing(struct advance *a, const struct step *asked, mask run
     for (int lane = 0; lane < LANES && mask_any(left); lane++) {
         if (!mask_get(left, lane))
             continue;
-        contact_set touching = 0;
+        contact_set touching = 0; /* of the lane alone, see mask_any */
         EACH_CONTACT (c, 0)
             if (lane_get(&step.set->may_touch[c], lane) > 0 &&
                 lane_get(&from.gap[c], lane) <= STEP_CLOSED)
@@ -416,7 +376,7 @@ static inline mask capture_attempt(struct advance *a, const struct step *whole, 
                                    struct motion *now, struct step_report *report, mask *failed)
 {
     const struct setting *const set = whole->set;
-    const lanes none = lanes_of(0), one = lanes_of(1), h = whole->h;
+    const lanes none = lanes_of(0), h = whole->h;
     const lanes tolerance = a->tolerance * capture_size(now);
     const lanes left = h - a->done;
     const mask hunt = live & mask_less(none, a->hunting);
@@ -426,7 +386,7 @@ static inline mask capture_attempt(struct advance *a, const struct step *whole, 
     const lanes length = choose(hunt, 0.5 * interval, interval);
     struct explicit_step step;
     mask stuck, crossed = MASK_NONE, arrived = MASK_NONE;
-    a->attempts += choose(live, one, none);
+    a->attempts += lanes_where(live);
     lanes acceleration, stood[CONTACTS];
     memcpy(stood, a->stood, sizeof stood);
     struct step part_of = *whole;
@@ -447,7 +407,7 @@ static inline mask capture_attempt(struct advance *a, const struct step *whole, 
             part_of.torque = step.torque;
         part_of.h = interval;
         crossed = capture_implicit(&part_of, a->stood, cross, &bounds, &next, &over);
-        over.events = choose(crossed, one, none);
+        over.events = lanes_where(crossed);
         law_integrate(&set->law, crossed, interval, step.integral_rate, next.integral);
         choose_all(crossed, &next, now, sizeof next);
         capture_add(a, crossed, cross, &over);
@@ -477,17 +437,15 @@ static inline mask capture_attempt(struct advance *a, const struct step *whole, 
     arrived |= on & mask_less_equal(left, length);
     const mask hunts = smooth & (event | (good & hunt));
     a->part = choose(live, next, a->part);
-    a->hunting = choose(live, choose(hunts, one, none), a->hunting);
+    a->hunting = choose(live, lanes_where(hunts), a->hunting);
     const mask tired =
         live & LANES_NOT(arrived) & mask_less(lanes_of(CAPTURE_ATTEMPTS), a->attempts);
     *failed = tired | (smooth & LANES_NOT(good) & mask_less(next, CAPTURE_SMALLEST * h));
     *report = a->sum;
     report->failure =
         choose(tired, lanes_of(STANCE_FAILURE_WORK), lanes_of(STANCE_FAILURE_TOLERANCE));
-    report->failure = choose(capture_in_range(now, h), report->failure, none);
-    struct step_report fresh;
-    report_clear(&fresh);
-    choose_all(arrived, &fresh, &a->sum, sizeof fresh);
+    report->failure = choose(motion_in_range(now, h), report->failure, none);
+    report_clear_where(arrived, &a->sum);
     a->done = choose(arrived, none, a->done);
     a->attempts = choose(arrived, none, a->attempts);
     a->crossings = choose(arrived, none, a->crossings);

@@ -24,6 +24,7 @@
  */
 #define METHOD_THETA 0.5 /* read by core/implicit/step.h, whose implicit step is not taken here */
 #define ADVANCE_PIECES   /* a step may be of any length */
+#define ADVANCE_FREES
 
 #include "engine/core/loop/kernel.h"
 /* In this order. */
@@ -259,7 +260,8 @@ static enum event_result event_step(struct advance *a, double target, struct eve
                                     ERKStepGetDky(a->arkode, to->tau, 0, a->y) != 0))
         return EVENT_FAILED;
     memcpy(to->y, NV_DATA_S(a->y), EVENT_SIZE * sizeof(double));
-    event_look(&a->problem, to);
+    event_evaluate(&a->problem, to->tau, to->y, &to->e);
+    event_margins(&a->problem, to->y, &to->e, to->margin);
     if (flag == ARK_ROOT_RETURN)
         return EVENT_FOUND;
     /* A step that the target cut short says nothing about the next one. */
@@ -475,9 +477,7 @@ static stance_failure event_begin(struct advance *a, struct event_point *p, stru
         law_torque(law, s, w, command);
         for (int i = 0; i < SCENE_ACTUATORS; i++)
             m->clipped[i] = command[i] > law->limit[i] ? 1 : command[i] < -law->limit[i] ? -1 : 0;
-        m->touches = 0;
-        for (int c = 0; c < OWN_CONTACTS; c++)
-            m->touches |= m->contact.closed[c] ? contact_with(c) : 0;
+        m->touches = contact_any(m->contact.closed, true);
         if (m->touches) /* a slip that has ended leaves what counts as zero */
             between_project(a->problem.set, &m->contact, true, p->y, p->y + SCENE_COORDINATES,
                             &p->e);
@@ -490,15 +490,6 @@ static stance_failure event_begin(struct advance *a, struct event_point *p, stru
         return event_consistent(&a->problem, p) ? STANCE_FAILURE_NONE : STANCE_FAILURE_PAINLEVE;
     }
     return STANCE_FAILURE_CONTACT;
-}
-
-/* The last state of a mode is put back onto its constraints. */
-static void event_finish(struct advance *a, struct event_point *p, struct motion *now)
-{
-    if (a->problem.mode.touches)
-        between_project(a->problem.set, &a->problem.mode.contact, true, p->y,
-                        p->y + SCENE_COORDINATES, &p->e);
-    event_enter(a, p, now);
 }
 
 static void event_report(const struct advance *a, const struct event_point *p,
@@ -560,7 +551,10 @@ static inline mask advance(struct advance *a, const struct step *step, mask live
             return false;
         }
         result = event_march(a, here, h);
-        event_finish(a, here, now);
+        if (a->problem.mode.touches) /* put back onto the mode's constraints */
+            between_project(step->set, &a->problem.mode.contact, true, here->y,
+                            here->y + SCENE_COORDINATES, &here->e);
+        event_enter(a, here, now);
         if (result == EVENT_FOUND && event_of_contact(&a->problem, here)) {
             report->events++;
             memset(a->stood, 0, sizeof a->stood);
@@ -573,13 +567,11 @@ static inline mask advance(struct advance *a, const struct step *step, mask live
     report->evaluations = a->problem.evaluations;
     *failed = failure != STANCE_FAILURE_NONE;
     if (*failed) {
-        double ahead[SCENE_COORDINATES], sum = 0;
-        for (int i = 0; i < SCENE_COORDINATES; i++) {
-            ahead[i] = now->s[i] + 2 * h * now->w[i];
+        double sum = 0;
+        for (int i = 0; i < SCENE_COORDINATES; i++)
             sum += now->s[i] + now->w[i];
-        }
         /* Otherwise the state tells, see bundle_failure. */
-        report->failure = isfinite(sum) && scene_angles_in_range(ahead) ? failure : 0;
+        report->failure = isfinite(sum) && motion_in_range(now, h) ? failure : 0;
         return false;
     }
     event_report(a, here, report);

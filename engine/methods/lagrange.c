@@ -50,21 +50,14 @@ struct advance {
 static void advance_load(struct advance *a, int lane, const stance_case *c)
 {
     (void)c;
-    lane_set(&a->done, lane, 0);
+    lane_clear(a, sizeof *a, lane);
     lane_set(&a->part, lane, INFINITY);
-    lane_set(&a->events, lane, 0);
-    for (int i = 0; i < OWN_CONTACTS; i++)
-        lane_set(&a->stood[i], lane, 0);
     report_clear_lane(&a->sum, lane);
 }
 static void advance_forget(struct advance *a, mask m)
 {
     for (int i = 0; i < OWN_CONTACTS; i++)
         a->stood[i] = choose(m, lanes_of(0), a->stood[i]);
-}
-static void advance_free(struct advance *a)
-{
-    (void)a;
 }
 
 /* One attempt in every lane. */
@@ -83,13 +76,9 @@ static inline mask advance(struct advance *a, const struct step *asked, mask liv
     struct contact_state mode;
     struct between_trouble trouble;
     struct explicit_step step;
-    const contact_set touching = step_touching(set, now->gap, LANES_ALL);
-    const struct drive drive = {asked->torque, asked->coupled, NULL};
-    const struct state at = state_of(now);
     struct step part = *asked;
     part.h = length;
-    between_evaluate(set, &at, &drive, touching, &begin);
-    between_mode(set, &begin, touching, a->stood, &mode, &trouble);
+    const contact_set touching = between_begin(asked, a->stood, &begin, &mode, &trouble);
     if (touching)
         between_solve(set, &mode, &begin);
     explicit_take(&part, live, &mode, &begin, &step);
@@ -107,17 +96,15 @@ static inline mask advance(struct advance *a, const struct step *asked, mask liv
     for (int c = 0; c < OWN_CONTACTS; c++)
         a->stood[c] = choose(switched, none, choose(take, stands[c], a->stood[c]));
     step.report.ambiguous_steps = choose(trouble.chosen, one, step.report.ambiguous_steps);
-    step.report.unranked_steps = choose(trouble.unranked, one, none);
-    struct step_report sum = a->sum;
-    report_add(&sum, &step.report);
-    choose_all(take, &sum, &a->sum, sizeof sum);
+    step.report.unranked_steps = lanes_where(trouble.unranked);
+    report_add_where(take, &a->sum, &step.report);
     choose_all(take, &step.end, now, sizeof step.end);
     a->sum.evaluations += choose(live & LANES_NOT(take), step.report.evaluations, none);
     mask unsolved = MASK_NONE;
     if (mask_any(switched)) {
         unsolved = switched & LANES_NOT(between_impact(set, switched, now, &a->sum));
-        a->sum.events += choose(switched, one, none);
-        a->events += choose(switched, one, none);
+        a->sum.events += lanes_where(switched);
+        a->events += lanes_where(switched);
     }
 
     /* A step may be so long that no projection brings a foot back onto the ground. */
@@ -138,9 +125,7 @@ static inline mask advance(struct advance *a, const struct step *asked, mask liv
     report->failure = choose(unsolved | deep, lanes_of(STANCE_FAILURE_CONTACT), report->failure);
     report->failure = choose(zeno, lanes_of(STANCE_FAILURE_EVENTS), report->failure);
     report->failure = choose(step.bad, step.failure, report->failure);
-    struct step_report fresh;
-    report_clear(&fresh);
-    choose_all(arrived, &fresh, &a->sum, sizeof fresh);
+    report_clear_where(arrived, &a->sum);
     a->done = choose(arrived, none, a->done);
     a->events = choose(arrived, none, a->events);
     return arrived;

@@ -1,5 +1,5 @@
 /* exchange.c - which parts of a mechanism take each other's place when the other leg stands. */
-#include "exchange.h"
+#include "engine/scenes/mechanism_pose.h"
 
 #include <string.h>
 

@@ -1,9 +1,9 @@
 /* mechanism.c - the scene of a described mechanism: names, units, ranges, and what belongs to what.
  */
+#include "engine/refuse.h"
 #include "engine/rest.h"
 #include "engine/scenes/mechanism_pose.h"
 #include "engine/tree.h"
-#include "exchange.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -279,33 +279,22 @@ static void add_causes(struct described *d)
             d->cause[d->scene.causes++] = m->body[b].name;
 }
 
-static int contacts_of(const stance_mechanism *m)
-{
-    int count = 0;
-    for (int e = 0; e < m->elements; e++)
-        count += m->element[e].sole ? 2 : 1;
-    for (int b = 0; b < m->bodies; b++)
-        count += stance_mechanism_stops(m, b, 0) + stance_mechanism_stops(m, b, 1);
-    return count;
-}
-
-static stance_error refuse(stance_message *message, int most, int count, const char *what)
-{
-    if (message)
-        snprintf(message->text, sizeof message->text, "%d %s: at most %d fit", count, what, most);
-    return STANCE_BAD_ARGUMENT;
-}
-
 stance_error stance_mechanism_scene(const stance_mechanism *m, stance_scene **scene,
                                     stance_message *message)
 {
-    const int contacts = contacts_of(m);
-    if (contacts > STANCE_MAX_CONTACTS) {
-        return refuse(message, STANCE_MAX_CONTACTS, contacts,
-                      "contacts, counting both ends of soles and stops");
-    }
+    int contacts = 0;
+    for (int e = 0; e < m->elements; e++)
+        contacts += m->element[e].sole ? 2 : 1;
+    for (int b = 0; b < m->bodies; b++)
+        contacts += stance_mechanism_stops(m, b, 0) + stance_mechanism_stops(m, b, 1);
+    if (contacts > STANCE_MAX_CONTACTS)
+        return stance_refuse(message, STANCE_BAD_ARGUMENT,
+                             "%d contacts, counting both ends of soles and stops: at most %d fit",
+                             contacts, STANCE_MAX_CONTACTS);
     if (m->numbers > STANCE_ROBOT_FALL_HEIGHT)
-        return refuse(message, STANCE_ROBOT_FALL_HEIGHT, m->numbers, "numbers that may vary");
+        return stance_refuse(message, STANCE_BAD_ARGUMENT,
+                             "%d numbers that may vary: at most %d fit", m->numbers,
+                             STANCE_ROBOT_FALL_HEIGHT);
     struct described *const d = calloc(1, sizeof *d);
     if (!d)
         return STANCE_NO_MEMORY;

@@ -11,8 +11,8 @@
  *   H' dlambda = A Z y'' - [ dQ/dq + d(H' lambda)/dq ] Z y - dQ/dq' Z y' - B dtorque.
  */
 #include "engine/matrix.h"
+#include "engine/rows.h"
 #include "engine/scenes/mechanism_pose.h"
-#include "engine/scenes/rows.h"
 
 enum { N = STANCE_MAX_COORDINATES, P = STANCE_MAX_POSTURE, M = STANCE_MAX_ACTUATORS };
 

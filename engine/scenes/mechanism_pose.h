@@ -80,6 +80,13 @@ void stance_pose_forces(const stance_pose *pose, const double *torque,
 void stance_pose_freedoms(const stance_scene *scene, const stance_pose *pose,
                           stance_equilibrium *equilibrium);
 
+/* Two bodies of one parent whose subtrees have the same joints, contacts and actuators in the same
+ * order are a pair; of what carries contacts there must be one pair, of other kinds (arms) may be
+ * more. Or the root is a leg and the other one hangs from it. Numbers do not count: a leg may be
+ * heavier. */
+void stance_exchange_make(const stance_mechanism *m, const stance_scene *scene,
+                          stance_exchange *exchange);
+
 /* ---- the functions of the scene; see stance.h ------------------------------------------------ */
 
 void stance_mechanism_gaps(const stance_scene *scene, const double *robot, const double *position,

@@ -18,8 +18,8 @@
  */
 #include "engine/matrix.h"
 #include "engine/refuse.h"
+#include "engine/rows.h"
 #include "engine/scenes/mechanism_pose.h"
-#include "engine/scenes/rows.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -3,7 +3,7 @@
 #include "engine/rest.h"
 
 #include "engine/matrix.h"
-#include "engine/scenes/rows.h"
+#include "engine/rows.h"
 
 #define ROUNDS 10
 #define STILL 1e-8 /* m/s^2, rad/s^2: an acceleration that is none */

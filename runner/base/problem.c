@@ -7,11 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static bool same_place(struct mark a, struct mark b)
-{
-    return a.set == b.set && a.line == b.line && a.column == b.column;
-}
-
 void problem_record(struct problems *problems, struct mark mark, const char *format, ...)
 {
     if (problems_full(problems)) {
@@ -27,7 +22,7 @@ void problem_record(struct problems *problems, struct mark mark, const char *for
     problem->mark = mark;
     problem->order = problems->count;
     for (size_t i = 0; i < problems->count; i++)
-        if (same_place(problems->list[i].mark, mark) &&
+        if (mark_compare(problems->list[i].mark, mark) == 0 &&
             strcmp(problems->list[i].text, problem->text) == 0)
             return;
     problems->count++;
@@ -36,13 +31,8 @@ void problem_record(struct problems *problems, struct mark mark, const char *for
 static int by_position(const void *left, const void *right)
 {
     const struct problem *a = left, *b = right;
-    if (a->mark.set != b->mark.set)
-        return a->mark.set < b->mark.set ? -1 : 1;
-    if (a->mark.line != b->mark.line)
-        return a->mark.line < b->mark.line ? -1 : 1;
-    if (a->mark.column != b->mark.column)
-        return a->mark.column < b->mark.column ? -1 : 1;
-    return a->order < b->order ? -1 : a->order > b->order;
+    const int order = mark_compare(a->mark, b->mark);
+    return order ? order : a->order < b->order ? -1 : a->order > b->order;
 }
 
 /* Cut to some `limit` bytes, never inside a character; control characters become '?', others that

@@ -12,6 +12,14 @@ struct mark {
     int set, line, column;
 };
 
+/* Which is first in order: below 0, 0 (the same place), above 0. */
+static inline int mark_compare(struct mark a, struct mark b)
+{
+    return a.set != b.set     ? a.set - b.set
+           : a.line != b.line ? a.line - b.line
+                              : a.column - b.column;
+}
+
 enum {
     PROBLEMS_SHOWN = 20, /* lines that are printed; the rest is counted */
     PROBLEMS_KEPT = 40,

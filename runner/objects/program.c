@@ -271,22 +271,20 @@ static bool name_it(const char *source, const char *names, const struct compiler
     return true;
 }
 
-static bool compile(const struct program_text *text, const char *source, const char *names,
-                    const struct compiler *compiler, const char *isa, const char *flags,
-                    struct image *image, stance_message *message)
+/* `law` says for what, and how; its image is handed over. */
+static bool compile(struct compilation *law, const char *source, const char *names,
+                    const struct compiler *compiler, struct image *image, stance_message *message)
 {
     const struct compiler_file files[] = {{"names.h", names}, {"law.c", source}};
-    struct compilation law = {.method = text->file,
-                              .isa = isa,
-                              .flags = flags,
-                              .source = {"law.c", LAW_DIRECTORY "/law_math.c"}};
     struct watch watch = {.doing = "compiling a law", .progress = progress_begin(true)};
+    law->source[0] = "law.c";
+    law->source[1] = LAW_DIRECTORY "/law_math.c";
     watch_begin(&watch);
-    compiler_run(compiler, files, sizeof files / sizeof *files, &law, 1, &watch);
+    compiler_run(compiler, files, sizeof files / sizeof *files, law, 1, &watch);
     watch_end(&watch);
-    *image = law.image;
+    *image = law->image;
     if (!image->bytes)
-        *message = law.message;
+        *message = law->message;
     return image->bytes != NULL;
 }
 
@@ -297,13 +295,14 @@ bool program_for_page(const struct program_text *text, const stance_scene *scene
         "--target=wasm32-wasi -O2 -std=c17 -ffp-contract=off -fno-math-errno -w -I. "
         "-DSTANCE_LANES=2 "
         "-msimd128 -mexec-model=reactor -Wl,--strip-all,--gc-sections -lm " LAW_FLAGS_CLANG;
+    struct compilation law = {.method = text->file, .isa = "WebAssembly", .flags = flags};
     struct compiler clang;
     char *const source = source_text(text), *const names = names_text(text, scene);
     *image = (struct image){NULL, 0};
     bool good = (source && names) || no_memory(message);
     good = good && (compiler_named(&clang, "clang") ||
                     complain(message, "clang, which compiles laws for pages, does not run here"));
-    good = good && compile(text, source, names, &clang, "WebAssembly", flags, image, message);
+    good = good && compile(&law, source, names, &clang, image, message);
     free(source);
     free(names);
     return good;
@@ -428,8 +427,9 @@ static bool found(const struct program_text *text, const char *source, const cha
     if (!good && !compiles) {
         complain(message, "%.80s: %.140s", text->file, why.text);
     } else if (!good) {
-        good = compile(text, source, names, &compiler, law_isa(), law_flags(&compiler), image,
-                       message) &&
+        struct compilation law = {
+            .method = text->file, .isa = law_isa(), .flags = law_flags(&compiler)};
+        good = compile(&law, source, names, &compiler, image, message) &&
                look_into(image, text->file, message) &&
                (image_seal(image, &label) || no_memory(message));
         if (good)

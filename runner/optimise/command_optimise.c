@@ -1,7 +1,6 @@
 /* command_optimise.c - `stance optimise`: from a scenario with a section optimise to the file of a
  * search and the scenario of its best candidate, on one rank or many.
  */
-#include "best.h"
 #include "search.h"
 
 #include "runner/base/message.h"
@@ -26,7 +25,7 @@ static const double most_undecided = 1e-3;
 struct optimise {
     struct run run;         /* whose scenario is the first candidate */
     struct scenario *asked; /* as it was read, on rank 0 */
-    char best[1024];
+    char best[1100];
     struct search_file origin; /* of a search that is gone on with, on rank 0 */
     bool resumes;
     struct search search;
@@ -45,6 +44,7 @@ static struct optimise *of(struct run *run)
 static void stage_options(struct run *run)
 {
     run->options.time_limit = INFINITY;
+    run->options.ending = "-search";
     run_take_options(run, &command_optimise);
 }
 
@@ -100,20 +100,14 @@ static void stage_scenario(struct run *run)
 static bool name_files(struct optimise *o)
 {
     struct run *const run = &o->run;
-    const char *const output = run->options.output;
-    const size_t size = sizeof run->file;
-    const int length = output
-                           ? snprintf(run->file, size, "%s", output)
-                           : snprintf(run->file, size, "results/%s-search.h5", run->scenario->name);
-    if (length < 0 || (size_t)length >= size - 16)
-        return run_fail(run, EXIT_IO, "stance optimise: the name of the file is too long");
-    size_t stem = (size_t)length;
+    run_name_file(run);
+    size_t stem = strlen(run->file);
     if (stem > 3 && strcmp(run->file + stem - 3, ".h5") == 0)
         stem -= 3;
     if (stem > 7 && strncmp(run->file + stem - 7, "-search", 7) == 0)
         stem -= 7;
     snprintf(o->best, sizeof o->best, "%.*s-best.yaml", (int)stem, run->file);
-    return true;
+    return run->failure.code == EXIT_DONE;
 }
 
 /* Of a damaged file. */
@@ -353,16 +347,14 @@ static void warn(const struct search *search)
 static void print_limit(const struct search *search)
 {
     const struct search_file *const f = &search->record;
-    const size_t circumstances = f->length[SEARCH_CIRCUMSTANCE];
-    size_t least;
+    const char *where;
     const double limit =
-        linear_limit_overall(search->scenario->search.worst, circumstances,
-                             &f->confirmed_allowed[(size_t)f->chosen * circumstances], &least);
+        search_limit_of(f, search->scenario->search.worst, (size_t)f->chosen, &where);
     if (!isfinite(limit))
         return;
     printf(", linear theory allows any %.2f %%", 100 * limit);
-    if (least < circumstances)
-        printf(" in its worst circumstance (%s)", f->circumstance[least]);
+    if (where)
+        printf(" in its worst circumstance (%s)", where);
     if (allowed_glued_in(search->scenario))
         fputs(" (" ALLOWED_GLUED ")", stdout);
 }

@@ -549,10 +549,11 @@ static enum trials_end confirm(struct search *search, stance_message *message)
 }
 
 /* The first and the chosen one. */
-static enum trials_end try_elsewhere(struct search *search, size_t *places, stance_message *message)
+static enum trials_end try_elsewhere(struct search *search, stance_message *message)
 {
     struct search_file *const f = &search->record;
     const size_t n = (size_t)search->space.n;
+    size_t *const places = &f->length[SEARCH_ELSEWHERE];
     enum trials_end end = TRIALS_DONE;
     double value[COMPARED * SCENARIO_MAX_PATHS], share[COMPARED] = {0};
     memcpy(value, f->confirmed_value, n * sizeof *value);
@@ -563,32 +564,49 @@ static enum trials_end try_elsewhere(struct search *search, size_t *places, stan
             continue;
         outlook_begin(&search->outlook, (double)(COMPARED * elsewhere_starts(search->scenario)));
         end = elsewhere_run(&search->trials, e, COMPARED, value, share, message);
-        f->elsewhere[*places] = end == TRIALS_DONE ? strdup(name) : NULL;
-        if (f->elsewhere[*places]) {
-            f->elsewhere_first[*places] = share[0];
-            f->elsewhere_chosen[(*places)++] = share[1];
-        }
+        f->elsewhere[*places] = strdup(name);
+        f->elsewhere_first[*places] = share[0];
+        f->elsewhere_chosen[*places] = share[1];
+        *places += f->elsewhere[*places] != NULL;
+    }
+    while (end != TRIALS_DONE && *places > 0) { /* they are not told of */
+        free(f->elsewhere[--*places]);
+        f->elsewhere[*places] = NULL;
     }
     return end;
 }
 
+double search_limit_of(const struct search_file *f, bool worst, size_t k, const char **where)
+{
+    const size_t circumstances = f->length[SEARCH_CIRCUMSTANCE];
+    const double *const share = &f->confirmed_allowed[k * circumstances];
+    double sum = 0, least = NAN;
+    *where = NULL;
+    for (size_t c = 0; c < circumstances; c++) {
+        sum += share[c];
+        if (worst && circumstances > 1 && !isnan(share[c]) && !(share[c] >= least)) {
+            least = share[c];
+            *where = f->circumstance[c];
+        }
+    }
+    return worst && circumstances > 1 ? least : sum / (double)circumstances;
+}
+
 /* Rank 0: what linear theory allows the first and the chosen one, and that all is done. */
-static void finish(struct search *search, size_t places, const char *why)
+static void finish(struct search *search, const char *why)
 {
     struct search_file *const f = &search->record;
     const uint64_t confirm = search->scenario->search.confirm;
     const uint64_t starts = confirm < MOST_ALLOWED ? confirm : MOST_ALLOWED;
     const size_t n = (size_t)search->space.n, circumstances = search->trials.circumstances;
     const size_t which[COMPARED] = {0, (size_t)f->chosen};
-    size_t least;
+    const char *where;
     for (int i = 0; i < COMPARED; i++)
         linear_limit_shares(&search->trials, &f->confirmed_value[which[i] * n], starts,
                             &f->confirmed_allowed[which[i] * circumstances]);
-    f->linear_limit = linear_limit_overall(search->scenario->search.worst, circumstances,
-                                           &f->confirmed_allowed[which[1] * circumstances], &least);
+    f->linear_limit = search_limit_of(f, search->scenario->search.worst, which[1], &where);
     f->length[SEARCH_CONFIRMED] = search->compared;
     f->length[SEARCH_START] = confirm;
-    f->length[SEARCH_ELSEWHERE] = places;
     f->finished = 1;
     f->note = strdup(why);
 }
@@ -599,18 +617,17 @@ enum trials_end search_run(struct search *search, stance_message *message)
 {
     struct search_file *const f = &search->record;
     struct course at = {.known = f->length[SEARCH_GENERATION], .best = -1, .why = ""};
-    size_t places = 0;
     compare_later(search, 0, -1, search->space.first);
     enum trials_end end = run_stages(search, &at, message);
     cma_free(at.cma);
     if (end == TRIALS_DONE)
         end = confirm(search, message);
     if (end == TRIALS_DONE)
-        end = try_elsewhere(search, &places, message);
+        end = try_elsewhere(search, message);
     if (search->parallel->rank != 0)
         return end;
     if (end == TRIALS_DONE)
-        finish(search, places, at.why);
+        finish(search, at.why);
     else
         f->chosen = -1;
     if (end != TRIALS_BROKEN && f->length[SEARCH_GENERATION] > 0 && search->save &&

@@ -10,7 +10,7 @@
 #ifndef STANCE_OPTIMISE_SEARCH_H
 #define STANCE_OPTIMISE_SEARCH_H
 
-#include "space.h"
+#include "candidate.h"
 #include "trials.h"
 
 #include "runner/store/search_file.h"
@@ -63,6 +63,11 @@ bool search_make(struct search *search, const struct scenario *scenario, const c
                  const struct parallel *parallel, const struct search_file *origin,
                  stance_message *message);
 void search_free(struct search *search);
+
+/* Of confirmed candidate k, the share of fresh starts from which linear theory allows any
+ * controller to recover, as a search counts: no more than in the circumstance *where that allows
+ * least, if it is of the worst of several; else the mean, *where is NULL. NAN: it sets no bound. */
+double search_limit_of(const struct search_file *f, bool worst, size_t k, const char **where);
 
 /* Collective, with counters. */
 enum trials_end search_run(struct search *search, stance_message *message);

@@ -342,21 +342,6 @@ void linear_limit_shares(struct trials *t, double *value, uint64_t starts, doubl
     free(inside);
 }
 
-double linear_limit_overall(bool worst, size_t circumstances, const double *share, size_t *least)
-{
-    double sum = 0;
-    *least = circumstances;
-    for (size_t c = 0; c < circumstances; c++) {
-        sum += share[c];
-        if (!isnan(share[c]) && (*least == circumstances || share[c] < share[*least]))
-            *least = c;
-    }
-    if (worst && circumstances > 1)
-        return *least < circumstances ? share[*least] : NAN;
-    *least = circumstances;
-    return sum / (double)circumstances;
-}
-
 /* ---- elsewhere ------------------------------------------------------------------------------- */
 
 enum { CONTACTS, FRICTION, LATER, SLOWER, HEAVIER, LIGHTER };

@@ -98,11 +98,6 @@ bool linear_limit_add(const struct scenario *s, size_t circumstance, double *ins
  * share[circumstances]; NAN: linear theory sets no bound there. */
 void linear_limit_shares(struct trials *trials, double *value, uint64_t starts, double *share);
 
-/* What these allow a search as it counts: no more than in the circumstance *least, that with the
- * smallest share, if it is of the worst of several; else their mean, *least is `circumstances`.
- * NAN: they set no bound. */
-double linear_limit_overall(bool worst, size_t circumstances, const double *share, size_t *least);
-
 /* ---- elsewhere ------------------------------------------------------------------------------- */
 
 /* What an optimum costs where it was not sought: with contacts that the scenario leaves out, on

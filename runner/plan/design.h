@@ -122,6 +122,9 @@ const char *design_late(int delay, const char *verb, char buffer[64]);
 /* What a bound of the set is. */
 const char *design_bound_name(const struct design_report *r, int bound, char name[64]);
 
+/* Puts complex numbers among facts, [[re, im], ...]; with a dot before the key, which it has, for
+ * people. */
+void design_put_complex(json_t *facts, const char *key, int n, const double *re, const double *im);
 /* What `stance design` says (runner/base/say.h): a new reference, and for people its text. */
 json_t *design_facts(const struct design_report *r);
 extern const char design_text[];

@@ -102,8 +102,7 @@ static void put_matrix(const struct design_report *r, json_t *facts, const char 
     put(facts, key + 1, matrix);
 }
 
-/* The same of complex numbers. */
-static void put_complex(json_t *facts, const char *key, int n, const double *re, const double *im)
+void design_put_complex(json_t *facts, const char *key, int n, const double *re, const double *im)
 {
     const double scale = fmax(largest(n, re), largest(n, im));
     json_t *const list = json_array();
@@ -119,24 +118,33 @@ static void put_complex(json_t *facts, const char *key, int n, const double *re,
     put(facts, key + 1, list);
 }
 
-/* {state: value}, null where it is infinite; with a dot before its key, for people: with up to two
- * numbers of each state and its unit. */
+/* Adds a name with its number, null where it is infinite, to an object; with a dot before its key,
+ * for people, to a list of {name, is} and what `more` has of it. */
+static void put_named(json_t *facts, const char *key, const char *name, double is, json_t *more)
+{
+    if (!json_object_get(facts, key)) {
+        put(facts, key, json_array());
+        put(facts, key + 1, json_object());
+    }
+    const bool finite = isfinite(is);
+    json_t *const shown =
+        json_pack("{s:s, s:o}", "name", name, "is", finite ? json_real(is) : json_string("inf"));
+    json_object_update_new(shown, more);
+    json_array_append_new(json_object_get(facts, key), shown);
+    put(json_object_get(facts, key + 1), name, finite ? json_real(is) : json_null());
+}
+
+/* A number of each state with its unit; people see another one beside it, too. */
 static void put_states(const struct design_report *r, json_t *facts, const char *key,
                        const double *x, const double *also)
 {
-    json_t *const map = json_object(), *const list = json_array();
     char name[SCENARIO_NAME];
     for (int i = 0; i < r->states; i++) {
         const double y = also ? also[i] : NAN;
-        design_state_name(r, i, name);
-        put(map, name, isfinite(x[i]) ? json_real(x[i]) : json_null());
-        json_array_append_new(list, json_pack("{s:s, s:o, s:o?, s:b, s:s}", "state", name, "x",
-                                              isfinite(x[i]) ? json_real(x[i]) : json_string("inf"),
-                                              "y", isinf(y) ? json_string("inf") : json_real(y),
-                                              "endless", isinf(y), "unit", state_unit(r, i)));
+        put_named(facts, key, design_state_name(r, i, name), x[i],
+                  json_pack("{s:o?, s:b, s:s}", "y", isinf(y) ? json_string("inf") : json_real(y),
+                            "endless", isinf(y), "unit", state_unit(r, i)));
     }
-    put(facts, key, list);
-    put(facts, key + 1, map);
 }
 
 /* ---- its parts ------------------------------------------------------------------------------- */
@@ -146,27 +154,22 @@ static json_t *equilibrium_facts(const struct design_report *r)
     const stance_scene *const scene = r->scenario->scene;
     const stance_equilibrium *const e = &r->equilibrium;
     const double scale = fmax(r->normal, largest(scene->actuators, e->torque));
-    json_t *const position = json_object(), *const torque = json_object(),
-                  *const places = json_array(), *const holding = json_array();
     char supports[STANCE_MAX_CONTACTS * 40];
+    json_t *const facts =
+        json_pack("{s:s}", "support", design_supports(scene, e, supports, sizeof supports));
     for (int i = 0; i < scene->coordinates; i++) {
         const stance_quantity *const c = &scene->coordinate[i];
-        put(position, c->name, json_real(e->position[i]));
-        json_array_append_new(places,
-                              json_pack("{s:s, s:f, s:s, s:s}", "name", c->name, "at",
-                                        e->position[i] + 0.0, "unit", c->unit, "text", c->text));
+        put_named(facts, ".position", c->name, e->position[i],
+                  json_pack("{s:f, s:s, s:s}", "is", e->position[i] + 0.0, "unit", c->unit, "text",
+                            c->text));
     }
-    for (int i = 0; i < scene->actuators; i++) {
-        const char *const name = scene->actuator_name[i];
-        put(torque, name, json_real(e->torque[i]));
-        json_array_append_new(holding, json_pack("{s:s, s:f, s:b}", "name", name, "is",
-                                                 dusted(e->torque[i], scale), "slide",
-                                                 slides(scene, scene->actuated[i])));
-    }
-    return json_pack("{s:s, s:o, s:o, s:f, s:o, s:o, s:b, s:s}", "support",
-                     design_supports(scene, e, supports, sizeof supports), "position", position,
-                     "torque", torque, "normal_force", r->normal, ".places", places, ".holding",
-                     holding, ".stands", e->supports != 0, ".remark", r->remark.text);
+    for (int i = 0; i < scene->actuators; i++)
+        put_named(facts, ".torque", scene->actuator_name[i], e->torque[i],
+                  json_pack("{s:f, s:b}", "is", dusted(e->torque[i], scale), "slide",
+                            slides(scene, scene->actuated[i])));
+    json_object_update_new(facts, json_pack("{s:f, s:b, s:s}", "normal_force", r->normal, ".stands",
+                                            e->supports != 0, ".remark", r->remark.text));
+    return facts;
 }
 
 static json_t *allowed_facts(const struct design_report *r)
@@ -175,9 +178,9 @@ static json_t *allowed_facts(const struct design_report *r)
     if (!allowed->exists)
         return json_null();
     json_t *const facts = json_object();
-    put_complex(facts, ".unstable_modes", allowed->modes, allowed->re, allowed->im);
-    put_complex(facts, ".unreached_modes", allowed->unreached, allowed->unreached_re,
-                allowed->unreached_im);
+    design_put_complex(facts, ".unstable_modes", allowed->modes, allowed->re, allowed->im);
+    design_put_complex(facts, ".unreached_modes", allowed->unreached, allowed->unreached_re,
+                       allowed->unreached_im);
     json_object_update_new(facts, json_pack("{s:b, s:b}", "glued", allowed_glued(&r->equilibrium),
                                             ".some", allowed->modes + allowed->unreached > 0));
     put_states(r, facts, ".low", allowed->reach[0], allowed->reach[1]);
@@ -219,7 +222,7 @@ static json_t *sampled_facts(const struct design_report *r)
                                     r->scenario->base.sample_time, "delay", r->delay, "lag", r->lag,
                                     ".acting", design_late(r->delay, "acting ", late), ".rated",
                                     isfinite(r->scenario->base.torque_rate));
-    put_complex(facts, ".eigenvalues", r->sampled, r->sampled_re, r->sampled_im);
+    design_put_complex(facts, ".eigenvalues", r->sampled, r->sampled_re, r->sampled_im);
     json_object_update_new(
         facts, json_pack("{s:f, s:s, s:o, s:o?, s:n}", "spectral_radius", r->radius, ".radius",
                          design_radius(r, 6, radius), "critical_delay",
@@ -247,7 +250,7 @@ static json_t *beyond_facts(const struct design_report *r)
                            json_pack("{s:o, s:o, s:o}", "normal", vector(r->states, r->plane),
                                      "push", vector(r->inputs, r->push), ".push", pushes));
     put_matrix(r, facts, ".gain", (struct sides){true, false}, K);
-    put_complex(facts, ".closed_loop_eigenvalues", r->states, r->beyond_re, r->beyond_im);
+    design_put_complex(facts, ".closed_loop_eigenvalues", r->states, r->beyond_re, r->beyond_im);
     return facts;
 }
 
@@ -269,7 +272,7 @@ static void put_design(const struct design_report *r, json_t *facts)
         put(facts, "design_time", json_string(times[values->design_time]));
     if (design == DESIGN_PLACE || design == DESIGN_PLACE_SCHUR) {
         const int poles = scenario_poles(values, re, im);
-        put_complex(facts, ".poles", poles, re, im);
+        design_put_complex(facts, ".poles", poles, re, im);
         put(facts, ".all_poles", json_boolean(poles == r->states));
     }
     for (int i = 0; i < r->states; i++)
@@ -295,7 +298,7 @@ static json_t *controller_facts(const struct design_report *r)
         return json_pack("{s:s, s:b}", "kind", law->name, ".own", law->program);
     json_t *const facts = json_pack("{s:s}", "kind", law->name);
     put_matrix(r, facts, ".gain", (struct sides){true, false}, r->K);
-    put_complex(facts, ".closed_loop_eigenvalues", r->states, r->closed_re, r->closed_im);
+    design_put_complex(facts, ".closed_loop_eigenvalues", r->states, r->closed_re, r->closed_im);
     json_object_update_new(
         facts, json_pack("{s:b, s:o, s:o?, s:o?}", "stable", r->stable, "sampled_loop",
                          sampled_facts(r), "critical_sample_time", json_real(r->critical[0]),
@@ -313,23 +316,6 @@ static json_t *controller_facts(const struct design_report *r)
 
 /* ---- all of it ------------------------------------------------------------------------------- */
 
-static void put_robot(const struct design_report *r, json_t *facts)
-{
-    const stance_scene *const scene = r->scenario->scene;
-    json_t *const robot = json_object(), *const told = json_array();
-    int width = 14;
-    for (int i = 0; i < scene->robot_count; i++) {
-        const stance_quantity *const of = &scene->robot[i];
-        width = (int)fmax(width, (double)strlen(of->name));
-        put(robot, of->name, json_real(r->model[i]));
-        json_array_append_new(told,
-                              json_pack("{s:s, s:f, s:s}", "name", of->name, "is", r->model[i],
-                                        "unit", strcmp(of->unit, "1") == 0 ? "" : of->unit));
-    }
-    json_object_update_new(
-        facts, json_pack("{s:o, s:o, s:i}", "robot", robot, ".robot", told, ".width", width));
-}
-
 json_t *design_facts(const struct design_report *r)
 {
     const struct scenario *const s = r->scenario;
@@ -342,7 +328,14 @@ json_t *design_facts(const struct design_report *r)
         json_string_nocheck(s->file), "title", s->title, "scene", s->scene->name, ".name",
         json_string_nocheck(s->title[0] ? s->title : s->name), ".swept", s->axes > 0, ".units",
         state_units(r), ".inputs", input_units(r), ".absent", r->allowed.absent.text);
-    put_robot(r, facts);
+    int width = 14;
+    for (int i = 0; i < s->scene->robot_count; i++) {
+        const stance_quantity *const of = &s->scene->robot[i];
+        width = (int)fmax(width, (double)strlen(of->name));
+        put_named(facts, ".robot", of->name, r->model[i],
+                  json_pack("{s:s}", "unit", strcmp(of->unit, "1") == 0 ? "" : of->unit));
+    }
+    put(facts, ".width", json_integer(width));
     for (int i = 0; i < r->states; i++)
         json_array_append_new(states, json_string(design_state_name(r, i, name)));
     for (int i = 0; i < r->inputs; i++)
@@ -353,7 +346,7 @@ json_t *design_facts(const struct design_report *r)
                          equilibrium_facts(r), "states", states, "inputs", inputs));
     put_matrix(r, facts, ".A", (struct sides){false, false}, r->A);
     put_matrix(r, facts, ".B", (struct sides){false, true}, r->B);
-    put_complex(facts, ".open_loop_eigenvalues", r->states, r->open_re, r->open_im);
+    design_put_complex(facts, ".open_loop_eigenvalues", r->states, r->open_re, r->open_im);
     json_object_update_new(facts, json_pack("{s:{s:i, s:i, s:o, s:b}, s:o, s:o}", "kalman", "rank",
                                             r->rank, "states", r->states, "singular_values",
                                             vector(r->states, r->singular), ".full",
@@ -368,8 +361,8 @@ const char design_text[] =
     "\nRobot that the design believes in\n"
     "[.robot*:  {name%-*s} {is%10.6g}[unit: {unit}]\n]"
     "[equilibrium:\nEquilibrium[.stands:, standing on ]{support}\n"
-    "[.places*:  {name%-8s} {at%12.6f} {unit%-4s} {text}\n]"
-    "[.holding*:  {name%-8s} {is%12.6f} [slide:N    force|N m  torque] that holds it\n]"
+    "[.position*:  {name%-8s} {is%12.6f} {unit%-4s} {text}\n]"
+    "[.torque*:  {name%-8s} {is%12.6f} [slide:N    force|N m  torque] that holds it\n]"
     "[.stands:  force    {normal_force%12.6f} N    normal force on {support}, the robot's weight"
     "[ground/slope: across the slope]\n]"
     /* what the design believes of the ground and the world, where that is not the usual */
@@ -388,7 +381,7 @@ const char design_text[] =
     "[unreached_modes:  no torque moves {.unreached_modes}\n"
     "                   these modes do not decay: a state with a part in one has no reach\n]"
     "[.some:  reach                     down to          up to\n"
-    "[.low*:  {state%-18s} [endless:        no end         no end|{x%14.6g} {y%14.6g} {unit}]\n]"
+    "[.low*:  {name%-18s} [endless:        no end         no end|{is%14.6g} {y%14.6g} {unit}]\n]"
     "|  everything: no mode is unstable\n]"
     "|  not known: {.absent}\n]"
     "\nController: [controller:"
@@ -407,7 +400,7 @@ const char design_text[] =
     "{sweeps} sweeps\n]"
     "[beyond:\nBeyond the plane normal X = 1 torques are less by push (normal X - 1): gains there\n"
     "  K + push normal{.gain}\n\n"
-    "[.normal*:  {state%-16s} {x%14.6g} 1/({unit})\n]"
+    "[.normal*:  {name%-16s} {is%14.6g} 1/({unit})\n]"
     "[.push*:  push, {key%-10s} {value%14.6g} N m\n]"
     "  its closed loop {.closed_loop_eigenvalues}\n]"
     "[sampled_loop:\nSampled every {sample_time%g} s, torques held in between{.acting}\n"
@@ -421,7 +414,7 @@ const char design_text[] =
     "[sampled_loop/.delay:  critical delay     {sampled_loop/.delay} samples at this sample time\n"
     "  critical lag       {sampled_loop/.lag}\n]"
     "[sampled_loop/.wander:  noise makes states wander by (rms, to first order, without limits)\n"
-    "[sampled_loop/.wander*:    {state%-16s} {x%.4g} {unit}\n]]"
+    "[sampled_loop/.wander*:    {name%-16s} {is%.4g} {unit}\n]]"
     "|  critical sample time: none, the loop is unstable in continuous time\n]"
     "[design:\nLargest set V = X' P X <= c in which the linear picture meets no bound\n"
     "[lyapunov:  V falls by sum (X/tolerance)^2 [sampled:a sample|a second], tolerances "
@@ -430,5 +423,5 @@ const char design_text[] =
     "  c                  {.level%.6g}\n"
     "  what binds         {binding}\n"
     "  reach                    others 0    others free\n"
-    "[.alone*:  {state%-18s} {x%14.6g} {y%14.6g} {unit}\n]"
+    "[.alone*:  {name%-18s} {is%14.6g} {y%14.6g} {unit}\n]"
     "|  none: {.absent}\n]]]]";

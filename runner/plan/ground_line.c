@@ -35,7 +35,7 @@ void ground_gaps(const stance_case *c, const double *position, double gap[STANCE
     double height, end, ignored;
     struct ground_pieces pieces;
     c->scene->gaps(c->scene, c->robot, position, gap);
-    ground_pieces_find(c, 0, NULL, NULL, NULL, NULL, NULL, &pieces);
+    ground_pieces_find(c, NULL, &pieces);
     for (int k = 0; c->body.plates > 0 && k < c->scene->contacts; k++) {
         const double place = c->scene->grip[k] < 0 ? NAN : along(c, position, rest, k, &ignored);
         if (!(fabs(place) < FARTHEST))
@@ -47,62 +47,55 @@ void ground_gaps(const stance_case *c, const double *position, double gap[STANCE
 
 /* ---- pieces by footfall ---------------------------------------------------------------------- */
 
-struct footfalls {
-    const stance_case *c;
-    const double *position, *velocity, *force, *gap; /* all rows */
-};
-
 /* On the ground: at the beginning, or with a force since the row before. */
-static bool is_down(const struct footfalls *f, size_t row, int contact)
+static bool is_down(const stance_case *c, const struct ground_motion *m, size_t row, int contact)
 {
-    const size_t k = row * (size_t)f->c->scene->contacts + (size_t)contact;
-    return row > 0 ? f->force[2 * k] > 0 : fabs(f->gap[k]) < NEAR;
+    const size_t k = row * (size_t)c->scene->contacts + (size_t)contact;
+    return row > 0 ? m->force[2 * k] > 0 : fabs(m->gap[k]) < NEAR;
 }
 
-static double place_of(const struct footfalls *f, size_t row, int contact, double *rises)
+static double place_of(const stance_case *c, const struct ground_motion *m, size_t row, int contact,
+                       double *rises)
 {
-    const size_t k = row * (size_t)f->c->scene->coordinates;
-    return along(f->c, f->position + k, f->velocity + k, contact, rises);
+    const size_t k = row * (size_t)c->scene->coordinates;
+    return along(c, m->position + k, m->velocity + k, contact, rises);
 }
 
 /* What is laid once so many footfalls have been, before the next one. */
-static void lay(const struct footfalls *f, double footfalls, size_t row, double time, int contact,
-                struct ground_pieces *pieces)
+static void lay(const stance_case *c, const struct ground_motion *m, double footfalls, size_t row,
+                int contact, struct ground_pieces *pieces)
 {
-    const stance_tree_numbers *const body = &f->c->body;
     double ignored;
-    for (int i = 0; i < body->plates; i++) {
-        if (body->plate[i].footfall != footfalls + 1)
+    for (int i = 0; i < c->body.plates; i++) {
+        if (c->body.plate[i].footfall != footfalls + 1)
             continue;
-        pieces->from[i] = place_of(f, row, contact, &ignored) + body->plate[i].from;
-        pieces->laid[i] = row > 0 ? time : -INFINITY;
+        pieces->from[i] = place_of(c, m, row, contact, &ignored) + c->body.plate[i].from;
+        pieces->laid[i] = row > 0 ? m->time[row] : -INFINITY;
     }
 }
 
 /* The contact that stands at the beginning: of those on the ground the first that neither lifts nor
  * falls, or the first; -1: none is. */
-static int first_stand(const struct footfalls *f)
+static int first_stand(const stance_case *c, const struct ground_motion *m)
 {
-    const stance_scene *const scene = f->c->scene;
+    const stance_scene *const scene = c->scene;
     int first = -1;
     for (int k = scene->contacts; k-- > 0;) {
         double rises, of_first = INFINITY;
-        if (scene->grip[k] < 0 || !(f->c->contacts >> k & 1) || !is_down(f, 0, k))
+        if (scene->grip[k] < 0 || !(c->contacts >> k & 1) || !is_down(c, m, 0, k))
             continue;
-        place_of(f, 0, k, &rises);
+        place_of(c, m, 0, k, &rises);
         if (first >= 0)
-            place_of(f, 0, first, &of_first);
+            place_of(c, m, 0, first, &of_first);
         if (fabs(rises) < REST || !(fabs(of_first) < REST))
             first = k;
     }
     return first;
 }
 
-void ground_pieces_find(const stance_case *c, size_t rows, const double *time,
-                        const double *position, const double *velocity, const double *force,
-                        const double *gap, struct ground_pieces *pieces)
+void ground_pieces_find(const stance_case *c, const struct ground_motion *m,
+                        struct ground_pieces *pieces)
 {
-    const struct footfalls f = {c, position, velocity, force, gap};
     const stance_scene *const scene = c->scene;
     double footfalls = 0;
     for (int i = 0; i < c->body.plates; i++) {
@@ -110,19 +103,19 @@ void ground_pieces_find(const stance_case *c, size_t rows, const double *time,
         pieces->from[i] = always ? c->body.plate[i].from : INFINITY;
         pieces->laid[i] = always ? -INFINITY : INFINITY;
     }
-    if (rows == 0 || c->body.plates == 0 || !force || !gap)
+    if (!m || m->rows == 0 || c->body.plates == 0 || !m->force || !m->gap)
         return;
-    const int stands = first_stand(&f);
+    const int stands = first_stand(c, m);
     int foot = -1;
     if (stands >= 0)
-        lay(&f, 0, 0, 0, stands, pieces);
-    for (size_t row = 1; row < rows; row++)
+        lay(c, m, 0, 0, stands, pieces);
+    for (size_t row = 1; row < m->rows; row++)
         for (int k = 0; k < scene->contacts; k++) {
-            if (scene->grip[k] < 0 || scene->grip[k] == foot || !is_down(&f, row, k) ||
-                is_down(&f, row - 1, k))
+            if (scene->grip[k] < 0 || scene->grip[k] == foot || !is_down(c, m, row, k) ||
+                is_down(c, m, row - 1, k))
                 continue;
             foot = scene->grip[k];
-            lay(&f, ++footfalls, row, time[row], k, pieces);
+            lay(c, m, ++footfalls, row, k, pieces);
         }
 }
 

@@ -20,11 +20,15 @@ struct ground_pieces {
     double from[STANCE_MAX_PLATES], laid[STANCE_MAX_PLATES];
 };
 
-/* Of a case with that trajectory, whose row k was at time[k]; arrays as in stance_trajectory.
- * Without rows pieces by footfall are never there. */
-void ground_pieces_find(const stance_case *c, size_t rows, const double *time,
-                        const double *position, const double *velocity, const double *force,
-                        const double *gap, struct ground_pieces *pieces);
+/* A trajectory, whose row k was at time[k]; arrays as in stance_trajectory, without force or gap
+ * NULL. */
+struct ground_motion {
+    size_t rows;
+    const double *time, *position, *velocity, *force, *gap;
+};
+/* Of a case with that trajectory; without one, NULL, pieces by footfall are never there. */
+void ground_pieces_find(const stance_case *c, const struct ground_motion *motion,
+                        struct ground_pieces *pieces);
 
 /* The ground at a time, from `low` to `high` m along it, in the frame of the figure: points x, z of
  * one line, at most `room` >= 2. Where there are more plates its end is a straight line. Returns

@@ -8,7 +8,7 @@
 #define STANCE_PLAN_PLAN_H
 
 #include "resolve.h"
-#include "rows.h"
+#include "shard.h"
 
 #include "runner/ranks/parallel.h"
 
@@ -20,7 +20,7 @@ struct plan {
     struct shard shard;   /* --shard: those of them that are computed */
 
     size_t ancestors; /* scenarios that the file was made from before this one, see
-                         changed_scenario.h */
+                         adopt.h */
 
     bool methods_swept; /* some axis lists methods */
 

@@ -130,25 +130,17 @@ bool resolve_gains(const stance_scene *scene, const struct scenario_values *valu
                    stance_robustness *how, stance_message *message)
 {
     const int n = plant->states, m = plant->inputs;
-    double weights[2 * STANCE_MAX_POSTURE];
-    const bool places = values->design == DESIGN_PLACE || values->design == DESIGN_PLACE_SCHUR;
-    double re[SCENARIO_MAX_POLES], im[SCENARIO_MAX_POLES];
-    const int poles = scenario_poles(values, re, im);
-    char idle[260];
     const bool sampled = values->design_time == DESIGN_SAMPLED;
     const double T = sampled ? values->sample_time : 0;
+    const char *key = sampled ? "controller.design_time" : "controller.poles";
+    double weights[2 * STANCE_MAX_POSTURE], re[SCENARIO_MAX_POLES], im[SCENARIO_MAX_POLES];
+    const int poles = scenario_poles(values, re, im);
+    char idle[260];
 
     if (how)
         *how = (stance_robustness){0, NAN};
     message->text[0] = '\0';
     stance_error error = STANCE_OK;
-    for (int j = 0; j < n; j++)
-        weights[j] = values->state_weights[resolve_state(scene, equilibrium, j)];
-    if (places && poles != n)
-        return complain(message,
-                        "controller.poles: %d of them; where the contacts hold there are %d "
-                        "states%.100s",
-                        poles, n, scenario_idle(scene, equilibrium, idle, sizeof idle));
     if (values->design == DESIGN_GAINS) {
         if (!take_gains(scene, values, equilibrium, K, message))
             return false;
@@ -158,7 +150,15 @@ bool resolve_gains(const stance_scene *scene, const struct scenario_values *valu
                         "sample time above 0, not %.6g s",
                         T);
     } else if (values->design == DESIGN_LQR) {
+        key = sampled ? key : "controller.weights";
+        for (int j = 0; j < n; j++)
+            weights[j] = values->state_weights[resolve_state(scene, equilibrium, j)];
         error = stance_lqr(plant, T, weights, values->torque_weights, K, message);
+    } else if (poles != n) {
+        return complain(message,
+                        "controller.poles: %d of them; where the contacts hold there are %d "
+                        "states%.100s",
+                        poles, n, scenario_idle(scene, equilibrium, idle, sizeof idle));
     } else {
         error = stance_place(values->design == DESIGN_PLACE_SCHUR ? STANCE_SCHUR : STANCE_ROBUST,
                              plant, T, &(stance_poles){re, im}, K, how, message);
@@ -167,16 +167,10 @@ bool resolve_gains(const stance_scene *scene, const struct scenario_values *valu
         if (!isfinite(K[i]))
             return complain(message, "%d finite gains are needed", m * n);
     if (error != STANCE_OK) { /* say which key asked for it */
-        stance_message told = *message;
-        const char *point =
-            values->design_point.given ? "controller.equilibrium" : "initial.equilibrium";
-        complain(message, "%s: %.200s",
-                 error == STANCE_UNCONTROLLABLE   ? point
-                 : sampled                        ? "controller.design_time"
-                 : values->design == DESIGN_LQR   ? "controller.weights"
-                 : values->design == DESIGN_GAINS ? "controller.gains"
-                                                  : "controller.poles",
-                 told.text);
+        const stance_message told = *message;
+        if (error == STANCE_UNCONTROLLABLE)
+            key = values->design_point.given ? "controller.equilibrium" : "initial.equilibrium";
+        complain(message, "%s: %.200s", key, told.text);
     }
     return error == STANCE_OK;
 }
@@ -446,11 +440,35 @@ static bool set_laws(const stance_scene *scene, const struct scenario_values *va
     return resolve_law(scene, values, far, design->equilibrium, &out->far, out, message);
 }
 
-static bool check_law(const stance_scene *scene, const struct scenario_values *values,
-                      const stance_case *out, stance_message *message)
+/* Numbers within their ranges, by the rows of the format; what counts samples is sampled. Whoever
+ * changes a case's numbers by himself relies on it. */
+static bool check_numbers(const struct scenario_values *values, stance_message *message)
 {
-    bool finite = isfinite(out->noise) && isfinite(out->angle_noise) && isfinite(out->rate_noise) &&
-                  isfinite(out->lag) && isfinite(out->torque_rate);
+    char range[96];
+    for (size_t i = 0; i < schema_row_count; i++) {
+        const struct scenario_field *const field = &schema_rows[i].field;
+        const bool number = field->offset != NO_OFFSET &&
+                            (field->type == FIELD_NUMBER || field->type == FIELD_INTEGER);
+        const double value = number ? schema_number(field, values, 0) : field->fallback;
+        const bool none =
+                       (isinf(value) && field->words) || (isnan(value) && isnan(field->fallback)),
+                   inside = value >= field->low && value <= field->high &&
+                            !(field->low_open && value == field->low),
+                   unsampled = values->sample_time == 0 && schema_samples(field, values);
+        if ((!unsampled && (!number || none || inside)) || field->by_scene ||
+            strpbrk(field->path, "*[") || !schema_allows(field->use, field->law, values))
+            continue;
+        return unsampled ? complain(message, "%s needs controller.sample_time > 0: %s", field->path,
+                                    field->samples)
+                         : complain(message, "%s: %.9g is out of range (%s)", field->path, value,
+                                    schema_range_text(field, range, sizeof range));
+    }
+    return true;
+}
+
+static bool check_law(const stance_scene *scene, const stance_case *out, stance_message *message)
+{
+    bool finite = true;
     for (int i = 0; i < scene->actuators; i++) {
         finite = finite && isfinite(out->near.feedforward[i]);
         for (int j = 0; j < 2 * scene->postures; j++)
@@ -458,24 +476,7 @@ static bool check_law(const stance_scene *scene, const struct scenario_values *v
     }
     for (int k = 0; k < scene->postures; k++)
         finite = finite && isfinite(out->near.target[k]);
-    if (!finite)
-        return complain(message,
-                        "a gain, a target, the noise or a lag of the controller is not finite");
-    if (!(out->torque_limit > 0))
-        return complain(message, "controller.torque_limit must be positive");
-    for (size_t i = 0; i < schema_row_count && out->sample_every == 0; i++) {
-        const struct scenario_field *const field = &schema_rows[i].field;
-        if (schema_samples(field, values) && schema_allows(field->use, field->law, values))
-            return complain(message, "%s needs controller.sample_time > 0: %s", field->path,
-                            field->samples);
-    }
-    if (!(out->delay >= 0 && out->delay <= STANCE_MAX_DELAY && out->lag >= 0 &&
-          out->torque_rate >= 0))
-        return complain(message,
-                        "controller.delay must be 0 to %d samples, controller.lag not negative, "
-                        "controller.torque_rate positive",
-                        STANCE_MAX_DELAY);
-    return true;
+    return finite || complain(message, "a gain or a target of the controller is not finite");
 }
 
 /* Each sample interval is cut into equal steps no longer than method.step; the 1e-9 lets an
@@ -484,17 +485,9 @@ static bool resolve_time(const struct scenario_values *values, stance_case *out,
                          stance_message *message)
 {
     const double interval = values->sample_time;
-    if (!isfinite(values->step) || values->step <= 0)
-        return complain(message, "method.step must be positive");
-    if (!isfinite(interval) || interval < 0 || !isfinite(values->stop_time)) {
-        return complain(message, "controller.sample_time and stop.time must be finite and not "
-                                 "negative");
-    }
     const stance_method *method = stance_methods()[values->method];
     out->step = values->step;
     out->tolerance = isnan(values->tolerance) ? method->tolerance : values->tolerance;
-    if (method->tolerance > 0 && !(out->tolerance > 0))
-        return complain(message, "method.tolerance must be positive");
     if (interval > 0) {
         const double pieces = fmax(1, ceil(interval / values->step - 1e-9));
         if (pieces > MOST_STEPS)
@@ -555,15 +548,12 @@ bool resolve_case(const struct scenario *s, const struct scenario_values *values
     for (int i = 0; i < scene->actuators; i++)
         out->torque_limits[i] = isinf(values->torque_limits[i]) ? 0 : values->torque_limits[i];
     stance_case_robot(scene, out);
-    if (!isfinite(out->friction) || out->friction < 0 ||
-        !(out->restitution >= 0 && out->restitution <= 1)) {
-        return complain(message, "ground.friction must not be negative, ground.restitution lie "
-                                 "within 0 ... 1");
-    }
-    resolve_start(scene, values, design, out->position, out->velocity);
-    if (!check_start(scene, values, out, message) || !set_laws(scene, values, design, out, message))
+    if (!check_numbers(values, message))
         return false;
-    return resolve_time(values, out, message) && check_law(scene, values, out, message);
+    resolve_start(scene, values, design, out->position, out->velocity);
+    return check_start(scene, values, out, message) &&
+           set_laws(scene, values, design, out, message) && resolve_time(values, out, message) &&
+           check_law(scene, out, message);
 }
 
 /* ---- what a search varies ------------------------------------------------------------------- */

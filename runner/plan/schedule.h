@@ -6,7 +6,7 @@
 #ifndef STANCE_PLAN_SCHEDULE_H
 #define STANCE_PLAN_SCHEDULE_H
 
-#include "rows.h"
+#include "shard.h"
 
 #include <stdbool.h>
 

@@ -30,21 +30,14 @@ static double wall_clock(void)
 /* Cases per second of late; negative: there is nothing to go by yet. */
 static double recent_rate(const struct heartbeat *heartbeat)
 {
-    if (heartbeat->samples < 2)
-        return -1;
-    const struct heartbeat_sample *last =
-        &heartbeat->sample[(heartbeat->samples - 1) % HEARTBEAT_SAMPLES];
-    const struct heartbeat_sample *first = last;
-    const unsigned there =
-        heartbeat->samples < HEARTBEAT_SAMPLES ? heartbeat->samples : HEARTBEAT_SAMPLES;
-    for (unsigned k = 1; k < there; k++) {
-        const struct heartbeat_sample *sample =
-            &heartbeat->sample[(heartbeat->samples - 1 - k) % HEARTBEAT_SAMPLES];
-        if (last->at - sample->at > rate_window)
-            break;
-        first = sample;
-    }
-    return last->at > first->at
+    const unsigned n = heartbeat->samples, there = n < HEARTBEAT_SAMPLES ? n : HEARTBEAT_SAMPLES;
+    const struct heartbeat_sample *const sample = heartbeat->sample,
+                                         *const last = &sample[(n - 1) % HEARTBEAT_SAMPLES],
+                                         *first = last;
+    for (unsigned k = 2;
+         k <= there && last->at - sample[(n - k) % HEARTBEAT_SAMPLES].at <= rate_window; k++)
+        first = &sample[(n - k) % HEARTBEAT_SAMPLES];
+    return n > 1 && last->at > first->at
                ? (double)(last->computed - first->computed) / (last->at - first->at)
                : -1;
 }

@@ -1,6 +1,6 @@
-/* run.h - what the parts of `stance run` share: run.c (the stages), run_options.c, old.c (the file
- * there was), run_end.c (what is said at the end), and claim.c, whose functions `stance optimise`
- * shares, too. */
+/* run.h - what the parts of `stance run` share: run.c (the stages, what is said at the end),
+ * run_options.c, old.c (the file there was), and claim.c, whose functions `stance optimise` shares,
+ * too. */
 #ifndef STANCE_RUN_RUN_H
 #define STANCE_RUN_RUN_H
 
@@ -94,6 +94,8 @@ struct scenario *run_read_scenario(struct run *run, size_t sets);
 /* Collective: rank 0's scenario is read from its text by the others. false: it has none, or this
  * rank cannot, and fails; then there is none. */
 bool run_share_scenario(struct run *run);
+/* The name of the file, of the scenario's unless -o gives it; fails where it is too long. */
+void run_name_file(struct run *run);
 /* Rank 0: the file may be written, --force replaces one that exists, --resume goes on with it, and
  * nobody else writes it: the lock is taken, signs of life are given. Without -o its directory is
  * `results`, which is made. */
@@ -112,8 +114,6 @@ void run_stop_early(struct run *run, const char *what);
 
 /* On rank 0: that the run stopped, and the command that goes on with it. */
 void run_say_stopped(const struct run *run, const char *what);
-/* Collective: adds up over the ranks, says what came out, and returns the exit code. */
-int run_conclude(struct run *run);
 
 /* Ends one, which can be released. */
 void run_drop(struct run *run);

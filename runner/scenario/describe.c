@@ -251,11 +251,14 @@ static json_t *list_schema(json_t *items, size_t count)
 
 static json_t *map_schema(const struct schema *schema, const char *path);
 
-static json_t *values_schema(void)
+static json_t *any_of(json_t *one, json_t *other)
 {
-    json_t *scalar = json_pack("{s:[s,s]}", "type", "number", "string");
-    json_t *row = list_schema(json_copy(scalar), 0);
-    return list_schema(json_pack("{s:[o,o]}", "anyOf", scalar, row), 0);
+    return json_pack("{s:[o,o]}", "anyOf", one, other);
+}
+
+static json_t *type(const char *of)
+{
+    return json_pack("{s:s}", "type", of);
 }
 
 /* A list of mappings of a path or several. */
@@ -269,19 +272,11 @@ static json_t *varied_schema(const struct schema *schema, const char *path, int 
     return list;
 }
 
-static json_t *ends_schema(void)
-{
-    json_t *number = json_pack("{s:s}", "type", "number");
-    json_t *list = list_schema(json_copy(number), 0);
-    return json_pack("{s:[o,o]}", "anyOf", number, list);
-}
-
 static json_t *complex_schema(const struct schema *schema)
 {
     static const char pattern[] = "^[-+]?[0-9.]+([eE][-+]?[0-9]+)?[-+][0-9.]+([eE][-+]?[0-9]+)?i$";
-    return json_pack("{s:[o,{s:s,s:s}]}", "anyOf",
-                     number_schema(schema_find(schema, "controller.poles[]")), "type", "string",
-                     "pattern", pattern);
+    return any_of(number_schema(schema_find(schema, "controller.poles[]")),
+                  json_pack("{s:s,s:s}", "type", "string", "pattern", pattern));
 }
 
 /* A list whose items may be given by name, too. */
@@ -289,13 +284,14 @@ static json_t *or_named(const struct schema *schema, const struct scenario_field
                         json_t *list)
 {
     const char *name;
-    if (schema_children(schema, field->path, &name, 1) == 0)
-        return list;
-    return json_pack("{s:[o,o]}", "anyOf", list, map_schema(schema, field->path));
+    return schema_children(schema, field->path, &name, 1) == 0
+               ? list
+               : any_of(list, map_schema(schema, field->path));
 }
 
 static json_t *type_schema(const struct schema *schema, const struct scenario_field *field)
 {
+    json_t *list;
     if (strncmp(field->path, "controller.poles.", 17) == 0)
         return complex_schema(schema);
     switch (field->type) {
@@ -306,58 +302,54 @@ static json_t *type_schema(const struct schema *schema, const struct scenario_fi
         return number_schema(field);
     case FIELD_WORD:
         return words_schema(field);
-    case FIELD_WORDS: {
-        const bool any = schema->pattern && field->words == schema->elements;
-        json_t *list =
-            list_schema(any ? json_pack("{s:s}", "type", "string") : words_schema(field), 0);
+    case FIELD_WORDS:
+        list =
+            list_schema(schema->pattern && field->words == schema->elements ? type("string")
+                                                                            : words_schema(field),
+                        0);
         json_object_set_new(list, "uniqueItems", json_true());
         return list;
-    }
     case FIELD_POLES:
         return or_named(schema, field, list_schema(complex_schema(schema), field->items));
     case FIELD_NUMBERS: {
         char item[sizeof field->path + 2];
         snprintf(item, sizeof item, "%s[]", field->path);
-        json_t *const list = list_schema(number_schema(schema_find(schema, item)), field->items);
+        list = list_schema(number_schema(schema_find(schema, item)), field->items);
         if (field->fewer)
             json_object_set_new(list, "minItems", json_integer(1));
         return or_named(schema, field, list);
     }
     case FIELD_MATRIX:
-        return or_named(
-            schema, field,
-            list_schema(list_schema(number_schema(schema_find(schema, "controller.gains[][]")),
-                                    field->columns),
-                        field->items));
+        list =
+            list_schema(number_schema(schema_find(schema, "controller.gains[][]")), field->columns);
+        return or_named(schema, field, list_schema(list, field->items));
     case FIELD_MAP_OR_WORD:
-        return json_pack("{s:[o,o]}", "anyOf", words_schema(field),
-                         map_schema(schema, field->path));
+        return any_of(words_schema(field), map_schema(schema, field->path));
     case FIELD_CASES:
-        return json_pack("{s:[o,o]}", "anyOf", words_schema(field),
-                         list_schema(json_pack("{s:s,s:i}", "type", "integer", "minimum", 0), 0));
+        return any_of(words_schema(field),
+                      list_schema(json_pack("{s:s,s:i}", "type", "integer", "minimum", 0), 0));
     case FIELD_AXES:
         return varied_schema(schema, "sweep.grid[]", SCENARIO_MAX_AXES);
     case FIELD_FACTORS:
         return varied_schema(schema, "sweep.sample.vary[]", DOE_MAX_FACTORS);
     case FIELD_VARIED:
-        return json_pack("{s:[o,o]}", "anyOf", words_schema(field),
-                         list_schema(json_pack("{s:[o,o]}", "anyOf", words_schema(field),
-                                               map_schema(schema, "optimise.vary[]")),
-                                     0));
+        list = list_schema(any_of(words_schema(field), map_schema(schema, "optimise.vary[]")), 0);
+        return any_of(words_schema(field), list);
     case FIELD_DATA:
-        return json_pack("{s:[{s:s},o]}", "anyOf", "type", "string",
-                         list_schema(json_pack("{s:s}", "type", "number"), 0));
+        return any_of(type("string"), list_schema(type("number"), 0));
     case FIELD_ENDS:
-        return ends_schema();
-    case FIELD_PATHS: {
-        json_t *list = list_schema(json_pack("{s:s}", "type", "string"), 0);
+        return any_of(type("number"), list_schema(type("number"), 0));
+    case FIELD_PATHS:
+        list = list_schema(type("string"), 0);
         json_object_set_new(list, "maxItems", json_integer(SCENARIO_MAX_PATHS));
         return list;
+    case FIELD_VALUES: {
+        json_t *const scalar = json_pack("{s:[s,s]}", "type", "number", "string");
+        list = list_schema(json_copy(scalar), 0);
+        return list_schema(any_of(scalar, list), 0);
     }
-    case FIELD_VALUES:
-        return values_schema();
     default:
-        return json_pack("{s:s}", "type", "string");
+        return type("string");
     }
 }
 
@@ -511,25 +503,19 @@ static size_t paths_with(const char *word, bool words, const struct schema *sche
 /* What a path that no scene has may have meant, or NULL; one name is compared with last names. */
 static const char *nearest_path(const char *path, const struct schema *schemas, size_t count)
 {
-    const char **known = malloc(2 * count * SCHEMA_MAX_FIELDS * sizeof *known);
+    const char **known = malloc(count * SCHEMA_MAX_FIELDS * sizeof *known), *near = NULL;
     const bool whole = strchr(path, '.') != NULL;
-    const char *near = NULL;
     size_t n = 0;
-    if (!known)
-        return NULL;
-    const char **const of = known + count * SCHEMA_MAX_FIELDS;
-    for (size_t k = 0; k < count; k++) {
-        for (size_t i = 0; i < schemas[k].count; i++, n++) {
-            of[n] = schemas[k].field[i].path;
-            known[n] = whole ? of[n] : schema_last_name(of[n]);
+    for (size_t k = 0; known && k < count; k++)
+        for (size_t i = 0; i < schemas[k].count; i++) {
+            const char *const row = schemas[k].field[i].path;
+            known[n++] = whole ? row : schema_last_name(row);
         }
-    }
-    near = nearest_word(path, known, n);
-    for (size_t i = 0; near && i < n; i++)
-        if (known[i] == near) {
-            near = of[i];
-            break;
-        }
+    near = known ? nearest_word(path, known, n) : NULL;
+    for (size_t k = 0; near && k < count; k++)
+        for (size_t i = 0; i < schemas[k].count; i++)
+            if (schema_last_name(schemas[k].field[i].path) == near)
+                near = schemas[k].field[i].path;
     free(known);
     return near;
 }
@@ -598,51 +584,45 @@ static const struct scenario_field *find_row(const struct schema *schema, const 
     return field;
 }
 
-/* Whether two scenes say the same of a path. */
-static bool say_the_same(const char *path, const struct schema *a, const struct schema *b)
+/* What a scene says of a path, to be freed; NULL: nothing. */
+static char *text_of(const struct schema *schema, const char *path)
 {
-    const struct schema *const of[] = {a, b};
-    char *text[2] = {NULL, NULL};
-    for (int i = 0; i < 2; i++) {
-        const struct scenario_field *const field = find_row(of[i], path);
-        size_t size = 0;
-        FILE *const out = field ? open_memstream(&text[i], &size) : NULL;
-        if (out)
-            print_field(out, of[i], field);
-        if (out)
-            fclose(out);
-    }
-    const bool same = text[0] && text[1] && strcmp(text[0], text[1]) == 0;
-    free(text[0]);
-    free(text[1]);
-    return same;
+    const struct scenario_field *const field = find_row(schema, path);
+    char *text = NULL;
+    size_t size = 0;
+    FILE *const out = field ? open_memstream(&text, &size) : NULL;
+    if (out)
+        print_field(out, schema, field);
+    if (out)
+        fclose(out);
+    return text;
 }
 
 /* A path, for every scene where it stands for something else. */
 static bool print_path(const char *path, FILE *out, FILE *errors, const struct schema *schemas,
                        size_t count)
 {
-    bool found = false;
-    for (size_t k = 0; k < count; k++) {
-        const struct scenario_field *const field = find_row(&schemas[k], path);
-        const bool common = field && is_common(schemas, count, field);
-        bool said = false;
+    char *text[SCHEMA_MAX_WORDS + 1] = {NULL};
+    bool found = false, common = false;
+    for (size_t k = 0; k < count; k++)
+        text[k] = text_of(&schemas[k], path);
+    for (size_t k = 0; k < count && !common; k++) {
+        bool said = !text[k];
         for (size_t i = 0; i < k && !said; i++)
-            said = say_the_same(path, &schemas[i], &schemas[k]);
-        if (!field || said)
+            said = text[i] && strcmp(text[i], text[k]) == 0;
+        if (said)
             continue;
+        common = is_common(schemas, count, find_row(&schemas[k], path));
         if (!common)
             fprintf(out, "%sscene: %s", found ? "\n" : "", schemas[k].scene->name);
         for (size_t i = k + 1; i < count && !common; i++)
-            if (say_the_same(path, &schemas[i], &schemas[k]))
+            if (text[i] && strcmp(text[i], text[k]) == 0)
                 fprintf(out, ", %s", schemas[i].scene->name);
-        if (!common)
-            fputc('\n', out);
-        print_field(out, &schemas[k], field);
+        fprintf(out, "%s%s", common ? "" : "\n", text[k]);
         found = true;
-        if (common)
-            break;
     }
+    for (size_t k = 0; k < count; k++)
+        free(text[k]);
     if (!found)
         explain_path(path, errors, schemas, count);
     return found;

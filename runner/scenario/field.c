@@ -156,29 +156,20 @@ bool field_number(struct problems *problems, const struct scenario_field *field,
                   const struct tree_node *node, double *value)
 {
     bool finite;
-    const char *const wanted = field->whole && field->words ? "a whole number or none"
-                               : field->whole               ? "a whole number"
-                               : field->words               ? "a number or none"
-                                                            : "a number";
-    if (field->words && node->kind == TREE_SCALAR && strcmp(node->text, field->words[0]) == 0) {
+    const bool whole = field->whole || field->type == FIELD_INTEGER,
+               none = field->words && field->type == FIELD_NUMBER;
+    const char *const wanted = whole && none ? "a whole number or none"
+                               : whole       ? "a whole number"
+                               : none        ? "a number or none"
+                                             : "a number";
+    if (none && node->kind == TREE_SCALAR && strcmp(node->text, field->words[0]) == 0) {
         *value = INFINITY;
         return true;
     }
     if (node->kind != TREE_SCALAR || node->quoted || !number_parse(node->text, value, &finite))
         return no_number(problems, field, name, wanted, node);
-    if (field->whole && *value != floor(*value))
+    if (whole && *value != floor(*value))
         return field_mismatch(problems, name, wanted, node);
-    return field_admits(problems, field, name, node->text, node->mark, *value);
-}
-
-bool field_integer(struct problems *problems, const struct scenario_field *field, const char *name,
-                   const struct tree_node *node, double *value)
-{
-    bool finite;
-    if (node->kind != TREE_SCALAR || node->quoted || !number_parse(node->text, value, &finite))
-        return no_number(problems, field, name, "a whole number", node);
-    if (*value != floor(*value))
-        return field_mismatch(problems, name, "a whole number", node);
     return field_admits(problems, field, name, node->text, node->mark, *value);
 }
 
@@ -188,7 +179,7 @@ bool field_seed(struct problems *problems, const char *name, const struct tree_n
     static const struct scenario_field field = {
         .type = FIELD_INTEGER, .low = -INFINITY, .high = INFINITY};
     double number = 0;
-    if (!field_integer(problems, &field, name, node, &number))
+    if (!field_number(problems, &field, name, node, &number))
         return false;
     bool digits = !node->text[strspn(node->text, "+-0123456789")]; /* unlike 1e3 or 7.0 */
     *value = UINT64_MAX;
@@ -228,9 +219,7 @@ bool field_value(struct problems *problems, const struct scenario_field *field, 
                  const struct tree_node *node, double *value)
 {
     int place = 0;
-    if (field->type == FIELD_INTEGER)
-        return field_integer(problems, field, name, node, value);
-    if (field->type != FIELD_WORD)
+    if (field->type != FIELD_WORD && field->type != FIELD_CASES)
         return field_number(problems, field, name, node, value);
     const bool good = field_word(problems, field, name, node, &place);
     *value = place;

@@ -15,13 +15,10 @@
  * leading zeros, no .inf or .nan. False: `text` is none (*finite false: it is too large). */
 bool number_parse(const char *text, double *value, bool *finite);
 
-/* A number within the range of the field. The word `none` stands for INFINITY where allowed. */
+/* A number within the range of the field; a whole one is exact below 2^53. The word `none` stands
+ * for INFINITY where allowed. */
 bool field_number(struct problems *problems, const struct scenario_field *field, const char *name,
                   const struct tree_node *node, double *value);
-
-/* The same for a whole number; as a double, exact below 2^53. */
-bool field_integer(struct problems *problems, const struct scenario_field *field, const char *name,
-                   const struct tree_node *node, double *value);
 
 /* 0 ... 2^63 - 1. */
 bool field_seed(struct problems *problems, const char *name, const struct tree_node *node,
@@ -31,7 +28,7 @@ bool field_seed(struct problems *problems, const char *name, const struct tree_n
 bool field_word(struct problems *problems, const struct scenario_field *field, const char *name,
                 const struct tree_node *node, int *place);
 
-/* Whichever of these three the field is. */
+/* Whichever of a number and a word the field is. */
 bool field_value(struct problems *problems, const struct scenario_field *field, const char *name,
                  const struct tree_node *node, double *value);
 

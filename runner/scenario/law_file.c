@@ -2,7 +2,6 @@
 #include "law_file.h"
 #include "reader.h"
 #include "schema_laws.h"
-#include "tree_nodes.h"
 
 #include <ctype.h>
 #include <math.h>
@@ -34,52 +33,51 @@ static bool put(struct reader *r, struct tree_node *parent, const char *key, con
            problem_no_memory(&r->problems);
 }
 
-/* Numbers of a file, between blanks, commas or lines; # begins a comment. The name becomes a list.
- */
-static void read_numbers(struct reader *r, struct tree_node *node)
+/* Past what stands between numbers: blanks, lines, a comma or semicolon. False: two of these, so
+ * that a number is missing; `line` counts lines. */
+static bool pass_blanks(const char **at, int *line)
+{
+    int between = 0;
+    for (; **at && strchr(" \t\r,;\n#", **at); ++*at) {
+        if (**at == '#') /* a comment */
+            *at += strcspn(*at, "\n");
+        between += **at == ',' || **at == ';';
+        *line += **at == '\n';
+        between = **at == '\n' ? 0 : between;
+        if (between > 1)
+            return false;
+        if (!**at)
+            break;
+    }
+    return true;
+}
+
+/* Numbers of a file, whose name becomes a list. False: a problem. */
+static bool read_numbers(struct reader *r, struct tree_node *node)
 {
     const char *const text = reader_file(r, "controller.data", node, MOST_DATA_BYTES);
     const struct tree_node named = *node;
     int line = 1;
-    if (!text)
-        return;
     *node = (struct tree_node){.kind = TREE_LIST, .mark = named.mark};
-    for (const char *at = text; *at;) {
-        const size_t blank = strspn(at, " \t\r,;\n");
-        int between = 0;
-        for (size_t i = 0; i < blank; i++) {
-            line += at[i] == '\n';
-            between = at[i] == '\n' ? 0 : between + (at[i] == ',' || at[i] == ';');
-            if (between > 1) {
-                problem_add(&r->problems, named.mark,
-                            "controller.data: %.200s:%d: a number is missing", named.text, line);
-                return;
-            }
-        }
-        at += blank;
-        if (*at == '#')
-            at += strcspn(at, "\n");
+    for (const char *at = text; at && *at;) {
+        if (!pass_blanks(&at, &line))
+            return problem_add(&r->problems, named.mark,
+                               "controller.data: %.200s:%d: a number is missing", named.text, line);
         const size_t length = strcspn(at, " \t\r,;\n#");
-        if (length == 0)
-            continue;
         char *const number = tree_copy(&r->tree, at, length);
         double value;
         bool finite;
-        if (!number || !number_parse(number, &value, &finite)) {
-            problem_add(&r->problems, named.mark,
-                        "controller.data: %.200s:%d: '%.40s' is no number", named.text, line,
-                        number ? number : "");
-            return;
-        }
-        if (node->count == MOST_DATA) {
-            problem_add(&r->problems, named.mark, "controller.data: more than %d numbers",
-                        MOST_DATA);
-            return;
-        }
+        if (length == 0)
+            break;
+        if (!number || !number_parse(number, &value, &finite))
+            return problem_add(&r->problems, named.mark,
+                               "controller.data: %.200s:%d: '%.40s' is no number", named.text, line,
+                               number ? number : "");
         if (!put(r, node, NULL, number, false, named.mark))
-            return;
+            return false;
         at += length;
     }
+    return text != NULL;
 }
 
 /* ---- what PARAMETERS declares ---------------------------------------------------------------- */
@@ -121,12 +119,19 @@ static void pass(struct cursor *c)
             return;
 }
 
+/* Of a row of which something is missing. */
+static bool incomplete(const struct cursor *c, const char *of, const char *what)
+{
+    return refuse(c, "%s: %s is missing: X(name, default, \"unit\", low, high, \"text\")", of,
+                  what);
+}
+
 static bool take(struct cursor *c, char letter, const char *of)
 {
+    const char what[] = {'\'', letter, '\'', '\0'};
     pass(c);
     if (*c->at != letter)
-        return refuse(c, "%s: '%c' is missing: X(name, default, \"unit\", low, high, \"text\")", of,
-                      letter);
+        return incomplete(c, of, what);
     c->at++;
     return true;
 }
@@ -152,8 +157,7 @@ static bool take_number(struct cursor *c, const char *of, double *value)
     pass(c);
     *value = strtod(c->at, &end);
     if (end == c->at || !isfinite(*value))
-        return refuse(c, "%s: a number is missing: X(name, default, \"unit\", low, high, \"text\")",
-                      of);
+        return incomplete(c, of, "a number");
     c->at = end;
     return true;
 }
@@ -164,10 +168,7 @@ static bool take_text(struct cursor *c, const char *of, char *text, size_t size)
     size_t n = 0;
     pass(c);
     if (*c->at != '"')
-        return refuse(c,
-                      "%s: a text in quotes is missing: X(name, default, \"unit\", low, high, "
-                      "\"text\")",
-                      of);
+        return incomplete(c, of, "a text in quotes");
     while (*c->at == '"') {
         for (c->at++; *c->at && *c->at != '"' && *c->at != '\n'; c->at++) {
             c->at += *c->at == '\\' && c->at[1];
@@ -245,17 +246,6 @@ static const char *find_directive(const char *at, const char *is)
     return NULL;
 }
 
-/* Behind PARAMETERS( of its definition. */
-static const char *find_define(const char *text)
-{
-    while ((text = find_directive(text, "define"))) {
-        const char *const at = text + strspn(text, " \t");
-        if (strncmp(at, "PARAMETERS(", 11) == 0)
-            return at + 11;
-    }
-    return NULL;
-}
-
 /* A law is one file, which results hold; headers of the system are the compiler's. */
 static bool check_includes(struct cursor *c)
 {
@@ -272,37 +262,36 @@ static bool check_includes(struct cursor *c)
     return true;
 }
 
-static void read_parameters(struct cursor *c, struct law_file *law)
+static bool read_parameters(struct cursor *c, struct law_file *law)
 {
-    char macro[32];
-    c->at = find_define(c->text);
-    if (!c->at)
-        return;
-    law->parameter = calloc(MOST_ROWS + 1, sizeof *law->parameter);
-    if (!law->parameter) {
-        problem_no_memory(&c->r->problems);
-        return;
+    static const char head[] = "PARAMETERS(";
+    char macro[32], name[32];
+    for (c->at = c->text; (c->at = find_directive(c->at, "define"));) {
+        c->at += strspn(c->at, " \t");
+        if (strncmp(c->at, head, strlen(head)) == 0)
+            break;
     }
+    if (!c->at)
+        return true;
+    c->at += strlen(head);
+    law->parameter = calloc(MOST_ROWS + 1, sizeof *law->parameter);
+    if (!law->parameter)
+        return problem_no_memory(&c->r->problems);
     if (!take_name(c, macro, sizeof macro) || !take(c, ')', "PARAMETERS"))
-        return;
+        return false;
     for (;;) {
-        char name[32];
         pass(c);
         if (*c->at == '\n' || *c->at == '\r' || *c->at == '\0' ||
             (c->at[0] == '/' && c->at[1] == '/'))
-            return;
+            return true;
         if (!take_name(c, name, sizeof name))
-            return;
-        if (strcmp(name, macro) != 0) {
-            refuse(c, "PARAMETERS: %s(...) is expected, not %s", macro, name);
-            return;
-        }
+            return false;
+        if (strcmp(name, macro) != 0)
+            return refuse(c, "PARAMETERS: %s(...) is expected, not %s", macro, name);
         if (!take(c, '(', "PARAMETERS") || !take_row(c, law))
-            return;
-        if (law->numbers > STANCE_PROGRAM_NUMBERS) {
-            refuse(c, "PARAMETERS: more than %d numbers", STANCE_PROGRAM_NUMBERS);
-            return;
-        }
+            return false;
+        if (law->numbers > STANCE_PROGRAM_NUMBERS)
+            return refuse(c, "PARAMETERS: more than %d numbers", STANCE_PROGRAM_NUMBERS);
     }
 }
 
@@ -314,25 +303,23 @@ static bool is_word(const struct tree_node *map, const char *key)
     return node && node->kind == TREE_SCALAR && strcmp(node->text, word) == 0;
 }
 
-static void read_data(struct reader *r, const struct tree_node *data, struct law_file *law)
+static bool read_data(struct reader *r, const struct tree_node *data, struct law_file *law)
 {
     const struct scenario_field any = {.type = FIELD_NUMBER, .low = -INFINITY, .high = INFINITY};
     if (!field_list(&r->problems, "controller.data", "a list of numbers, or the name of a file",
                     data))
-        return;
-    if (data->count > MOST_DATA) {
-        problem_add(&r->problems, data->mark, "controller.data: more than %d numbers", MOST_DATA);
-        return;
-    }
+        return false;
+    if (data->count > MOST_DATA)
+        return problem_add(&r->problems, data->mark, "controller.data: more than %d numbers",
+                           MOST_DATA);
     law->data = malloc(data->count * sizeof *law->data);
-    if (!law->data) {
-        problem_no_memory(&r->problems);
-        return;
-    }
+    if (!law->data)
+        return problem_no_memory(&r->problems);
+    law->data_count = data->count;
     for (size_t i = 0; i < data->count; i++)
         if (!field_number(&r->problems, &any, "controller.data", data->item[i], &law->data[i]))
-            return;
-    law->data_count = data->count;
+            return false;
+    return true;
 }
 
 void law_file_read(struct reader *r)
@@ -355,20 +342,19 @@ void law_file_read(struct reader *r)
         return;
     law->held = own != NULL;
     snprintf(law->name, sizeof law->name, "%s", file ? file->text : "controller.source");
-    const struct mark mark = named->mark;
     const char *const text = own ? own->text : reader_file(r, "controller.file", named, MOST_BYTES);
-    if (!text || (!own && !put(r, map, "source", text, true, mark)))
+    struct cursor c = {.r = r, .mark = named->mark, .file = law->name};
+    if (!text || (!own && !put(r, map, "source", text, true, named->mark)))
         return;
     if (data && data->kind == TREE_SCALAR)
         read_numbers(r, data);
-    law->source = strdup(text);
+    c.text = law->source = strdup(text);
     if (!law->source) {
         problem_no_memory(&r->problems);
         return;
     }
     if (data && r->problems.count == 0)
         read_data(r, data, law);
-    struct cursor c = {.r = r, .mark = mark, .file = law->name, .text = law->source};
     if (check_includes(&c))
         read_parameters(&c, law);
 }

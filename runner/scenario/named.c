@@ -5,7 +5,6 @@
  * contacts hold some states there is none.
  */
 #include "reader.h"
-#include "tree_nodes.h"
 
 #include "runner/base/words.h"
 

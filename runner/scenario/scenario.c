@@ -19,8 +19,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define DEFAULT_RECORD_EVERY 0.01 /* s */
-
 enum { PATH_SIZE = 160 };
 
 static bool read_tree(struct reader *r, const char *file, const char *given)
@@ -302,13 +300,12 @@ static void set_defaults(struct reader *r)
 static void read_record_list(struct reader *r, const struct tree_node *node)
 {
     struct scenario *s = r->s;
-    struct scenario_field index = {.type = FIELD_INTEGER, .high = (double)(s->cases - 1)};
+    const struct scenario_field index = {.type = FIELD_INTEGER,
+                                         .high = r->axes_bad ? 0x1p53 : (double)(s->cases - 1)};
     double number;
 
     if (!field_list(&r->problems, "record.cases", "none, all or a list of cases", node))
         return;
-    if (r->axes_bad)
-        index.high = 0x1p53;
     s->record_cases = RECORD_LIST;
     s->record_list = malloc(node->count * sizeof *s->record_list);
     if (!s->record_list) {
@@ -316,7 +313,7 @@ static void read_record_list(struct reader *r, const struct tree_node *node)
         return;
     }
     for (size_t i = 0; i < node->count; i++)
-        if (field_integer(&r->problems, &index, "record.cases", node->item[i], &number))
+        if (field_number(&r->problems, &index, "record.cases", node->item[i], &number))
             s->record_list[s->record_count++] = (uint64_t)number;
     s->record_count = numbers_unite(s->record_list, s->record_count);
 }
@@ -324,26 +321,16 @@ static void read_record_list(struct reader *r, const struct tree_node *node)
 static void read_record(struct reader *r)
 {
     struct scenario *s = r->s;
-    const struct tree_node *every = reader_seen(r, "record.every")->node;
     const struct tree_node *cases = reader_seen(r, "record.cases")->node;
     const struct tree_node *answers = reader_seen(r, "record.answers")->node;
-    int word = 0;
+    bool good = true;
 
-    if (cases && cases->kind == TREE_SCALAR && isdigit((unsigned char)cases->text[0])) {
-        field_list(&r->problems, "record.cases", "none, all or a list of cases", cases);
-    } else if (cases && cases->kind == TREE_SCALAR) {
-        field_word(&r->problems, schema_find(r->schema, "record.cases"), "record.cases", cases,
-                   &word);
-        s->record_cases = word ? RECORD_ALL : RECORD_NONE;
-    } else if (cases) {
+    if (cases && (cases->kind != TREE_SCALAR || isdigit((unsigned char)cases->text[0])))
         read_record_list(r, cases);
-    }
-    if (every) {
-        field_number(&r->problems, schema_find(r->schema, "record.every"), "record.every", every,
-                     &s->record_every);
-    } else if (s->record_cases != RECORD_NONE) {
-        s->record_every = DEFAULT_RECORD_EVERY;
-    }
+    else if (cases && reader_number(r, "record.cases", &good) > 0)
+        s->record_cases = RECORD_ALL;
+    if (reader_seen(r, "record.every")->node || s->record_cases != RECORD_NONE)
+        s->record_every = reader_number(r, "record.every", &good);
     s->answers = UINT64_MAX;
     if (answers)
         field_words(&r->problems, schema_find(r->schema, "record.answers"), "record.answers",
@@ -377,20 +364,16 @@ static bool read_version(struct reader *r)
 {
     const struct tree_node *version = tree_find(r->tree.root, "stance");
     char word[SHOWN_SIZE];
-    double number;
+    double number = 1;
     bool finite;
 
-    if (!version)
-        return true; /* reported as missing */
-    if (version->kind != TREE_SCALAR || version->quoted ||
-        !number_parse(version->text, &number, &finite))
+    if (version && (version->kind != TREE_SCALAR || version->quoted ||
+                    !number_parse(version->text, &number, &finite)))
         return field_mismatch(&r->problems, "stance", "the version of the format, 1", version);
-    if (number != 1) {
-        return problem_add(&r->problems, version->mark,
-                           "stance: this program reads version 1 of the format, not %s",
-                           shown(word, version->text));
-    }
-    return true;
+    return number == 1 || /* what is missing is reported later */
+           problem_add(&r->problems, version->mark,
+                       "stance: this program reads version 1 of the format, not %s",
+                       shown(word, version->text));
 }
 
 /* Whether the robot is one of the scene's kind: described by its bodies, or by the numbers of a
@@ -552,22 +535,13 @@ static void read_all(struct reader *r, const char *file, const char *text, const
  * a results file, names no results: it may be cut. */
 static bool set_names(struct scenario *s, const char *file, bool given)
 {
-    const char *slash = strrchr(file, '/'), *name = slash ? slash + 1 : file;
-    size_t length = strlen(name);
-
-    for (size_t i = 0; i < 2; i++) {
-        const char *ending = i == 0 ? ".yaml" : ".yml";
-        size_t n = strlen(ending);
-        if (length > n && strcmp(name + length - n, ending) == 0) {
-            length -= n;
-            break;
-        }
-    }
-    if (!given && (length >= sizeof s->name || strlen(file) >= sizeof s->file))
-        return false;
+    const char *const slash = strrchr(file, '/'), *const name = slash ? slash + 1 : file,
+                      *const dot = strrchr(name, '.');
+    const bool yaml = dot && dot > name && (strcmp(dot, ".yaml") == 0 || strcmp(dot, ".yml") == 0);
+    const size_t length = yaml ? (size_t)(dot - name) : strlen(name);
     snprintf(s->file, sizeof s->file, "%s", file);
     snprintf(s->name, sizeof s->name, "%.*s", (int)length, name);
-    return true;
+    return given || (length < sizeof s->name && strlen(file) < sizeof s->file);
 }
 
 bool scenario_read(struct scenario *s, const char *file, const char *text, const char *const *sets,

@@ -225,12 +225,8 @@ static void check_start(struct reader *r, const struct situation *is)
                       *equilibrium = reader_seen(r, "initial.equilibrium");
 
     if (state->node && equilibrium->node) {
-        bool later = state->key.set > equilibrium->key.set ||
-                     (state->key.set == equilibrium->key.set &&
-                      (state->key.line > equilibrium->key.line ||
-                       (state->key.line == equilibrium->key.line &&
-                        state->key.column > equilibrium->key.column)));
-        problem_add(&r->problems, later ? state->key : equilibrium->key,
+        problem_add(&r->problems,
+                    mark_compare(state->key, equilibrium->key) > 0 ? state->key : equilibrium->key,
                     "initial.state and initial.equilibrium exclude each other");
         return;
     }
@@ -243,10 +239,8 @@ static void check_start(struct reader *r, const struct situation *is)
                           : ": give a state");
         return;
     }
-    if (is->from_equilibrium) {
-        if (!reader_seen(r, "initial.support_foot")->node)
-            r->s->base.support_foot = 1;
-    }
+    if (is->from_equilibrium && !reader_seen(r, "initial.support_foot")->node)
+        r->s->base.support_foot = 1;
     check_standing(r, is);
 }
 
@@ -268,16 +262,14 @@ static void check_controller(struct reader *r, const struct situation *is)
     }
     for (int a = 0; a < r->s->axes; a++) {
         for (int k = 0; k < r->s->axis[a].paths; k++) {
-            const struct swept_field *swept = &r->swept[a][k];
             const size_t pole =
                 (r->s->axis[a].offset[k] - offsetof(struct scenario_values, pole_re)) /
                 sizeof(double);
-            if (pole < SCENARIO_MAX_POLES && base->pole_im[pole] != 0) {
-                char name[AXIS_NAME];
-                problem_add(&r->problems, swept->mark,
+            char name[AXIS_NAME];
+            if (pole < SCENARIO_MAX_POLES && base->pole_im[pole] != 0)
+                problem_add(&r->problems, r->swept[a][k].mark,
                             "%s: %s is complex; only a real pole can be swept",
                             axis_key(r->s, a, name), r->s->axis[a].path[k]);
-            }
         }
     }
 }
@@ -412,16 +404,6 @@ static void check_lands(struct reader *r)
                       feet == 1 ? "is" : "are", feet);
 }
 
-/* Where nothing acts and a run begins at a state no design depends on anything. Of described robots
- * files have had one for each point that makes another robot. */
-static void check_designs(struct reader *r, const struct situation *is)
-{
-    const bool none = is->start_known && is->from_state && r->s->scene->actuators == 0 &&
-                      r->s->scene->mechanism->carried;
-    for (int a = 0; a < r->s->axes && none; a++)
-        r->s->axis[a].design = false;
-}
-
 void scenario_cross_check(struct reader *r)
 {
     struct situation is = find_situation(r);
@@ -440,7 +422,12 @@ void scenario_cross_check(struct reader *r)
     if (r->s->own_scene)
         mechanism_check(r);
     check_lands(r);
-    check_designs(r, &is);
+    /* Where nothing acts and a run begins at a state no design depends on anything. Of described
+     * robots files have had one for each point that makes another robot. */
+    const bool none = is.start_known && is.from_state && r->s->scene->actuators == 0 &&
+                      r->s->scene->mechanism->carried;
+    for (int a = 0; a < r->s->axes && none; a++)
+        r->s->axis[a].design = false;
     for (size_t i = 0; i < r->misfits; i++)
         named_misfit(r, &r->misfit[i]);
     search_check(r);

@@ -1,6 +1,5 @@
-/* scenario_file.c - the text of a scenario file. */
+/* scenario_file.c - the text of a scenario file, and of what it names; changed texts. */
 #include "reader.h"
-#include "tree_nodes.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -14,122 +13,142 @@
 
 enum { PATH_SIZE = 160, FILE_PATH = 1300 };
 
-/* Whether reading would wait for a writer who may never come. A pipe without a name, such as the
- * shell's <(command), has one from the start. */
-static bool is_deserted(int descriptor)
+/* Opens a file to be read; where a named pipe, reading which would wait for a writer who may never
+ * come, is deserted, errno is ETIMEDOUT. A pipe without a name, such as the shell's <(command), has
+ * a writer from the start. */
+static FILE *open_file(const char *file, struct stat *status)
 {
     enum { PATIENCE = 900 }; /* ms */
+    const int descriptor = open(file, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
     struct pollfd waited = {.fd = descriptor, .events = POLLIN};
-    struct stat status;
     struct statfs system;
-
-    return fstat(descriptor, &status) == 0 && S_ISFIFO(status.st_mode) &&
-           fstatfs(descriptor, &system) == 0 && system.f_type != PIPEFS_MAGIC &&
-           poll(&waited, 1, PATIENCE) == 0;
-}
-
-/* NULL: see errno. */
-static FILE *open_file(const char *file)
-{
-    int descriptor = open(file, O_RDONLY | O_NONBLOCK | O_CLOEXEC), error = ETIMEDOUT;
     FILE *in = NULL;
-
-    if (descriptor >= 0 && !is_deserted(descriptor)) {
+    if (descriptor < 0)
+        return NULL;
+    if (fstat(descriptor, status) == 0 && S_ISFIFO(status->st_mode) &&
+        fstatfs(descriptor, &system) == 0 && system.f_type != PIPEFS_MAGIC &&
+        poll(&waited, 1, PATIENCE) == 0) {
+        errno = ETIMEDOUT;
+    } else {
         fcntl(descriptor, F_SETFL, 0); /* now wait for whatever comes */
         in = fdopen(descriptor, "rb");
-        error = errno;
     }
-    if (descriptor >= 0 && !in) {
+    if (!in) {
+        const int error = errno;
         close(descriptor);
         errno = error;
     }
     return in;
 }
 
+/* At most so many bytes, into text[most + 2], of which the last is 0. Returns what is wrong; NULL:
+ * nothing. `larger`: what is said of more. */
+static const char *read_file(const char *file, char *text, size_t most, const char *larger,
+                             size_t *length)
+{
+    struct stat status = {0};
+    FILE *const in = open_file(file, &status);
+    const char *wrong = NULL;
+    *length = 0;
+    if (!in)
+        return errno == ETIMEDOUT ? "a named pipe into which nothing is written" : strerror(errno);
+    if (S_ISDIR(status.st_mode))
+        wrong = "is a directory, not a file";
+    else
+        *length = fread(text, 1, most + 1, in);
+    if (ferror(in))
+        wrong = strerror(errno);
+    else if (*length > most)
+        wrong = larger;
+    fclose(in);
+    return wrong;
+}
+
 char *scenario_text(const char *file, struct problems *problems, size_t *length)
 {
-    struct mark nowhere = {0};
-    struct stat status;
-    char *text = NULL;
-    FILE *in = open_file(file);
-
-    if (!in || fstat(fileno(in), &status) != 0) {
-        const int error = errno;
-        char with[PATH_SIZE];
-        snprintf(with, sizeof with, "%s.yaml", file);
-        if (error == ENOENT && strlen(file) < sizeof with - 5 && access(with, R_OK) == 0)
-            problem_add(problems, nowhere, "%s; did you mean '%s'?", strerror(error), with);
-        else
-            problem_add(problems, nowhere, "%s",
-                        error == ETIMEDOUT ? "a named pipe into which nothing is written"
-                                           : strerror(error));
-    } else if (S_ISDIR(status.st_mode)) {
-        problem_add(problems, nowhere, "is a directory, not a scenario file");
-    } else if (!(text = malloc(TREE_MAX_BYTES + 2))) {
-        problem_add(problems, nowhere, "out of memory");
-    } else {
-        *length = fread(text, 1, TREE_MAX_BYTES + 1, in);
-        text[*length] = '\0';
-        const char *wrong = ferror(in) ? strerror(errno) : NULL;
-        if (!wrong && *length > TREE_MAX_BYTES)
-            wrong = "larger than 1 MiB, the most a scenario may take";
-        if (*length >= 8 && memcmp(text, "\x89HDF\r\n\x1a\n", 8) == 0) {
-            problem_add(problems, nowhere,
-                        "a results file, not a scenario; write stance summary %s", file);
-            free(text);
-            text = NULL;
-        } else if (wrong) {
-            problem_add(problems, nowhere, "%s", wrong);
-            free(text);
-            text = NULL;
-        }
+    const struct mark nowhere = {0};
+    char *const text = calloc(1, TREE_MAX_BYTES + 2);
+    if (!text) {
+        problem_no_memory(problems);
+        return NULL;
     }
-    if (in)
-        fclose(in);
-    return text;
+    errno = 0;
+    const char *const wrong = read_file(file, text, TREE_MAX_BYTES,
+                                        "larger than 1 MiB, the most a scenario may take", length);
+    char with[PATH_SIZE];
+    snprintf(with, sizeof with, "%.*s.yaml", PATH_SIZE - 6, file);
+    if (*length >= 8 && memcmp(text, "\x89HDF\r\n\x1a\n", 8) == 0)
+        problem_add(problems, nowhere, "a results file, not a scenario; write stance summary %s",
+                    file);
+    else if (wrong && errno == ENOENT && strlen(file) + 5 < sizeof with && access(with, R_OK) == 0)
+        problem_add(problems, nowhere, "%s; did you mean '%s'?", wrong, with);
+    else if (wrong)
+        problem_add(problems, nowhere, "%s", wrong);
+    else
+        return text;
+    free(text);
+    return NULL;
 }
 
 /* ---- what a scenario names ---------------------------------------------------------------------
  */
 
-/* Beside the scenario, unless it is absolute. */
-static void beside(const struct reader *r, const char *name, char path[FILE_PATH])
-{
-    const char *const slash = strrchr(r->s->file, '/');
-    const int directory = name[0] == '/' || !slash ? 0 : (int)(slash - r->s->file) + 1;
-    snprintf(path, FILE_PATH, "%.*s%s", directory, r->s->file, name);
-}
-
 const char *reader_file(struct reader *r, const char *key, const struct tree_node *node,
                         size_t most)
 {
+    /* Beside the scenario, unless it is absolute. */
+    const char *const slash = node->text[0] == '/' ? NULL : strrchr(r->s->file, '/');
     char path[FILE_PATH];
-    struct stat status;
-    beside(r, node->text, path);
+    size_t length;
     char *const text = tree_allocate(&r->tree, most + 2);
-    FILE *const in = text ? open_file(path) : NULL;
-    const char *wrong = NULL;
-    size_t length = 0;
-    if (!text)
-        wrong = "out of memory";
-    else if (in && fstat(fileno(in), &status) == 0 && !S_ISREG(status.st_mode))
-        wrong = "is no regular file";
-    else if (in)
-        length = fread(text, 1, most + 1, in);
-    if (!wrong && (!in || ferror(in)))
-        wrong = strerror(errno);
-    if (length > most)
-        wrong = "is larger than may be (256 KiB of source, 512 KiB of numbers)";
-    if (in)
-        fclose(in);
-    if (wrong) {
-        problem_add(&r->problems, node->mark, "%s: %.200s: %s", key, path, wrong);
-        return NULL;
-    }
     struct problems ignored = {0};
-    if (memchr(text, '\0', length) || !tree_check_text(text, length, &ignored)) {
-        problem_add(&r->problems, node->mark, "%s: %.200s: is no text in UTF-8", key, path);
-        return NULL;
+    snprintf(path, sizeof path, "%.*s%s", slash ? (int)(slash - r->s->file) + 1 : 0, r->s->file,
+             node->text);
+    const char *wrong =
+        text ? read_file(path, text, most,
+                         "is larger than may be (256 KiB of source, 512 KiB of numbers)", &length)
+             : "out of memory";
+    if (!wrong && (memchr(text, '\0', length) || !tree_check_text(text, length, &ignored)))
+        wrong = "is no text in UTF-8";
+    if (wrong)
+        problem_add(&r->problems, node->mark, "%s: %.200s: %s", key, path, wrong);
+    return wrong ? NULL : text;
+}
+
+/* ---- changed texts --------------------------------------------------------------------------- */
+
+/* Drops the key at a path of mappings' keys. */
+static void drop_key(struct tree_node *node, const char *path)
+{
+    char name[TREE_MAX_NAME];
+    size_t index = 0, i;
+    for (bool first = true; node && *path; first = false) {
+        if (!tree_path_step(&path, first, name, &index) || !tree_place(node, name, &i))
+            return;
+        if (*path) {
+            node = node->item[i];
+            continue;
+        }
+        node->count--;
+        memmove(&node->key[i], &node->key[i + 1], (node->count - i) * sizeof *node->key);
+        memmove(&node->item[i], &node->item[i + 1], (node->count - i) * sizeof(void *));
     }
-    return text;
+}
+
+char *scenario_rewrite(const char *text, const char *const *drop, size_t drops,
+                       const char *const *set, size_t sets)
+{
+    struct tree tree = {0};
+    struct problems *problems = calloc(1, sizeof *problems);
+    char *result = NULL;
+    bool good = problems && tree_parse(&tree, text, strlen(text), problems);
+    for (size_t i = 0; good && i < drops; i++)
+        drop_key(tree.root, drop[i]);
+    for (size_t i = 0; good && i < sets; i++)
+        good = tree_set(&tree, set[i], (int)i + 1, problems);
+    if (good)
+        result = tree_write(tree.root);
+    tree_free(&tree);
+    free(problems);
+    return result;
 }

@@ -176,28 +176,25 @@ static bool read_entry(struct axis_reader *a)
     good = axis_read_spacing(a, "optimise.vary[].spacing", &ratios) && good;
     if (!good)
         return false;
-    varied->bounded = !isnan(from) || !isnan(to);
-    if (varied->bounded && (isnan(from) || isnan(to)))
-        return axis_complain(a, isnan(from) ? "from is missing" : "to is missing");
-    if (!varied->bounded && isnan(unit) && field->columns == 0)
-        return axis_complain(a, "give from and to, or a unit");
-    if (varied->bounded) {
-        if (!(from < to))
-            return axis_complain(a, "from must be less than to");
-        if (ratios && from <= 0)
-            return axis_complain(a, "spacing log needs from above 0");
-        if (!field_admits(problems, field, name, "from", path->mark, from) ||
-            !field_admits(problems, field, name, "to", path->mark, to))
-            return false;
-        varied->low = from;
-        varied->high = to;
-        if (isnan(unit))
-            unit = ratios ? log(to / from) : to - from;
-    }
-    varied->scale = ratios ? SCALE_RATIO : SCALE_EVEN;
-    varied->unit = unit;
-    if (ratios)
-        varied->low = fmax(varied->low, 0); /* ratios keep the sign */
+    const bool bounded = !isnan(from) || !isnan(to);
+    const char *const wrong = bounded && isnan(from) ? "from is missing"
+                              : bounded && isnan(to) ? "to is missing"
+                              : !bounded && isnan(unit) && field->columns == 0
+                                  ? "give from and to, or a unit"
+                              : bounded && !(from < to)        ? "from must be less than to"
+                              : bounded && ratios && from <= 0 ? "spacing log needs from above 0"
+                                                               : NULL;
+    if (wrong)
+        return axis_complain(a, wrong);
+    if (bounded && (!field_admits(problems, field, name, "from", path->mark, from) ||
+                    !field_admits(problems, field, name, "to", path->mark, to)))
+        return false;
+    if (bounded && isnan(unit))
+        unit = ratios ? log(to / from) : to - from;
+    const double low = bounded ? from : varied->low;
+    *varied = (struct scenario_varied){ratios ? SCALE_RATIO : SCALE_EVEN,
+                                       ratios ? fmax(low, 0) : low, /* ratios keep the sign */
+                                       bounded ? to : varied->high, unit, bounded};
     return true;
 }
 
@@ -246,8 +243,8 @@ static bool read_grow(struct reader *r)
         char name[32];
         double number = 0;
         snprintf(name, sizeof name, "optimise.grow[%zu]", i);
-        const bool fits = field_integer(&r->problems, schema_find(r->schema, "optimise.grow[]"),
-                                        name, grow->item[i], &number);
+        const bool fits = field_number(&r->problems, schema_find(r->schema, "optimise.grow[]"),
+                                       name, grow->item[i], &number);
         search->grow[i] = fits ? (uint64_t)number : 0;
         good &= fits;
         if (good && i > 0 && search->grow[i] <= search->grow[i - 1])

@@ -316,8 +316,8 @@ static bool read_range(struct axis_reader *a)
     if (!count)
         return good && axis_complain(a, "count is missing");
     snprintf(name, sizeof name, "%s.count", a->name);
-    good = field_integer(&a->r->problems, schema_find(a->r->schema, "sweep.grid[].count"), name,
-                         count, &number) &&
+    good = field_number(&a->r->problems, schema_find(a->r->schema, "sweep.grid[].count"), name,
+                        count, &number) &&
            good;
     good = axis_read_spacing(a, "sweep.grid[].spacing", &axis->log) && good;
     if (!good)

@@ -3,7 +3,7 @@
  * Everything that lives as long as the tree comes from one chain of blocks, so that no error path
  * has anything to release.
  */
-#include "tree_nodes.h"
+#include "tree.h"
 
 #include <stdint.h>
 #include <stdlib.h>

@@ -1,5 +1,5 @@
 /* tree_yaml.c - YAML text as nodes with line and column, from the events that libyaml delivers. */
-#include "tree_nodes.h"
+#include "tree.h"
 
 #include "runner/base/words.h"
 

@@ -107,7 +107,11 @@ bool adopt_tree(struct tree *tree, const char *file, const char *text, stance_me
     *tree = (struct tree){0};
     const bool good = problems && text && tree_parse(tree, text, strlen(text), problems);
     free(problems);
-    return good || complain(message, "%.100s: its scenario cannot be read", file);
+    if (!good) {
+        tree_free(tree);
+        complain(message, "%.100s: its scenario cannot be read", file);
+    }
+    return good;
 }
 
 void adopt_differ(const struct tree_node *a, const struct tree_node *b, const char *path,

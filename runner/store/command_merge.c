@@ -26,30 +26,23 @@ static void name_missing_shards(const struct merge *m)
 {
     enum { NAMED = 8 };
     const uint64_t count = m->kind == MERGE_EQUAL ? m->part[0].of.origin.shard.count : 0;
-    bool *const there = count > 0 ? calloc(count + 1, 1) : NULL;
-    uint64_t missing = count;
-
-    for (size_t p = 0; there && p < m->parts; p++) {
-        const struct shard *const shard = &m->part[p].of.origin.shard;
-        if (shard->count != count) {
-            missing = 0;
-            break;
-        }
-        missing -= !there[shard->number];
-        there[shard->number] = true;
+    uint64_t missing = 0;
+    for (size_t p = 0; p < m->parts; p++)
+        if (m->part[p].of.origin.shard.count != count)
+            return;
+    for (uint64_t k = 1; k <= count; k++) {
+        bool there = false;
+        for (size_t p = 0; p < m->parts && !there; p++)
+            there = m->part[p].of.origin.shard.number == k;
+        if (!there && ++missing <= NAMED)
+            fprintf(stderr, "%s %llu/%llu",
+                    missing == 1 ? "stance merge: not among the files: shard" : ",",
+                    (unsigned long long)k, (unsigned long long)count);
     }
-    if (there && missing > 0) {
-        uint64_t named = 0;
-        fputs("stance merge: not among the files:", stderr);
-        for (uint64_t k = 1; k <= count && named < NAMED; k++)
-            if (!there[k])
-                fprintf(stderr, "%s %llu/%llu", named++ ? "," : " shard", (unsigned long long)k,
-                        (unsigned long long)count);
-        if (missing > named)
-            fprintf(stderr, " and %llu more", (unsigned long long)(missing - named));
+    if (missing > NAMED)
+        fprintf(stderr, " and %llu more", (unsigned long long)(missing - NAMED));
+    if (missing > 0)
         fputc('\n', stderr);
-    }
-    free(there);
 }
 
 static void print_result(const struct request *request, const struct merge *m)

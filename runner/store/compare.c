@@ -62,42 +62,37 @@ void compare_free(struct comparison *comparison)
 /* Elements of a variable or an attribute in memory. */
 enum value_kind { VALUE_REAL, VALUE_INTEGER, VALUE_NATURAL, VALUE_TEXT, VALUE_OTHER };
 
+union value {
+    double real;
+    int64_t integer;
+    uint64_t natural;
+    char *text;
+};
+
 struct values {
     enum value_kind kind;
     size_t count;
-    union {
-        double *real;
-        int64_t *integer;
-        uint64_t *natural;
-        char **text;
-        void *any;
-    } data;
+    union value *of;
 };
 
 static enum value_kind value_kind_of(hid_t type)
 {
     const size_t size = H5Tget_size(type);
-    switch (H5Tget_class(type)) {
-    case H5T_FLOAT:
-        return size <= sizeof(double) ? VALUE_REAL : VALUE_OTHER;
-    case H5T_INTEGER:
-        return size > sizeof(int64_t)              ? VALUE_OTHER
-               : H5Tget_sign(type) == H5T_SGN_NONE ? VALUE_NATURAL
-                                                   : VALUE_INTEGER;
-    case H5T_STRING:
-        return VALUE_TEXT;
-    default:
-        return VALUE_OTHER;
-    }
+    const H5T_class_t class = H5Tget_class(type);
+    return class == H5T_STRING                 ? VALUE_TEXT
+           : size > sizeof(union value)        ? VALUE_OTHER
+           : class == H5T_FLOAT                ? VALUE_REAL
+           : class != H5T_INTEGER              ? VALUE_OTHER
+           : H5Tget_sign(type) == H5T_SGN_NONE ? VALUE_NATURAL
+                                               : VALUE_INTEGER;
 }
 
 static void values_free(struct values *values)
 {
-    if (values->kind == VALUE_TEXT)
-        hdf_free_words(values->data.text, values->count);
-    else
-        free(values->data.any);
-    values->data.any = NULL;
+    for (size_t i = 0; values->kind == VALUE_TEXT && values->of && i < values->count; i++)
+        free(values->of[i].text);
+    free(values->of);
+    values->of = NULL;
 }
 
 /* Reads elements [at, at + count) of a dataset, or the `count` ones of an attribute. Those of
@@ -108,15 +103,14 @@ static bool values_read(hid_t object, hsize_t at, hid_t type, size_t count, stru
     if (values->kind == VALUE_OTHER)
         return true;
     if (values->kind == VALUE_TEXT) {
-        values->data.text = hdf_words(object, at, count);
-        return values->data.text != NULL;
+        values->of = (union value *)(void *)hdf_words(object, at, count);
+        return values->of != NULL;
     }
     const hid_t native = values->kind == VALUE_REAL      ? H5T_NATIVE_DOUBLE
                          : values->kind == VALUE_INTEGER ? H5T_NATIVE_INT64
                                                          : H5T_NATIVE_UINT64;
-    values->data.any = malloc(count * sizeof(double) + 1);
-    const bool good =
-        values->data.any && hdf_move(object, native, at, count, HDF_READ, values->data.any);
+    values->of = malloc(count * sizeof *values->of + 1);
+    const bool good = values->of && hdf_move(object, native, at, count, HDF_READ, values->of);
     if (!good)
         values_free(values);
     return good;
@@ -125,8 +119,8 @@ static bool values_read(hid_t object, hsize_t at, hid_t type, size_t count, stru
 /* NAN: it is none that has a distance from others. */
 static double number_of(const struct values *values, size_t i)
 {
-    return values->kind == VALUE_REAL      ? values->data.real[i]
-           : values->kind == VALUE_INTEGER ? (double)values->data.integer[i]
+    return values->kind == VALUE_REAL      ? values->of[i].real
+           : values->kind == VALUE_INTEGER ? (double)values->of[i].integer
                                            : NAN;
 }
 
@@ -134,12 +128,10 @@ static double number_of(const struct values *values, size_t i)
  * kind. */
 static bool values_same(const struct values *a, const struct values *b, size_t i)
 {
-    if (a->kind == VALUE_OTHER)
-        return true;
-    if (a->kind == VALUE_TEXT)
-        return strcmp(a->data.text[i], b->data.text[i]) == 0;
-    return memcmp(&a->data.natural[i], &b->data.natural[i], sizeof(uint64_t)) == 0 ||
-           (a->kind == VALUE_REAL && isnan(a->data.real[i]) && isnan(b->data.real[i]));
+    return a->kind == VALUE_OTHER ||
+           (a->kind == VALUE_TEXT ? strcmp(a->of[i].text, b->of[i].text) == 0
+                                  : a->of[i].natural == b->of[i].natural) ||
+           (a->kind == VALUE_REAL && isnan(a->of[i].real) && isnan(b->of[i].real));
 }
 
 /* The beginning of a text in quotation marks, in whole letters; damaged bytes are no letters. */
@@ -163,7 +155,7 @@ static void show_values(const struct values values[2], size_t i, struct compare_
 {
     size_t from = 0;
     if (values[0].kind == VALUE_TEXT) {
-        const char *const a = values[0].data.text[i], *const b = values[1].data.text[i];
+        const char *const a = values[0].of[i].text, *const b = values[1].of[i].text;
         while (a[from] && a[from] == b[from])
             from++;
         from = from > 20 ? from - 20 : 0;
@@ -172,14 +164,15 @@ static void show_values(const struct values values[2], size_t i, struct compare_
     }
     for (int f = 0; f < 2; f++) {
         char *const text = place->value[f];
+        const union value value = values[f].of[i];
         if (values[f].kind == VALUE_REAL)
-            snprintf(text, COMPARE_TEXT, "%.17g", values[f].data.real[i]);
+            snprintf(text, COMPARE_TEXT, "%.17g", value.real);
         else if (values[f].kind == VALUE_INTEGER)
-            snprintf(text, COMPARE_TEXT, "%lld", (long long)values[f].data.integer[i]);
+            snprintf(text, COMPARE_TEXT, "%lld", (long long)value.integer);
         else if (values[f].kind == VALUE_NATURAL)
-            snprintf(text, COMPARE_TEXT, "%llu", (unsigned long long)values[f].data.natural[i]);
+            snprintf(text, COMPARE_TEXT, "%llu", (unsigned long long)value.natural);
         else
-            values_quote(from ? "..." : "", values[f].data.text[i] + from, text);
+            values_quote(from ? "..." : "", value.text + from, text);
     }
 }
 

@@ -5,7 +5,7 @@
 #define STANCE_STORE_HDF_H
 
 #include "engine/stance.h"
-#include "runner/plan/rows.h"
+#include "runner/plan/shard.h"
 
 #include <hdf5.h>
 #include <stdbool.h>

@@ -19,18 +19,6 @@ const char *const merge_notes[MERGE_NOTES] = {
                       "of the first part that has them are in this file.",
 };
 
-static bool open_part(struct merge *m, struct adopted *part)
-{
-    struct store_counts counts;
-    if (!adopt_scenario(part, &m->message) || !store_count(part->file, &counts, &m->message))
-        return false;
-    return counts.cases == part->scenario->cases
-               ? adopt_open(part, &m->message)
-               : complain(&m->message,
-                          "%.100s: holds one case of a sweep (run --only), not the sweep",
-                          part->file);
-}
-
 /* ---- what must be the same ---------------------------------------------------------------- */
 
 /* The points of a sample or of a logarithmic axis are what the program that made the part computed:
@@ -78,7 +66,7 @@ static bool collect_designs(struct merge *m, struct plan *plan)
     bool good = taken || no_memory(&m->message);
     for (size_t p = 0; good && p < m->parts; p++) {
         struct adopted *const part = &m->part[p].of;
-        good = open_part(m, part);
+        good = adopt_scenario(part, &m->message) && adopt_open(part, &m->message);
         if (good)
             m->usage = !(good = take_designs(m, part, plan, taken));
         adopt_close(part);
@@ -97,7 +85,8 @@ static bool copy_parts(struct merge *m, struct store *store)
     for (size_t p = 0; good && p < m->parts; p++) {
         struct adopted *const part = &m->part[p].of;
         const uint64_t before = rows->copied + rows->same;
-        good = open_part(m, part) && adopt_rows(part, store, rows, &m->message) &&
+        good = adopt_scenario(part, &m->message) && adopt_open(part, &m->message) &&
+               adopt_rows(part, store, rows, &m->message) &&
                store_copy_timing(part->store, store, &rank, &m->message);
         m->part[p].taken = rows->copied + rows->same - before;
         adopt_close(part);

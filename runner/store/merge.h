@@ -23,6 +23,7 @@ extern const char *const merge_notes[MERGE_NOTES];
 struct merge_part {
     struct adopted of;
     uint64_t taken; /* rows */
+    char *value;    /* that becomes a point of an axis; NULL: that of the first part */
 };
 
 struct merge {

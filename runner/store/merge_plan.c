@@ -14,8 +14,12 @@
 enum { MOST_DIFFERENCES = 64, PATH = 128 };
 
 struct differences {
+    struct merge *m;
+    size_t part; /* that is compared with the first one */
     char path[MOST_DIFFERENCES][PATH];
     size_t count;
+    size_t last; /* the part that had another one */
+    bool others; /* what stands at the first of the paths is no scalar in each */
 };
 
 /* Names do not matter, and lists of recorded cases are united. */
@@ -23,29 +27,22 @@ static void note(void *context, const char *path, const struct tree_node *before
                  const struct tree_node *after)
 {
     struct differences *const found = context;
-    (void)before, (void)after;
+    char **const value = &found->m->part[found->part].value,
+                 **const first = &found->m->part[0].value;
+    size_t i = 0;
     if (strcmp(path, "title") == 0 || strncmp(path, "record.cases", strlen("record.cases")) == 0)
         return;
-    for (size_t i = 0; i < found->count; i++)
-        if (strcmp(found->path[i], path) == 0)
-            return;
-    if (found->count < MOST_DIFFERENCES)
+    while (i < found->count && strcmp(found->path[i], path) != 0)
+        i++;
+    if (i == found->count && i < MOST_DIFFERENCES) {
         snprintf(found->path[found->count++], PATH, "%s", path);
-}
-
-/* The text of the scalar at a path; NULL: there is none. */
-static const char *text_at(const struct tree_node *node, const char *path)
-{
-    char name[TREE_MAX_NAME];
-    size_t index;
-    for (bool first = true; node && *path; first = false) {
-        if (!tree_path_step(&path, first, name, &index))
-            return NULL;
-        node = name[0]                                          ? tree_find(node, name)
-               : node->kind == TREE_LIST && index < node->count ? node->item[index]
-                                                                : NULL;
+        found->last = found->part;
     }
-    return node && node->kind == TREE_SCALAR ? node->text : NULL;
+    if (i == 0 && before && after && before->kind == TREE_SCALAR && after->kind == TREE_SCALAR) {
+        *value = strdup(after->text);
+        *first = *first ? *first : strdup(before->text);
+    }
+    found->others = found->others || (i == 0 && !(*value && *first));
 }
 
 /* "sweep.grid[2].from" is of axis 2; -1: of none. */
@@ -55,20 +52,8 @@ static int axis_of(const char *path)
     return sscanf(path, "sweep.grid[%d]", &axis) == 1 ? axis : -1;
 }
 
-static bool misfit(struct merge *m, const struct differences *found, size_t part)
-{
-    char list[84] = "";
-    for (size_t i = 0; i < found->count && strlen(list) + 41 < sizeof list; i++)
-        words_add(list, sizeof list, "%s%.38s", i ? ", " : "", found->path[i]);
-    return complain(
-        &m->message,
-        "%.32s: differs from %.32s in %.70s: parts may differ along one axis or in one value "
-        "that can be swept",
-        m->part[part].of.file, m->part[0].of.file, list);
-}
-
-/* A value that stands in every part and may become an axis. */
-static bool is_value(struct merge *m, const struct tree *trees, const char *path)
+/* A value that stands in every part may become an axis, but for some. */
+static bool is_value(const char *path)
 {
     static const char *const fixed[] = {"stance",
                                         "title",
@@ -84,35 +69,55 @@ static bool is_value(struct merge *m, const struct tree *trees, const char *path
         if (strncmp(path, fixed[i], length) == 0 && (!path[length] || strchr(".[", path[length])))
             return false;
     }
-    for (size_t p = 0; p < m->parts; p++)
-        if (!text_at(trees[p].root, path))
-            return false;
     return true;
 }
 
-static bool classify(struct merge *m, const struct tree *trees)
+static bool classify(struct merge *m, const struct differences *found)
 {
-    struct differences found = {.count = 0};
-    size_t last = 0;
-    for (size_t p = 1; p < m->parts; p++) {
-        const size_t before = found.count;
-        adopt_differ(trees[0].root, trees[p].root, "", &(struct adopted_differences){note, &found});
-        last = found.count > before ? p : last;
-    }
-    m->axis = 0;
-    m->kind = MERGE_EQUAL;
-    if (found.count == 0)
+    char list[84] = "";
+    if (found->count == 0)
         return true;
-    int axis = axis_of(found.path[0]);
-    for (size_t i = 1; i < found.count; i++)
-        axis = axis_of(found.path[i]) == axis ? axis : -1;
+    int axis = axis_of(found->path[0]);
+    for (size_t i = 1; i < found->count; i++)
+        axis = axis_of(found->path[i]) == axis ? axis : -1;
+    m->axis = axis >= 0 ? axis : 0;
     m->kind = axis >= 0 ? MERGE_AXIS : MERGE_VALUE;
-    if (axis >= 0) {
-        m->axis = axis;
+    snprintf(m->path, sizeof m->path, "%s", found->path[0]);
+    if (axis >= 0 || (found->count == 1 && !found->others && is_value(m->path)))
         return true;
+    for (size_t i = 0; i < found->count && strlen(list) + 41 < sizeof list; i++)
+        words_add(list, sizeof list, "%s%.38s", i ? ", " : "", found->path[i]);
+    return complain(
+        &m->message,
+        "%.32s: differs from %.32s in %.70s: parts may differ along one axis or in one value "
+        "that can be swept",
+        m->part[found->last].of.file, m->part[0].of.file, list);
+}
+
+/* Reads the tree of the first part, and how the others differ from it. */
+static bool compare_parts(struct merge *m, struct tree *first)
+{
+    struct differences found = {.m = m};
+    for (size_t p = 0; p < m->parts; p++) {
+        const struct adopted *const part = &m->part[p].of;
+        struct tree tree;
+        /* Of the values of keys that cases of several scenarios have, a file tells those of the
+         * last one. */
+        m->usage = part->origin.ancestors > 0;
+        if (m->usage)
+            return complain(&m->message,
+                            "%.120s: was made from several scenarios: it cannot be merged",
+                            part->file);
+        if (!adopt_tree(p == 0 ? first : &tree, part->file, part->origin.scenario, &m->message))
+            return false;
+        if (p > 0) {
+            found.part = p;
+            adopt_differ(first->root, tree.root, "", &(struct adopted_differences){note, &found});
+            tree_free(&tree);
+        }
     }
-    snprintf(m->path, sizeof m->path, "%s", found.path[0]);
-    return (found.count == 1 && is_value(m, trees, m->path)) || misfit(m, &found, last);
+    m->usage = true;
+    return classify(m, &found);
 }
 
 /* ---- what each part has ------------------------------------------------------------------- */
@@ -190,9 +195,9 @@ static bool look_at_axis(struct merge *m, struct look *look, size_t p)
 }
 
 /* The value that a part has instead of an axis. */
-static bool look_at_value(struct merge *m, const struct tree *tree, struct look *look, size_t p)
+static bool look_at_value(struct merge *m, struct look *look, size_t p)
 {
-    const char *const text = text_at(tree->root, m->path);
+    const char *const text = m->part[p].value ? m->part[p].value : m->part[0].value;
     double number;
     bool finite;
     if (!number_parse(text, &number, &finite))
@@ -221,7 +226,7 @@ static bool look_at_records(struct merge *m, struct look *look, size_t p)
     return true;
 }
 
-static bool look_at_parts(struct merge *m, const struct tree *trees, struct look *look)
+static bool look_at_parts(struct merge *m, struct look *look)
 {
     bool good = true;
     for (size_t p = 0; good && p < m->parts; p++) {
@@ -233,8 +238,7 @@ static bool look_at_parts(struct merge *m, const struct tree *trees, struct look
             part->inner /= part->scenario->axis[a].count;
         good = look_at_records(m, look, p) &&
                (m->kind == MERGE_EQUAL ||
-                (m->kind == MERGE_AXIS ? look_at_axis(m, look, p)
-                                       : look_at_value(m, &trees[p], look, p)));
+                (m->kind == MERGE_AXIS ? look_at_axis(m, look, p) : look_at_value(m, look, p)));
         adopt_close(part);
     }
     return good;
@@ -391,7 +395,6 @@ static bool set_recorded(struct merge *m, const struct look *look, struct tree *
     return good || no_memory(&m->message);
 }
 
-/* Of the tree of the first part. */
 static bool read_merged(struct merge *m, const struct tree *tree)
 {
     char *text = tree_write(tree->root);
@@ -412,21 +415,22 @@ static bool read_merged(struct merge *m, const struct tree *tree)
             store_read_axes(first->file, s->axis + before + 1, s->axes - before - 1, &m->message));
 }
 
-static bool make_scenario(struct merge *m, struct tree *trees)
+/* Of the tree of the first part, which is changed. */
+static bool make_scenario(struct merge *m, struct tree *tree)
 {
     struct look look = {.numbers = true, .rising = true, .falling = true};
     struct problems *problems = calloc(1, sizeof *problems);
-    bool good = problems ? look_at_parts(m, trees, &look) : no_memory(&m->message);
+    bool good = problems ? look_at_parts(m, &look) : no_memory(&m->message);
 
     if (good && m->kind != MERGE_EQUAL) {
         good = place_points(m, &look);
-        if (good && !set_axis(m, &look, &trees[0], problems)) {
+        if (good && !set_axis(m, &look, tree, problems)) {
             good = no_memory(&m->message);
             if (problems->count > 0)
                 complain(&m->message, "the merged axis: %.200s", problems->list[0].text);
         }
     }
-    good = good && set_recorded(m, &look, &trees[0], problems) && read_merged(m, &trees[0]);
+    good = good && set_recorded(m, &look, tree, problems) && read_merged(m, tree);
     free(problems);
     for (size_t i = 0; i < look.points; i++)
         free(look.point[i].text);
@@ -436,26 +440,6 @@ static bool make_scenario(struct merge *m, struct tree *trees)
 }
 
 /* ---- parts -------------------------------------------------------------------------------- */
-
-static bool open_part(struct merge *m, const char *file, struct tree *tree)
-{
-    struct adopted *const part = &m->part[m->parts].of;
-    part->file = file;
-    if (!store_check(file, true, &m->message) ||
-        !store_read_origin(file, &part->origin, &m->message))
-        return false;
-    m->parts++;
-    return adopt_tree(tree, file, part->origin.scenario, &m->message);
-}
-
-/* Of the values of keys that cases of several scenarios have, a file tells those of the last one.
- */
-static bool is_of_one(struct merge *m, const struct adopted *part)
-{
-    return part->origin.ancestors == 0 ||
-           complain(&m->message, "%.120s: was made from several scenarios: it cannot be merged",
-                    part->file);
-}
 
 /* Where random numbers come in: half-width of the noise, probes. */
 static bool has_random_numbers(const struct scenario *s)
@@ -471,22 +455,22 @@ static bool has_random_numbers(const struct scenario *s)
 
 bool merge_plan(struct merge *m, const char *const *files, size_t count)
 {
+    struct tree tree = {0};
     *m = (struct merge){.points = 1};
-    struct tree *trees = calloc(count, sizeof *trees);
     m->part = calloc(count, sizeof *m->part);
-    bool good = (trees && m->part) || no_memory(&m->message);
-    for (size_t p = 0; good && p < count; p++)
-        good = open_part(m, files[p], &trees[p]);
-    m->usage = good;
-    for (size_t p = 0; good && p < count; p++)
-        good = is_of_one(m, &m->part[p].of);
-    good = good && classify(m, trees) && make_scenario(m, trees);
+    bool good = m->part || no_memory(&m->message);
+    for (size_t p = 0; good && p < count; p++) {
+        struct adopted *const part = &m->part[p].of;
+        part->file = files[p];
+        good = store_check(part->file, true, &m->message) &&
+               store_read_origin(part->file, &part->origin, &m->message);
+        m->parts += good;
+    }
+    good = good && compare_parts(m, &tree) && make_scenario(m, &tree);
     for (size_t p = 0; good && p < count; p++)
         good =
             store_same_points(m->part[p].of.file, &m->part[p].of.origin, m->scenario, &m->message);
-    for (size_t p = 0; trees && p < count; p++)
-        tree_free(&trees[p]);
-    free(trees);
+    tree_free(&tree);
     if (good && m->kind != MERGE_EQUAL) {
         m->noted[MERGE_KEYED] = has_random_numbers(m->scenario);
         m->noted[MERGE_REFINED] = m->scenario->axis[m->axis].refined;
@@ -499,6 +483,7 @@ void merge_free(struct merge *m)
     for (size_t p = 0; p < m->parts; p++) {
         store_origin_free(&m->part[p].of.origin);
         free(m->part[p].of.position);
+        free(m->part[p].value);
     }
     free(m->part);
     scenario_drop(m->scenario);

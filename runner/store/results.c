@@ -1,7 +1,6 @@
 /* results.c - reads results files with HDF5's serial driver; trusts nothing that it finds. */
 #include "file_checksums.h"
 #include "results_private.h"
-#include "results_rows.h"
 #include "store.h"
 
 #include "runner/base/checksum.h"

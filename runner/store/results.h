@@ -90,8 +90,25 @@ void results_warn(const struct results *r);
 bool results_answer(const struct results *r, const char *name, double **values,
                     stance_message *message);
 
+/* The same of some rows at a time, for tables of files of any length. */
+struct results_column {
+    char name[96];
+    int64_t id;   /* HDF5 identifier */
+    size_t width; /* numbers per case: 1, or the length of a last dimension of its own */
+    char *words;  /* flag_meanings, separated by blanks; NULL: none */
+};
+
+/* False with one line in *message; a variable that is not stored gives id < 0 and true. */
+bool results_column_open(const struct results *r, const char *name, struct results_column *column,
+                         stance_message *message);
+void results_column_close(struct results_column *column);
+
+/* Reads rows from `first` on, values[rows * width], whatever the status of the cases. */
+bool results_column_read(const struct results *r, const struct results_column *column,
+                         uint64_t first, size_t rows, double *values, stance_message *message);
+
 /* The scenarios that the file was made from, where a run went on with another one than it was begun
- * with (runner/store/changed_scenario.h). */
+ * with (runner/store/adopt.h). */
 struct ancestry {
     size_t scenarios;                                   /* 1: as usual */
     char date[STORE_MOST_ANCESTORS + 1][SCENARIO_NAME]; /* of each: when it was first run */

@@ -9,54 +9,36 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The words of an enumeration, from CF's flag_meanings. */
-static bool read_words(const struct results *r, hid_t dataset, struct results_varied *v,
-                       stance_message *message)
-{
-    char *words = hdf_text(dataset, "flag_meanings");
-    size_t n = 1;
-    if (!words)
-        return true;
-    results_clean(words);
-    for (const char *c = words; *c; c++)
-        n += *c == ' ';
-    v->word = n <= UINT8_MAX ? calloc(n, sizeof *v->word) : NULL;
-    char *rest = words;
-    for (v->words = 0; v->word && rest; v->words++)
-        snprintf(v->word[v->words], sizeof *v->word, "%s", strsep(&rest, " "));
-    free(words);
-    return v->word || results_no_memory(r, message);
-}
-
-static bool read_values(const struct results *r, const struct results_variable *from,
-                        struct results_varied *v, stance_message *message)
-{
-    v->of.value = malloc(v->of.count * sizeof *v->of.value);
-    if (!v->of.value)
-        return results_no_memory(r, message);
-    if (!from->number || !hdf_read(from->id, KIND_double, v->of.value))
-        return results_failed(r, v->of.name, message);
-    for (size_t i = 0; i < v->of.count; i++) { /* an absent limit is infinite */
-        const double value = v->of.value[i];
-        if (isnan(value) || (v->word && !(value >= 0 && value < v->words)))
-            return results_damaged(r, "a sampled value is none", message);
-    }
-    return true;
-}
-
+/* A path and its values; of an enumeration the words are CF's flag_meanings. */
 static bool read_varied(struct results *r, const char *path, int factor, stance_message *message)
 {
     struct results_varied *v = &r->vary[r->varied];
+    const size_t n = r->axis[r->sample].count;
     const struct results_variable from = results_variable(r, path);
     if (from.id < 0)
         return results_failed(r, path, message);
     r->varied++;
     v->factor = factor;
-    v->of.count = r->axis[r->sample].count;
+    v->of.count = n;
     results_describe(from.id, path, &v->of);
-    bool good = from.rank == 1 && from.length[0] == v->of.count
-                    ? read_words(r, from.id, v, message) && read_values(r, &from, v, message)
-                    : results_damaged(r, "a variable is not as its axes say", message);
+    char *words = hdf_text(from.id, "flag_meanings"), *rest = words;
+    v->of.value = malloc(n * sizeof *v->of.value);
+    v->word = words ? calloc(UINT8_MAX, sizeof *v->word) : NULL;
+    bool good = (v->of.value && (v->word || !words)) || results_no_memory(r, message);
+    if (words)
+        results_clean(words);
+    for (v->words = 0; good && rest && v->words < UINT8_MAX; v->words++)
+        snprintf(v->word[v->words], sizeof *v->word, "%s", strsep(&rest, " "));
+    good = good && ((from.rank == 1 && from.length[0] == n && from.number) ||
+                    results_damaged(r, "a variable is not as its axes say", message));
+    good =
+        good && (hdf_read(from.id, KIND_double, v->of.value) || results_failed(r, path, message));
+    for (size_t i = 0; good && i < n; i++) { /* an absent limit is infinite */
+        const double value = v->of.value[i];
+        if (isnan(value) || (v->word && !(value >= 0 && value < v->words)))
+            good = results_damaged(r, "a sampled value is none", message);
+    }
+    free(words);
     hdf_close(from.id);
     return good;
 }

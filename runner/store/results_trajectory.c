@@ -32,12 +32,13 @@ bool results_recorded(const struct results *r, uint64_t **list, size_t *count,
 /* A variable of a trajectory, in the order of the table, and its numbers per instant. */
 static double **track_of(struct results_trajectory *t, int v, size_t *width)
 {
-    double **const track[TRAJECTORIES] = {&t->position, &t->velocity, &t->torque, &t->force,
-                                          &t->gap};
-    const size_t over[] = {[OVER_COORDINATES] = t->coordinates,
-                           [OVER_ACTUATORS] = t->actuators,
-                           [OVER_CONTACTS] = t->contacts};
-    *width = over[store_trajectories[v].over] * store_trajectories[v].parts;
+    double **const track[TRACKS] = {&t->position, &t->velocity, &t->torque, &t->force, &t->gap};
+    const size_t lengths[OVERS] = {[OVER_NONE] = 1,
+                                   [OVER_COORDINATE] = t->coordinates,
+                                   [OVER_ACTUATOR] = t->actuators,
+                                   [OVER_CONTACT] = t->contacts,
+                                   [OVER_COMPONENT] = 2};
+    *width = lengths[store_tracks[v].over[0]] * lengths[store_tracks[v].over[1]];
     return track[v];
 }
 
@@ -46,11 +47,10 @@ static bool read_tracks(const struct results *r, struct results_trajectory *t, s
                         size_t rows, stance_message *message)
 {
     uint32_t crc = 0, expected;
-    for (int k = 0; k < TRAJECTORIES; k++) {
-        char path[64];
+    for (int k = 0; k < TRACKS; k++) {
+        const char *const path = store_tracks[k].name;
         size_t width;
         double **const track = track_of(t, k, &width);
-        snprintf(path, sizeof path, "trajectory/%s", store_trajectories[k].name);
         if (width == 0 || !hdf_exists((hid_t)r->id, path))
             continue;
         const struct results_variable v = results_variable(r, path);

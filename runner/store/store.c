@@ -15,34 +15,72 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* ---- tables ------------------------------------------------------------------------------- */
+/* ---- the layout --------------------------------------------------------------------------- */
 
-const struct dataset store_columns[COLUMNS] = {
+#define NUMBER(name, kind, unit, text)                                                             \
+    {                                                                                              \
+        name, kind, (kind) == KIND_double || (kind) == KIND_int64_t, unit, text, {OVER_NONE}, 0    \
+    }
+#define NUMBERS(name, unit, place, over, beside, text)                                             \
+    {                                                                                              \
+        name, KIND_double, true, unit, text, {OVER_##over, OVER_##beside}, place                   \
+    }
+
+const struct store_variable store_columns[COLUMNS] = {
 #define STORE_COLUMN(name, type, how, told, unit, text)                                            \
-    [STANCE_ANSWER_##name] = {#name, KIND_##type, KIND_##type != KIND_uint8_t, unit, text},
+    [STANCE_ANSWER_##name] = NUMBER(#name, KIND_##type, unit, text),
     /* every number of a code is one of its words */
     STANCE_ANSWERS(STORE_COLUMN)[COLUMN_FINAL_STATE] =
-        {"final_state", KIND_double, true, NULL,
-         "coordinates and their rates when the simulation stopped"},
-    [COLUMN_SCENARIO_NUMBER] = {"scenario_number", KIND_uint8_t, false, NULL,
-                                "scenario that the case was computed with: places of the group "
-                                "history, then the file's own"},
-    [COLUMN_CHECKSUM] = {"checksum", KIND_uint32_t, false, "1",
-                         "CRC-32C over the answers of the case"},
-    [COLUMN_STATUS] = {"status", KIND_uint8_t, false, "1", "whether the case was computed"},
+        NUMBERS("final_state", NULL, 0, STATE, NONE,
+                "coordinates and their rates when the simulation stopped"),
+    [COLUMN_SCENARIO_NUMBER] =
+        NUMBER("scenario_number", KIND_uint8_t, NULL,
+               "scenario that the case was computed with: places of the group "
+               "history, then the file's own"),
+    [COLUMN_CHECKSUM] =
+        NUMBER("checksum", KIND_uint32_t, "1", "CRC-32C over the answers of the case"),
+    [COLUMN_STATUS] = NUMBER("status", KIND_uint8_t, "1", "whether the case was computed"),
 };
 
-#define TRACK(member, unit, text, over, parts)                                                     \
-    {                                                                                              \
-#member, unit, text, over, parts, offsetof(stance_trajectory, member)                      \
-    }
-const struct store_trajectory store_trajectories[TRAJECTORIES] = {
-    TRACK(position, NULL, "coordinates, in m and rad", OVER_COORDINATES, 1),
-    TRACK(velocity, NULL, "rates of the coordinates, in m/s and rad/s", OVER_COORDINATES, 1),
-    TRACK(torque, "N m", "torque applied in the step that ends there", OVER_ACTUATORS, 1),
-    TRACK(force, "N", "contact force, mean since the instant before", OVER_CONTACTS, 2),
-    TRACK(gap, "m", "height of the contact point above the ground", OVER_CONTACTS, 1),
+#define AT(member) offsetof(stance_trajectory, member)
+const struct store_variable store_tracks[TRACKS + 1] = {
+    NUMBERS("trajectory/position", NULL, AT(position), COORDINATE, NONE,
+            "coordinates, in m and rad"),
+    NUMBERS("trajectory/velocity", NULL, AT(velocity), COORDINATE, NONE,
+            "rates of the coordinates, in m/s and rad/s"),
+    NUMBERS("trajectory/torque", "N m", AT(torque), ACTUATOR, NONE,
+            "torque applied in the step that ends there"),
+    NUMBERS("trajectory/force", "N", AT(force), CONTACT, COMPONENT,
+            "contact force, mean since the instant before"),
+    NUMBERS("trajectory/gap", "m", AT(gap), CONTACT, NONE,
+            "height of the contact point above the ground"),
+    [TRACK_CHECKSUM] = NUMBER("trajectory/checksum", KIND_uint32_t, "1",
+                              "CRC-32C over the trajectory of the case"),
 };
+const struct store_variable store_designs[RESOLVED_PARTS] = {
+    NUMBERS("design/gain", NULL, RESOLVED_GAIN, ACTUATOR, POSTURE,
+            "gains of the linear law: torque = feedforward - gain * error"),
+    NUMBERS("design/equilibrium_position", NULL, RESOLVED_EQUILIBRIUM, COORDINATE, NONE,
+            "coordinates of the controller's equilibrium"),
+    NUMBERS("design/equilibrium_torque", "N m", RESOLVED_TORQUE, ACTUATOR, NONE,
+            "torques that hold the controller's equilibrium"),
+    NUMBERS("design/start_position", NULL, RESOLVED_START, COORDINATE, NONE,
+            "coordinates of the initial equilibrium, foot at the origin"),
+};
+const struct store_variable store_design_status =
+    NUMBER("design/status", KIND_uint8_t, NULL, "whether the design exists");
+
+size_t store_width(const stance_scene *scene, const struct store_variable *v)
+{
+    const int lengths[] = {[OVER_NONE] = 1,
+                           [OVER_STATE] = 2 * scene->coordinates,
+                           [OVER_POSTURE] = 2 * scene->postures,
+                           [OVER_COORDINATE] = scene->coordinates,
+                           [OVER_ACTUATOR] = scene->actuators,
+                           [OVER_CONTACT] = scene->contacts,
+                           [OVER_COMPONENT] = 2};
+    return (size_t)lengths[v->over[0]] * (size_t)lengths[v->over[1]];
+}
 
 bool store_is_column(const char *path)
 {
@@ -54,13 +92,9 @@ bool store_is_column(const char *path)
 
 bool store_is_track(const char *path)
 {
-    static const char group[] = "trajectory/";
-    if (strncmp(path, group, strlen(group)) != 0)
-        return false;
-    path += strlen(group);
-    bool found = strcmp(path, store_columns[COLUMN_CHECKSUM].name) == 0;
-    for (int v = 0; v < TRAJECTORIES; v++)
-        found = found || strcmp(path, store_trajectories[v].name) == 0;
+    bool found = false;
+    for (int v = 0; v <= TRACK_CHECKSUM; v++)
+        found = found || strcmp(path, store_tracks[v].name) == 0;
     return found;
 }
 
@@ -69,41 +103,6 @@ bool store_has_column(const struct scenario *scenario, int column)
     return column > COLUMN_SCENARIO_NUMBER ||
            (column < COLUMN_SCENARIO_NUMBER && (scenario->answers >> column & 1));
 }
-
-size_t store_column_width(const struct scenario *scenario, int column)
-{
-    return column == COLUMN_FINAL_STATE ? 2 * (size_t)scenario->scene->coordinates : 1;
-}
-
-size_t store_trajectory_width(const stance_scene *scene, int variable)
-{
-    const int over[] = {scene->coordinates, scene->actuators, scene->contacts};
-    const struct store_trajectory *const t = &store_trajectories[variable];
-    return (size_t)over[t->over] * t->parts;
-}
-
-const struct store_design_column store_design_columns[RESOLVED_PARTS] = {
-    {"gain",
-     NULL,
-     "gains of the linear law: torque = feedforward - gain * error",
-     RESOLVED_GAIN,
-     {DESIGN_ACTUATOR, DESIGN_POSTURE}},
-    {"equilibrium_position",
-     NULL,
-     "coordinates of the controller's equilibrium",
-     RESOLVED_EQUILIBRIUM,
-     {DESIGN_ONE, DESIGN_COORDINATE}},
-    {"equilibrium_torque",
-     "N m",
-     "torques that hold the controller's equilibrium",
-     RESOLVED_TORQUE,
-     {DESIGN_ONE, DESIGN_ACTUATOR}},
-    {"start_position",
-     NULL,
-     "coordinates of the initial equilibrium, foot at the origin",
-     RESOLVED_START,
-     {DESIGN_ONE, DESIGN_COORDINATE}},
-};
 
 /* ---- the library -------------------------------------------------------------------------- */
 
@@ -169,7 +168,7 @@ static bool open_columns(struct store *store, stance_message *message)
         const bool history = c == COLUMN_SCENARIO_NUMBER && store->plan->ancestors > 0;
         if (!store_has_column(s, c) && !history)
             continue;
-        const size_t width = store_column_width(s, c);
+        const size_t width = store_width(s->scene, &store_columns[c]);
         store->width[c] = width;
         store->size[c] = width * hdf_size(store_columns[c].kind);
         const int rank = dimensions + (width > 1);
@@ -179,11 +178,12 @@ static bool open_columns(struct store *store, stance_message *message)
         if (!there) /* all answers that the version knew which made the file */
             continue;
         length[dimensions] = width;
-        if (store->column[c] < 0 || hdf_shape(store->column[c], found) != rank ||
-            memcmp(found, length, (size_t)rank * sizeof *length) != 0) {
+        const int is = store->column[c] < 0 ? -1 : hdf_shape(store->column[c], found);
+        if (!store->plan->single && s->cases > 1 && is == 1 && found[0] == 1)
+            return complain(message, STORE_ONE_CASE, store->file);
+        if (is != rank || memcmp(found, length, (size_t)rank * sizeof *length) != 0)
             return complain(message, "%.100s: variable '%s' is not as this scenario needs it",
                             store->file, store_columns[c].name);
-        }
         if (store_columns[c].kind == KIND_int64_t)
             hdf_number(store->column[c], "_FillValue", H5T_NATIVE_INT64, &store->no_count);
     }
@@ -195,20 +195,15 @@ static bool open_trajectories(struct store *store, stance_message *message)
     const struct plan *plan = store->plan;
     if (plan->record_rows == 0)
         return true;
-    for (int v = 0; v < TRAJECTORIES; v++) {
-        store->trajectory_size[v] =
-            (size_t)plan->record_rows * store_trajectory_width(plan->scenario->scene, v);
-        if (store->trajectory_size[v] == 0)
-            continue;
-        char name[64];
-        snprintf(name, sizeof name, "trajectory/%s", store_trajectories[v].name);
-        store->trajectory[v] = find_dataset(store, name, NULL);
-        if (store->trajectory[v] < 0)
+    for (int v = 0; v <= TRACK_CHECKSUM; v++) {
+        const size_t width = store_width(plan->scenario->scene, &store_tracks[v]);
+        store->trajectory_size[v] = (size_t)plan->record_rows * width;
+        if (width > 0)
+            store->trajectory[v] = find_dataset(store, store_tracks[v].name, NULL);
+        if (width > 0 && store->trajectory[v] < 0)
             return store_failed(message, store->file, "open the trajectories");
     }
-    store->trajectory_checksum = find_dataset(store, "trajectory/checksum", NULL);
-    return store->trajectory_checksum >= 0 ||
-           store_failed(message, store->file, "open the trajectories");
+    return true;
 }
 
 /* `id`: the file, open; below 0: it could not be. */
@@ -224,11 +219,10 @@ static bool open_store(struct store **result, hid_t id, const char *file, const 
     store->plan = plan;
     store->id = id;
     store->ranks = ranks;
-    store->trajectory_checksum = -1;
     store->no_count = STANCE_NO_COUNT;
     for (int c = 0; c < COLUMNS; c++)
         store->column[c] = -1;
-    for (int v = 0; v < TRAJECTORIES; v++)
+    for (int v = 0; v <= TRACK_CHECKSUM; v++)
         store->trajectory[v] = -1;
     *result = store;
     if (id < 0)
@@ -268,13 +262,9 @@ void store_abandon(struct store *store)
 
 bool store_close(struct store *store, stance_message *message)
 {
-    bool good = true;
-    for (int c = 0; c < COLUMNS; c++)
-        good &= store->column[c] < 0 || H5Dclose(store->column[c]) >= 0;
-    for (int v = 0; v < TRAJECTORIES; v++)
-        good &= store->trajectory[v] < 0 || H5Dclose(store->trajectory[v]) >= 0;
-    good &= store->trajectory_checksum < 0 || H5Dclose(store->trajectory_checksum) >= 0;
-    good &= H5Fclose(store->id) >= 0;
+    hdf_close_all(store->column, COLUMNS);
+    hdf_close_all(store->trajectory, TRACKS + 1);
+    const bool good = H5Fclose(store->id) >= 0;
     if (!good)
         store_failed(message, store->file, "close");
     store_abandon(store);
@@ -425,18 +415,18 @@ bool store_write(struct store *store, struct store_block *block, size_t slot,
 
 static double **track_of(const stance_trajectory *trajectory, int v)
 {
-    return (double **)(void *)((char *)(uintptr_t)trajectory + store_trajectories[v].offset);
+    return (double **)(void *)((char *)(uintptr_t)trajectory + store_tracks[v].place);
 }
 
 bool store_blank_trajectory(const struct store *store, stance_trajectory *trajectory)
 {
     size_t size = 0;
-    for (int v = 0; v < TRAJECTORIES; v++)
+    for (int v = 0; v < TRACKS; v++)
         size += store->trajectory_size[v];
     double *at = trajectory->position ? trajectory->position : malloc(size * sizeof *at);
     for (size_t i = 0; at && i < size; i++)
         at[i] = NAN;
-    for (int v = 0; at && v < TRAJECTORIES; at += store->trajectory_size[v++])
+    for (int v = 0; at && v < TRACKS; at += store->trajectory_size[v++])
         *track_of(trajectory, v) = at;
     trajectory->interval = store->plan->record_interval;
     trajectory->rows = store->plan->record_rows;
@@ -448,7 +438,7 @@ bool store_move_trajectory(struct store *store, uint64_t place, enum hdf_directi
 {
     bool good = true;
     *crc = 0;
-    for (int v = 0; good && v < TRAJECTORIES; v++) {
+    for (int v = 0; good && v < TRACKS; v++) {
         const hsize_t n = store->trajectory_size[v];
         double *const data = *track_of(trajectory, v);
         if (n > 0) {
@@ -458,7 +448,8 @@ bool store_move_trajectory(struct store *store, uint64_t place, enum hdf_directi
     }
     if (way == HDF_WRITE)
         *stored = *crc;
-    return good && hdf_move(store->trajectory_checksum, H5T_STD_U32LE, place, 1, way, stored);
+    return good &&
+           hdf_move(store->trajectory[TRACK_CHECKSUM], H5T_STD_U32LE, place, 1, way, stored);
 }
 
 bool store_write_trajectory(struct store *store, uint64_t place,
@@ -506,21 +497,12 @@ bool store_verify(struct store *store, const struct rows *rows, struct store_fou
 
 /* ---- designs and timing ------------------------------------------------------------------- */
 
-static struct resolved_part part_of(const stance_scene *scene, int column)
-{
-    return resolve_part(scene, store_design_columns[column].part);
-}
-
-size_t store_design_width(const stance_scene *scene, int column)
-{
-    return part_of(scene, column).rows * part_of(scene, column).length;
-}
-
 /* Moves them from the plan, NAN where there is none, or into it. */
 static void move_designs(const struct plan *plan, bool into, int column, double *data)
 {
-    const size_t width = store_design_width(plan->scenario->scene, column),
-                 place = part_of(plan->scenario->scene, column).place;
+    const struct store_variable *const v = &store_designs[column];
+    const size_t width = store_width(plan->scenario->scene, v),
+                 place = resolve_part(plan->scenario->scene, (enum resolved_parts)v->place).place;
     for (size_t d = 0; d < plan->designs; d++) {
         double *const own = &plan->design[d * plan->design_size + place];
         for (size_t i = 0; i < width; i++, data++)
@@ -533,7 +515,7 @@ static void move_designs(const struct plan *plan, bool into, int column, double 
 
 static double *design_room(const struct plan *plan, int column)
 {
-    return malloc(plan->designs * store_design_width(plan->scenario->scene, column) *
+    return malloc(plan->designs * store_width(plan->scenario->scene, &store_designs[column]) *
                   sizeof(double));
 }
 
@@ -549,11 +531,9 @@ bool store_read_designs(struct store *store, struct plan *plan, stance_message *
 {
     bool good = true;
     for (int k = 0; k < RESOLVED_PARTS; k++) { /* all of them, even when this rank has failed */
-        char name[64];
-        if (store_design_width(plan->scenario->scene, k) == 0)
+        if (store_width(plan->scenario->scene, &store_designs[k]) == 0)
             continue;
-        snprintf(name, sizeof name, "design/%s", store_design_columns[k].name);
-        const hid_t dataset = find_dataset(store, name, NULL);
+        const hid_t dataset = find_dataset(store, store_designs[k].name, NULL);
         double *const data = design_room(plan, k);
         good = data && hdf_read(dataset, KIND_double, data) && good;
         if (good)
@@ -561,7 +541,7 @@ bool store_read_designs(struct store *store, struct plan *plan, stance_message *
         free(data);
         hdf_close(dataset);
     }
-    const hid_t dataset = find_dataset(store, "design/status", NULL);
+    const hid_t dataset = find_dataset(store, store_design_status.name, NULL);
     good = good && hdf_read(dataset, KIND_uint8_t, plan->design_status);
     hdf_close(dataset);
     return good || store_failed(message, store->file, "read the designs");

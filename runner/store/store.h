@@ -47,7 +47,7 @@
 #ifndef STANCE_STORE_STORE_H
 #define STANCE_STORE_STORE_H
 
-#include "runner/plan/rows.h"
+#include "runner/plan/shard.h"
 #include "runner/scenario/scenario.h"
 
 enum { STORE_ROWS = 256 }; /* most rows in one call of store_verify */
@@ -72,7 +72,7 @@ uint64_t store_size(const struct plan *plan, int ranks);
 /* Rank 0 alone: creates the file, which must not exist, with everything but the cases, and
  * reserves its space, but for a shard, whose file has holes. On failure nothing is left behind.
  * Designs must have been computed. `before`: the origin of a file whose rows it takes over to go on
- * with another scenario (changed_scenario.h), for the group `history`; NULL: there is none. */
+ * with another scenario (adopt.h), for the group `history`; NULL: there is none. */
 struct store_origin;
 bool store_create(const char *file, const struct plan *plan, const struct store_origin *before,
                   int ranks, const char *hosts, stance_message *message);

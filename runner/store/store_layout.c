@@ -28,7 +28,7 @@ struct layout {
     const struct plan *plan;
     const struct store_origin *before; /* of a file that goes on with another scenario, or NULL */
     struct maker make;
-    struct dimension axis[SCENARIO_MAX_AXES];
+    struct dimension axis[SCENARIO_MAX_AXES], inner[OVERS];
     const struct dimension *over[SCENARIO_MAX_AXES + 1]; /* of the cases; NULL after the last */
     int ranks;
     const char *hosts;
@@ -190,7 +190,59 @@ static void put_axes(struct layout *l)
         l->over[d] = &l->axis[d];
 }
 
-/* ---- the answers -------------------------------------------------------------------------- */
+/* ---- answers, designs, trajectories -------------------------------------------------------- */
+
+/* What variables are over beside `outer`: names of coordinates, actuators, contacts ... Made in the
+ * group that they are in. Names of the state are the coordinates, then "v" and the coordinates, of
+ * the body or the posture. */
+static void make_inner(struct layout *l, enum store_over over)
+{
+    static const char *const components[] = {"normal", "tangential"};
+    const stance_scene *scene = l->plan->scenario->scene;
+    const bool posture = over == OVER_POSTURE;
+    const int n = posture ? scene->postures : scene->coordinates;
+    char text[SCENARIO_MAX_STATES][SCENARIO_NAME];
+    const char *state[SCENARIO_MAX_STATES], *coordinate[STANCE_MAX_COORDINATES];
+    for (int i = 0; i < 2 * n; i++) {
+        const char *name = scene->coordinate[posture ? scene->posture[i % n] : i % n].name;
+        snprintf(text[i], sizeof text[i], "%s%s", i < n ? "" : "v", name);
+        state[i] = text[i];
+        coordinate[i % n] = name;
+    }
+    const struct {
+        const char *name, *const *words;
+        int count;
+    } names[OVERS] = {
+        [OVER_STATE] = {"state", state, 2 * n},
+        [OVER_POSTURE] = {"posture_state", state, scene->actuators > 0 ? 2 * n : 0},
+        [OVER_COORDINATE] = {"coordinate", coordinate, n},
+        [OVER_ACTUATOR] = {"actuator", scene->actuator_name, scene->actuators},
+        [OVER_CONTACT] = {"contact", scene->contact_name, scene->contacts},
+        [OVER_COMPONENT] = {"component", components, scene->contacts > 0 ? 2 : 0},
+    };
+    make_words(l, names[over].name, names[over].words, names[over].count, &l->inner[over]);
+}
+
+/* A variable over some dimensions (NULL after the last) and its inner ones. `more`: what the table
+ * does not say of it. */
+static void put(struct layout *l, const struct store_variable *v,
+                const struct dimension *const *outer, struct dataset more)
+{
+    int rank = 0;
+    if (store_width(l->plan->scenario->scene, v) == 0)
+        return;
+    more.name = strrchr(v->name, '/') ? strrchr(v->name, '/') + 1 : v->name;
+    more.kind = v->kind;
+    more.filled = v->filled;
+    more.unit = v->unit;
+    more.text = v->text;
+    for (; outer[rank]; rank++)
+        more.over[rank] = outer[rank];
+    for (int i = 0; i < 2; i++)
+        if (v->over[i] != OVER_NONE)
+            more.over[rank++] = &l->inner[v->over[i]];
+    make(&l->make, &more, NULL);
+}
 
 /* The words of a variable that is a code, in one text; NULL: it is none. */
 enum { FLAGS = 1024 }; /* bytes of them */
@@ -204,70 +256,29 @@ static const char *flags_of(const stance_scene *scene, int column, char text[FLA
     return words > 0 ? words_join(text, FLAGS, " ", word, (size_t)words) : NULL;
 }
 
-/* Names of the state: the coordinates, then "v" and the coordinates, of the body or the posture. */
-static void make_state_names(struct layout *l, const char *name, bool posture,
-                             struct dimension *dimension)
-{
-    const stance_scene *scene = l->plan->scenario->scene;
-    char text[SCENARIO_MAX_STATES][SCENARIO_NAME];
-    const char *words[SCENARIO_MAX_STATES];
-    const int n = posture ? scene->postures : scene->coordinates;
-
-    for (int i = 0; i < 2 * n; i++) {
-        const char *coordinate = scene->coordinate[posture ? scene->posture[i % n] : i % n].name;
-        snprintf(text[i], sizeof text[i], "%s%s", i < n ? "" : "v", coordinate);
-        words[i] = text[i];
-    }
-    make_words(l, name, words, 2 * n, dimension);
-}
-
 /* Of a sweep with a sample the sampled values are CF's coordinates. */
 static void put_answers(struct layout *l)
 {
     const struct scenario *s = l->plan->scenario;
     char *paths = s->sample.given && !l->plan->single ? sampled_paths(l, ' ', ' ') : NULL;
-    struct dimension state;
-    int rank = 0;
-    while (l->over[rank])
-        rank++;
     if (store_has_column(s, COLUMN_FINAL_STATE))
-        make_state_names(l, "state", false, &state);
+        make_inner(l, OVER_STATE);
     for (int c = 0; c < COLUMNS; c++) {
         const bool number = c == COLUMN_SCENARIO_NUMBER;
         char flags[FLAGS];
-        struct dataset d = store_columns[c];
-        if (!store_has_column(s, c) && !(number && l->before))
-            continue;
-        d.flags = flags_of(s->scene, c, flags);
-        d.coordinates = number ? NULL : paths;
-        memcpy(d.over, l->over, sizeof l->over);
-        d.over[rank] = c == COLUMN_FINAL_STATE ? &state : NULL;
-        make(&l->make, &d, NULL);
+        if (store_has_column(s, c) || (number && l->before))
+            put(l, &store_columns[c], l->over,
+                (struct dataset){.flags = flags_of(s->scene, c, flags),
+                                 .coordinates = number ? NULL : paths});
     }
     free(paths);
 }
-
-/* ---- names of coordinates, actuators, contacts -------------------------------------------- */
-
-static void make_coordinates(struct layout *l, struct dimension *coordinate,
-                             struct dimension *actuator)
-{
-    const stance_scene *scene = l->plan->scenario->scene;
-    const char *words[STANCE_MAX_COORDINATES];
-    for (int i = 0; i < scene->coordinates; i++)
-        words[i] = scene->coordinate[i].name;
-    make_words(l, "coordinate", words, scene->coordinates, coordinate);
-    make_words(l, "actuator", scene->actuator_name, scene->actuators, actuator);
-}
-
-/* ---- the designs -------------------------------------------------------------------------- */
 
 static void put_designs(struct layout *l)
 {
     const struct plan *plan = l->plan;
     const struct scenario *s = plan->scenario;
-    struct dimension inner[DESIGN_DIMENSIONS];
-    const struct dimension *over[SCENARIO_MAX_AXES + 3] = {NULL};
+    const struct dimension *over[SCENARIO_MAX_AXES + 1] = {NULL};
     int rank = 0;
     char flags[FLAGS];
 
@@ -275,33 +286,19 @@ static void put_designs(struct layout *l)
     for (int a = 0; !plan->single && a < s->axes; a++)
         if (s->axis[a].design)
             over[rank++] = &l->axis[a];
-    make_coordinates(l, &inner[DESIGN_COORDINATE], &inner[DESIGN_ACTUATOR]);
-    if (s->scene->actuators > 0 && s->scene->postures > 0)
-        make_state_names(l, "posture_state", true, &inner[DESIGN_POSTURE]);
+    make_inner(l, OVER_COORDINATE);
+    make_inner(l, OVER_ACTUATOR);
+    make_inner(l, OVER_POSTURE);
     for (int k = 0; k < RESOLVED_PARTS; k++) {
-        const struct store_design_column *const c = &store_design_columns[k];
-        struct dataset d = dataset(c->name, KIND_double, c->unit, c->text);
         double *const values = store_design_values(plan, k);
-        d.filled = true;
-        d.values = values;
-        if (store_design_width(s->scene, k) > 0) {
-            l->make.failed = l->make.failed || !values;
-            memcpy(d.over, over, sizeof over);
-            for (int i = 0; i < 2; i++)
-                if (c->over[i] != DESIGN_ONE)
-                    d.over[rank + i - (c->over[0] == DESIGN_ONE)] = &inner[c->over[i]];
-            make(&l->make, &d, NULL);
-        }
+        l->make.failed = l->make.failed || !values;
+        put(l, &store_designs[k], over, (struct dataset){.values = values});
         free(values);
     }
-    struct dataset d = dataset("status", KIND_uint8_t, NULL, "whether the design exists");
-    d.flags = flags_of(s->scene, COLUMN_STATUS, flags);
-    d.values = plan->design_status;
-    memcpy(d.over, over, sizeof over);
-    make(&l->make, &d, NULL);
+    put(l, &store_design_status, over,
+        (struct dataset){.flags = flags_of(s->scene, COLUMN_STATUS, flags),
+                         .values = plan->design_status});
 }
-
-/* ---- the trajectories --------------------------------------------------------------------- */
 
 static double recorded_case(const void *context, uint64_t i)
 {
@@ -317,11 +314,9 @@ static double recorded_time(const void *context, uint64_t i)
 static void put_trajectories(struct layout *l)
 {
     const struct plan *plan = l->plan;
-    const stance_scene *scene = plan->scenario->scene;
-    static const char *const components[] = {"normal", "tangential"};
     struct dataset instant =
         dataset("time", KIND_double, "s", "instant; the step that ends nearest to it is stored");
-    struct dimension number, time, last[3], component;
+    struct dimension number, time;
 
     if (plan->record_rows == 0)
         return;
@@ -331,24 +326,13 @@ static void put_trajectories(struct layout *l)
     make_group(&l->make, "trajectory");
     make_cases(l, plan->record_cases, recorded_case, &number);
     make(&l->make, &instant, &time);
-    make_coordinates(l, &last[OVER_COORDINATES], &last[OVER_ACTUATORS]);
-    make_words(l, "contact", scene->contact_name, scene->contacts, &last[OVER_CONTACTS]);
-    make_words(l, "component", components, scene->contacts > 0 ? 2 : 0, &component);
-    for (int v = 0; v < TRAJECTORIES; v++) {
-        const struct store_trajectory *t = &store_trajectories[v];
-        struct dataset d = dataset(t->name, KIND_double, t->unit, t->text);
-        d.filled = true;
-        d.over[0] = &number;
-        d.over[1] = &time;
-        d.over[2] = &last[t->over];
-        d.over[3] = t->parts > 1 ? &component : NULL;
-        if (store_trajectory_width(scene, v) > 0)
-            make(&l->make, &d, NULL);
-    }
-    struct dataset checksum = store_columns[COLUMN_CHECKSUM];
-    checksum.text = "CRC-32C over the trajectory of the case";
-    checksum.over[0] = &number;
-    make(&l->make, &checksum, NULL);
+    for (enum store_over over = OVER_COORDINATE; over <= OVER_COMPONENT; over++)
+        make_inner(l, over);
+    for (int v = 0; v < TRACKS; v++)
+        put(l, &store_tracks[v], (const struct dimension *const[]){&number, &time, NULL},
+            (struct dataset){0});
+    put(l, &store_tracks[TRACK_CHECKSUM], (const struct dimension *const[]){&number, NULL},
+        (struct dataset){0});
 }
 
 /* ---- timing, earlier scenarios, provenance ------------------------------------------------ */
@@ -441,14 +425,16 @@ static void put_provenance(struct layout *l)
 /* Bytes of a row of a column; 0: it is not stored. */
 static uint64_t row_size(const struct scenario *s, int c)
 {
-    return store_has_column(s, c) ? store_column_width(s, c) * hdf_size(store_columns[c].kind) : 0;
+    return store_has_column(s, c)
+               ? store_width(s->scene, &store_columns[c]) * hdf_size(store_columns[c].kind)
+               : 0;
 }
 
 static uint64_t instant_size(const struct scenario *s)
 {
     uint64_t size = 0;
-    for (int v = 0; v < TRAJECTORIES; v++)
-        size += sizeof(double) * store_trajectory_width(s->scene, v);
+    for (int v = 0; v < TRACKS; v++)
+        size += sizeof(double) * store_width(s->scene, &store_tracks[v]);
     return size;
 }
 

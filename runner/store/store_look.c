@@ -156,8 +156,7 @@ bool store_read_axes(const char *file, struct scenario_axis *axis, int axes,
     }
     if (!good)
         fits ? store_failed(message, file, "read an axis")
-             : complain(message, "%.100s: holds one case of a sweep (run --only), not the sweep",
-                        file);
+             : complain(message, STORE_ONE_CASE, file);
     if (id >= 0)
         H5Fclose(id);
     return good;

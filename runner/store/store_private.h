@@ -1,4 +1,4 @@
-/* store_private.h - shared by those who write results files: store.c (rows), store_copy.c (rows of
+/* store_private.h - shared by those who write results files: store.c (rows), adopt_rows.c (rows of
  * another file), store_make.c and store_layout.c (creation), store_space.c (room on the disk),
  * store_look.c (questions) and file_checksums.c (checksums). */
 #ifndef STANCE_STORE_STORE_PRIVATE_H
@@ -20,63 +20,61 @@ enum {
     COLUMNS,
 };
 
-extern const struct dataset store_columns[COLUMNS];
-
-/* The variables of a trajectory: (case, time, what it is over, parts). */
-enum { TRAJECTORIES = 5 };
-extern const struct store_trajectory {
-    const char *name, *unit, *text;
-    enum { OVER_COORDINATES, OVER_ACTUATORS, OVER_CONTACTS } over;
-    size_t parts, offset; /* of the pointer in stance_trajectory */
-} store_trajectories[TRAJECTORIES];
+/* The layout of the file: its variables, and what they are over beside the cases, the axes of
+ * designs, or the recorded cases and their instants. */
+enum store_over {
+    OVER_NONE,
+    OVER_STATE,
+    OVER_POSTURE, /* posture_state */
+    OVER_COORDINATE,
+    OVER_ACTUATOR,
+    OVER_CONTACT,
+    OVER_COMPONENT, /* normal, tangential */
+    OVERS,
+};
+struct store_variable {
+    const char *name; /* with its group */
+    enum store_kind kind;
+    bool filled;             /* has `_FillValue` */
+    const char *unit, *text; /* may be NULL */
+    enum store_over over[2];
+    size_t place; /* of a design: its part; of a trajectory: offset of the pointer */
+};
+enum { TRACKS = 5, TRACK_CHECKSUM = TRACKS };
+extern const struct store_variable store_columns[COLUMNS], store_designs[RESOLVED_PARTS],
+    store_design_status, store_tracks[TRACKS + 1];
+/* Numbers per case, design, or case and instant; 0: it is left out. */
+size_t store_width(const stance_scene *scene, const struct store_variable *variable);
 
 /* Whether a variable is over the cases; over those that are recorded, their checksum included. */
 bool store_is_column(const char *path);
 bool store_is_track(const char *path);
-/* Whether a scenario stores a column; elements per case (2 coordinates for the final state). */
+/* Whether a scenario stores a column. */
 bool store_has_column(const struct scenario *scenario, int column);
-size_t store_column_width(const struct scenario *scenario, int column);
-/* Elements per row of a trajectory; 0: the variable is left out. */
-size_t store_trajectory_width(const stance_scene *scene, int variable);
 
+/* Why a file is not of the sweep that its scenario describes. */
+#define STORE_ONE_CASE "%.100s: holds one case of a sweep (run --only), not the sweep"
 /* "FILE: cannot ...: reason" of a system call. Returns false. */
 bool store_system_failed(stance_message *message, const char *file, const char *what, int error);
 /* Reserves the space of the whole file and brings it to the disk. */
 bool store_reserve(const char *file, stance_message *message);
 
-/* Columns of group `design`: parts of designs, over the axes and these. */
-enum design_dimension {
-    DESIGN_ONE,
-    DESIGN_COORDINATE,
-    DESIGN_ACTUATOR,
-    DESIGN_POSTURE, /* posture_state */
-    DESIGN_DIMENSIONS,
-};
-/* In the order of the file. */
-extern const struct store_design_column {
-    const char *name, *unit, *text;
-    enum resolved_parts part;
-    enum design_dimension over[2];
-} store_design_columns[RESOLVED_PARTS];
-/* Numbers of one design; 0: the column is left out. */
-size_t store_design_width(const stance_scene *scene, int column);
-/* Those of all designs, NAN where there is none, freed by the caller; NULL: no memory. */
+/* Numbers of all designs, NAN where there is none, freed by the caller; NULL: no memory. */
 double *store_design_values(const struct plan *plan, int column);
 
 struct store {
     char file[1024];
     const struct plan *plan;
     hid_t id;
-    int ranks;                   /* that have it open together */
-    bool spans;                  /* see store_set_spans */
-    hid_t column[COLUMNS];       /* -1: not stored */
-    size_t width[COLUMNS];       /* elements per case, and */
-    size_t size[COLUMNS];        /* ... bytes */
-    int64_t no_count;            /* what it has for a count that there is none of: `_FillValue` */
-    struct store_block *checked; /* [STORE_ROWS], for store_verify; made when it is needed */
-    hid_t trajectory[TRAJECTORIES];       /* -1: not stored */
-    size_t trajectory_size[TRAJECTORIES]; /* elements per case; 0: not stored */
-    hid_t trajectory_checksum;
+    int ranks;                    /* that have it open together */
+    bool spans;                   /* see store_set_spans */
+    hid_t column[COLUMNS];        /* -1: not stored */
+    size_t width[COLUMNS];        /* elements per case, and */
+    size_t size[COLUMNS];         /* ... bytes */
+    int64_t no_count;             /* what it has for a count that there is none of: `_FillValue` */
+    struct store_block *checked;  /* [STORE_ROWS], for store_verify; made when it is needed */
+    hid_t trajectory[TRACKS + 1]; /* -1: not stored; the last one is their checksum */
+    size_t trajectory_size[TRACKS + 1]; /* elements per case; 0: not stored */
 };
 
 /* Rows in memory, column after column. */

@@ -180,8 +180,9 @@ static void tell_ground(struct text *text)
     struct ground_pieces pieces;
     if (c->body.plates == 0 || played.rows == 0)
         return;
-    ground_pieces_find(c, (size_t)played.rows, n[TIME], n[POSITION], n[VELOCITY], n[FORCE], n[GAP],
-                       &pieces);
+    const struct ground_motion motion = {(size_t)played.rows, n[TIME],  n[POSITION],
+                                         n[VELOCITY],         n[FORCE], n[GAP]};
+    ground_pieces_find(c, &motion, &pieces);
     const double around = AROUND * reach(x);
     while (since < INFINITY) {
         const size_t points = ground_line(c, &pieces, since, (x[0] - around) / slope,

@@ -5,7 +5,7 @@
  *
  * Whoever wrote it had read it from YAML; nothing here trusts it all the same.
  */
-#include "runner/scenario/tree_nodes.h"
+#include "runner/scenario/tree.h"
 
 #include <string.h>
 

@@ -94,6 +94,14 @@ HOT contact_set contact_with(int c)
 {
     return 1u << c | (contact_grip(c) >= 0 ? 1u << contact_grip(c) : 0);
 }
+/* Contacts that are in `part` in any of the lanes m, with what holds their friction. */
+HOT contact_set contact_any(const mask *part, mask m)
+{
+    contact_set any = 0;
+    EACH_CONTACT (c, 0)
+        any |= mask_any(part[c] & m) ? contact_with(c) : 0;
+    return any;
+}
 /* The sets of contacts that steps are compiled for, X(name, whether there is such a one, set): none
  * and, where they are no lists, all on the ground and each grip's alone. */
 #define CONTACT_ON_GROUND                                                                          \
@@ -362,6 +370,19 @@ struct contact_problem {
     const lanes (*last)[2];
     mask known;
 };
+
+/* A problem of which nothing else is known, nor asked. */
+HOT struct contact_problem contact_pose(const lanes (*D)[CONTACTS][2][2], const lanes (*uf)[2],
+                                        contact_set touching, const mask *active, lanes friction,
+                                        lanes prefer)
+{
+    return (struct contact_problem){.D = D,
+                                    .uf = uf,
+                                    .touching = touching,
+                                    .active = active,
+                                    .friction = friction,
+                                    .prefer = prefer};
+}
 
 /* Largest violations of the laws, m/s, of what is a solution, `most`, and of what is one to
  * rounding, `exact`. Over a very short time velocities change by no more than the first, which

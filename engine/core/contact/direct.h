@@ -284,9 +284,8 @@ static inline void direct_add(contact_set touching, mask m, lanes by, const lane
 /* The largest velocity that a unit of n leaves in the rows. */
 static inline lanes direct_moves(const struct direct_operator *o, const lanes (*n)[2])
 {
-    lanes none[CONTACTS][2], u[CONTACTS][2], most = lanes_of(0);
-    for (int c = 0; c < OWN_CONTACTS; c++)
-        none[c][0] = none[c][1] = lanes_of(0);
+    const lanes none[CONTACTS][2] = {0};
+    lanes u[CONTACTS][2], most = lanes_of(0);
     direct_velocities(o->D, none, o->touching, n, u);
     EACH_IN (c, o->touching)
         for (int a = 0; a < 2; a++) {
@@ -339,7 +338,6 @@ static inline void direct_exchange(const struct direct_freedom *free, int k, con
  * the lanes where they obey the laws. */
 COLD mask direct_hold(const struct contact_problem *p, lanes tolerance, lanes (*r)[2])
 {
-    const lanes none = lanes_of(0);
     const contact_set touching = p->touching;
     struct direct_operator o;
     struct direct_freedom free;
@@ -348,8 +346,6 @@ COLD mask direct_hold(const struct contact_problem *p, lanes tolerance, lanes (*
     o.touching = touching, o.D = p->D;
     direct_rows(p->active, o.rows);
     direct_factor(&o, CONTACT_CAREFUL, NULL, 0);
-    for (int c = 0; c < OWN_CONTACTS; c++)
-        first[c][0] = first[c][1] = none;
     direct_back(&o, p->uf, first);
     direct_freedoms(&o, &free);
     /* Once more with what is left. */
@@ -389,12 +385,10 @@ COLD mask direct_unique(const struct contact_problem *p)
 {
     const contact_set touching = p->touching;
     struct direct_operator o;
-    lanes u[CONTACTS][2], x[CONTACTS][2], sum[CONTACTS];
+    lanes u[CONTACTS][2], x[CONTACTS][2], sum[CONTACTS] = {0};
     o.touching = touching, o.D = p->D;
     direct_rows(p->active, o.rows);
     direct_factor(&o, CONTACT_GUARDED, NULL, DIRECT_RIDGE);
-    for (int c = 0; c < OWN_CONTACTS; c++)
-        sum[c] = lanes_of(0);
     lanes largest = lanes_of(0);
     EACH_IN (h, touching) {
         if (contact_unknowns(h) != 2)

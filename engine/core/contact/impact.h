@@ -135,7 +135,7 @@ static inline lanes impact_mode(lanes friction, const lanes (*r)[2])
     const lanes none = lanes_of(0);
     lanes mode = none;
     for (int c = 0; c < OWN_CONTACTS; c++) {
-        lanes own = choose(mask_less(none, r[c][0]), lanes_of(1), none);
+        lanes own = lanes_where(mask_less(none, r[c][0]));
         if (contact_unknowns(c) == 2) {
             const lanes side = choose(mask_less(none, r[c][1]), lanes_of(2), lanes_of(4));
             const mask slips = mask_less(none, contact_load(c, r)) &
@@ -178,13 +178,8 @@ static inline mask impact_try(const struct impact_rule *rule, const lanes *e,
         uf[c][0] = u[c][0] + to->shift[c][0];
         uf[c][1] = choose(rule->moreau, u[c][1] + to->shift[c][1], u[c][1]);
     }
-    const struct contact_problem asked = {.D = rule->D,
-                                          .uf = uf,
-                                          .touching = CONTACT_ALL,
-                                          .active = rule->part,
-                                          .friction = rule->friction,
-                                          .prefer = rule->prefer,
-                                          .shift = to->shift};
+    const struct contact_problem asked = {
+        rule->D, uf, CONTACT_ALL, rule->part, rule->friction, rule->prefer, .shift = to->shift};
     solve_contacts(&asked, LANES_ALL, to->r, verdict);
     direct_velocities(rule->D, u, CONTACT_ALL, to->r, after);
     for (int c = 0; c < OWN_CONTACTS; c++)

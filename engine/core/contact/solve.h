@@ -23,7 +23,7 @@ COLD void solve_rest(const struct contact_problem *p, mask unsure, mask many, la
         if (p->last)
             known |= unsure & many & p->known & p->active[c] & mask_less(none, p->last[c][0]);
         if (contact_grip(c) == c || contact_grip(c) < 0)
-            elements += choose(contact_part(c, p->active), lanes_of(1), none);
+            elements += lanes_where(contact_part(c, p->active));
     }
     const struct contact_tolerance tolerance = contact_tolerance(largest);
     struct direct_mode mode;
@@ -59,7 +59,6 @@ COLD void solve_rest(const struct contact_problem *p, mask unsure, mask many, la
         EACH_IN (c, p->touching)
             here |= mask_get(p->active[c], lane) ? 1u << c : 0;
         lane_gather(p, here, lane, &own);
-        lane_choose_none(&best);
         if (own.elements <= SOLVE_ENUMERATED) {
             lane_enumerate(&own, &best);
         } else {

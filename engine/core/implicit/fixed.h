@@ -34,10 +34,6 @@ static void advance_forget(struct advance *a, mask m)
 {
     ordinary_forget(&a->quick, m);
 }
-static void advance_free(struct advance *a)
-{
-    (void)a;
-}
 
 /* One step. Where Newton's iteration does not end because a torque that acts inside the step comes
  * and goes at its limit, each torque is taken for free or for being at either end of its range, one
@@ -121,7 +117,7 @@ HOT bool advance_ordinary(struct advance *a, const struct step *step, mask live,
     struct iterate it;
     mask apart = MASK_NONE;
     EACH_IN (c, touching)
-        apart |= live & LANES_NOT(ordinary_active(step->set, now, c));
+        apart |= live & LANES_NOT(motion_closed(step->set, now->gap, c));
     if (mask_any(apart))
         return false;
     const mask good = ordinary_try(&a->quick, step, live, touching, true, &it, report);

@@ -60,10 +60,7 @@ HOT lanes iterate_slip(const struct iterate *it, int c, const lanes u[2])
 /* What corrections are measured by: the largest velocity, at least 1. */
 HOT lanes iterate_speed(const struct iterate *it)
 {
-    lanes speed = lanes_of(1);
-    EACH (i, 0, SCENE_COORDINATES)
-        speed = lanes_max(lanes_abs(it->w[i]), speed);
-    return speed;
+    return lanes_largest(it->w, SCENE_COORDINATES, lanes_of(1));
 }
 
 /* The velocity that forces and positions see: (1 - theta) w0 + theta w. */
@@ -72,6 +69,15 @@ static inline lanes step_velocity(lanes w0, lanes w)
     if (METHOD_THETA == 1)
         return w;
     return (1 - METHOD_THETA) * w0 + METHOD_THETA * w;
+}
+
+/* Where forces are: the velocity v that they see, and the place u there. */
+HOT void iterate_middle(const struct step *step, const struct iterate *it, lanes *u, lanes *v)
+{
+    EACH (i, 0, SCENE_COORDINATES) {
+        v[i] = step_velocity(step->from->w[i], it->w[i]);
+        u[i] = step->from->s[i] + (METHOD_THETA * step->h) * v[i];
+    }
 }
 
 /* Position at the end and, unless the geometry is frozen, the trigonometry that goes with it. */
@@ -159,15 +165,10 @@ HOT void iterate_contacts(const struct step *step, const struct iteration *of,
     }
     lanes r[CONTACTS][2];
     struct contact_verdict now;
-    const struct contact_problem problem = {.D = D,
-                                            .uf = uf,
-                                            .touching = touching,
-                                            .active = it->active,
-                                            .friction = set->friction,
-                                            .prefer = set->prefer,
-                                            .shift = rebound,
-                                            .last = it->r,
-                                            .known = LANES_NOT(it->decides)};
+    struct contact_problem problem =
+        contact_pose(D, uf, touching, it->active, set->friction, set->prefer);
+    problem.shift = rebound;
+    problem.last = it->r, problem.known = LANES_NOT(it->decides);
     solve_contacts(&problem, of->running, r, &now);
     it->verdict.ambiguous |= of->running & now.ambiguous; /* a decision is taken once in a step */
     it->verdict.unranked |= of->running & now.unranked;
@@ -202,11 +203,10 @@ HOT void iterate_newton(const struct step *step, const struct iteration *of, str
     const double moves = of->frozen ? 0 : METHOD_THETA;
     const lanes lever = h * (METHOD_THETA * moves), end_lever = h * moves;
     const scene_trig *const trig = METHOD_THETA == 1 ? &it->end : &it->middle;
-    lanes v[SCENE_COORDINATES], change[SCENE_COORDINATES], residual[SCENE_COORDINATES];
-    EACH (i, 0, SCENE_COORDINATES) {
-        v[i] = step_velocity(from->w[i], it->w[i]);
+    lanes u[SCENE_COORDINATES], v[SCENE_COORDINATES], change[SCENE_COORDINATES];
+    iterate_middle(step, it, u, v);
+    EACH (i, 0, SCENE_COORDINATES)
         change[i] = it->w[i] - from->w[i];
-    }
     struct linearised linear;
     scene_trig mixed;
     linear.direction = trig, linear.lever = end_lever;
@@ -220,15 +220,12 @@ HOT void iterate_newton(const struct step *step, const struct iteration *of, str
     lanes torque[ACTUATORS], torque_rate[ACTUATORS][POSTURES];
     EACH (i, 0, SCENE_ACTUATORS)
         torque[i] = it->torque[i];
-    lanes u[SCENE_COORDINATES];
-    EACH (i, 0, SCENE_COORDINATES)
-        u[i] = from->s[i] + (METHOD_THETA * h) * v[i];
     const struct state place = {.s = u, .w = v};
     if (step->coupled)
         law_inside(&set->law, &place, h * (METHOD_THETA * METHOD_THETA), METHOD_THETA, step->corner,
                    torque, torque_rate);
 
-    lanes dw[SCENE_COORDINATES];
+    lanes residual[SCENE_COORDINATES], dw[SCENE_COORDINATES];
     const scene_guess at = {h, from->t + METHOD_THETA * h, u, trig, v, change};
     const scene_slopes by = {moves, lever, direction_lever, linear.direction, it->r, torque_rate};
     scene_residual(&set->body, &at, torque, residual);

@@ -33,6 +33,13 @@ struct motion {
     lanes energy, kinetic;     /* J, of this state; where steps of step.h are taken */
 };
 
+/* Lanes where contact c, of those that may touch, is closed. */
+HOT mask motion_closed(const struct setting *set, const lanes *gap, int c)
+{
+    return mask_less(lanes_of(0), set->may_touch[c]) &
+           mask_less_equal(gap[c], lanes_of(STEP_CLOSED));
+}
+
 static inline struct state state_of(const struct motion *m)
 {
     return (struct state){m->t, m->s, m->w, m->integral};
@@ -43,8 +50,7 @@ static inline contact_set step_touching(const struct setting *set, const lanes *
 {
     contact_set touching = 0;
     EACH_CONTACT (c, 0)
-        if (mask_any(m & mask_less(lanes_of(0), set->may_touch[c]) &
-                     mask_less_equal(gap[c], lanes_of(STEP_CLOSED))))
+        if (mask_any(m & motion_closed(set, gap, c)))
             touching |= contact_with(c);
     return touching;
 }
@@ -73,12 +79,39 @@ HOT mask motion_fallen(const struct setting *set, const lanes *s, const scene_tr
     return fallen;
 }
 
+/* Lanes whose angles stay in the range of sine and cosine for two more steps of length h. */
+static inline mask motion_in_range(const struct motion *now, lanes h)
+{
+    lanes ahead[SCENE_COORDINATES];
+    for (int i = 0; i < SCENE_COORDINATES; i++)
+        ahead[i] = now->s[i] + 2 * h * now->w[i];
+    return scene_angles_in_range(ahead);
+}
+
 /* Work of all that acts but gravity, springs and contacts, about the time t, over a displacement d
  * in a time h with rates w. */
 HOT lanes motion_work(const scene_body *body, lanes h, lanes t, const scene_trig *trig,
                       const lanes *torque, const lanes *w, const lanes *d)
 {
     return scene_work(body, h, t, trig, torque, d) - scene_damped(body, w, d);
+}
+
+/* The operator D of contacts in `touching` with these responses to unit impulses. */
+HOT void motion_operator(const scene_body *body, const scene_trig *trig, contact_set touching,
+                         const lanes (*response)[2][SCENE_COORDINATES], lanes (*D)[CONTACTS][2][2])
+{
+    EACH_IN (c, touching) {
+        scene_rows rows;
+        scene_contact_rows(body, trig, c, NULL, lanes_of(0), &rows);
+        EACH_IN (k, touching)
+            EACH (b, 0, 2) {
+                lanes u[2];
+                if (b >= contact_unknowns(k))
+                    continue;
+                scene_rows_velocity(body, c, &rows, response[k][b], u);
+                D[c][k][0][b] = u[0], D[c][k][1][b] = u[1];
+            }
+    }
 }
 
 /* Fills in the energies of a motion. */

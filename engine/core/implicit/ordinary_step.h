@@ -123,13 +123,9 @@ HOT mask ordinary_arrive(const struct motion *from, lanes h, struct iterate *it)
 COLD mask ordinary_law(const struct step *step, mask m, struct iterate *it)
 {
     const struct law *const law = &step->set->law;
-    const struct motion *const from = step->from;
     lanes u[SCENE_COORDINATES], v[SCENE_COORDINATES], torque[ACTUATORS];
     mask same = LANES_ALL;
-    EACH (i, 0, SCENE_COORDINATES) {
-        v[i] = step_velocity(from->w[i], it->w[i]);
-        u[i] = from->s[i] + (METHOD_THETA * step->h) * v[i];
-    }
+    iterate_middle(step, it, u, v);
     law_torque(law, u, v, torque);
     law_clip(law, torque);
     EACH (i, 0, SCENE_ACTUATORS) {
@@ -170,7 +166,7 @@ COLD mask ordinary_more(const struct ordinary *q, const struct step *step, int f
     mask there = MASK_NONE;
     for (int k = first; k < ORDINARY_ITERATIONS && mask_any(running); k++) {
         if (k > 0)
-            it->iterations += choose(running, lanes_of(1), lanes_of(0));
+            it->iterations += lanes_where(running);
         const mask small = ordinary_iterate(q, step, false, running, touching, it);
         there |= running & small;
         running &= LANES_NOT(small);
@@ -213,13 +209,6 @@ HOT mask ordinary_arrivals(const struct setting *set, const struct iterate *it)
     return there;
 }
 
-/* Lanes where a contact is closed. */
-HOT mask ordinary_active(const struct setting *set, const struct motion *from, int c)
-{
-    return mask_less(lanes_of(0), set->may_touch[c]) &
-           mask_less_equal(from->gap[c], lanes_of(STEP_CLOSED));
-}
-
 /* The solution of an ordinary step's equation in the lanes of `run`, where contacts in `touching`
  * are closed in some of them or, `full`, in all. Returns the lanes where it was found. */
 HOT mask ordinary_reach(const struct ordinary *q, const struct step *step, mask run,
@@ -238,7 +227,7 @@ HOT mask ordinary_reach(const struct ordinary *q, const struct step *step, mask 
         it->r[c][0] = it->r[c][1] = lanes_of(0);
     }
     EACH_IN (c, touching) {
-        it->active[c] = full ? LANES_ALL : ordinary_active(step->set, from, c);
+        it->active[c] = full ? LANES_ALL : motion_closed(step->set, from->gap, c);
         good &= LANES_NOT(it->active[c] & mask_less(from->approach[c], lanes_of(-STEP_APPROACH)));
         EACH (a, 0, 2)
             it->r[c][a] = choose(it->active[c], from->impulse[c][a], lanes_of(0));

@@ -163,8 +163,7 @@ static inline contact_set project_missed(const struct setting *set, contact_set 
 {
     contact_set missed = 0;
     EACH_IN (c, CONTACT_ALL & ~near)
-        if (mask_any(m & mask_less(lanes_of(0), set->may_touch[c]) &
-                     mask_less_equal(it->gap[c], lanes_of(STEP_CLOSED))))
+        if (mask_any(m & motion_closed(set, it->gap, c)))
             missed |= contact_with(c);
     return missed;
 }
@@ -266,19 +265,7 @@ HOT void grip_of(const struct step *step, contact_set touching, const struct ite
 HOT void grip_factor(struct grip *g)
 {
     lanes D[CONTACTS][CONTACTS][2][2], M[CONTACTS][CONTACTS][2][2];
-    EACH_IN (c, g->touching) {
-        scene_rows rows;
-        scene_contact_rows(&g->set->body, g->trig, c, NULL, lanes_of(0), &rows);
-        EACH_IN (k, g->touching)
-            EACH (b, 0, 2) {
-                D[c][k][0][b] = D[c][k][1][b] = lanes_of(0);
-                if (b >= contact_unknowns(k))
-                    continue;
-                lanes moved[2];
-                scene_rows_velocity(&g->set->body, c, &rows, g->response[k][b], moved);
-                D[c][k][0][b] = moved[0], D[c][k][1][b] = moved[1];
-            }
-    }
+    motion_operator(&g->set->body, g->trig, g->touching, g->response, D);
     contact_matrix(g->touching, D, g->rows, NULL, M);
     contact_factor(g->touching, CONTACT_CAREFUL, M, &g->factors);
 }
@@ -429,18 +416,15 @@ static inline void project_slides(const struct setting *set, const struct iterat
 HOT mask project_falls(const struct setting *set, mask run, const struct grip *g, int c,
                        const struct iterate *it, const lanes u[2])
 {
-    return run & LANES_NOT(g->rows[c][0]) & mask_less(lanes_of(0), set->may_touch[c]) &
-           mask_less_equal(it->gap[c], lanes_of(STEP_CLOSED)) &
+    return run & LANES_NOT(g->rows[c][0]) & motion_closed(set, it->gap, c) &
            mask_less(u[0], lanes_of(-STEP_APPROACH));
-}
-HOT mask project_loaded(const struct grip *g, int c)
-{
-    const int second = contact_second(c);
-    return second < 0 ? g->rows[c][0] : g->rows[c][0] | g->rows[second][0];
 }
 HOT mask project_turns(const struct grip *g, int c, const struct iterate *it, const lanes u[2])
 {
-    return project_loaded(g, c) & LANES_NOT(g->rows[c][1]) &
+    mask loaded = g->rows[c][0];
+    if (contact_second(c) >= 0)
+        loaded |= g->rows[contact_second(c)][0];
+    return loaded & LANES_NOT(g->rows[c][1]) &
            mask_less(PROJECT_VELOCITY * lanes_abs(it->r[c][1]),
                      it->r[c][1] * iterate_slip(it, c, u));
 }

@@ -66,12 +66,16 @@ static inline void report_clear(struct step_report *report)
     EACH_CONTACT (c, 0)
         report->least[c] = lanes_of(INFINITY);
 }
+static inline void report_clear_where(mask m, struct step_report *report)
+{
+    struct step_report none;
+    report_clear(&none);
+    choose_all(m, &none, report, sizeof none);
+}
 /* The same in one lane. */
 static inline void report_clear_lane(struct step_report *report, int lane)
 {
-    lanes *const all = (lanes *)report;
-    for (size_t i = 0; i < sizeof *report / sizeof(lanes); i++)
-        lane_set(&all[i], lane, 0);
+    lane_clear(report, sizeof *report, lane);
     EACH_CONTACT (c, 0)
         lane_set(&report->least[c], lane, INFINITY);
 }
@@ -127,6 +131,12 @@ static inline void report_add(struct step_report *sum, const struct step_report 
 #define ADD(name, type, how, told, unit, text) WHERE_TOLD_##told(ADD_##how(name))
     STANCE_ANSWERS(ADD)
     sum->failure = part->failure;
+}
+static inline void report_add_where(mask m, struct step_report *sum, const struct step_report *part)
+{
+    struct step_report both = *sum;
+    report_add(&both, part);
+    choose_all(m, &both, sum, sizeof both);
 }
 
 #endif

@@ -135,17 +135,6 @@ HOT mask step_rebounds(const struct setting *set, const struct motion *from,
         it->kinetic, lanes_fma(most, source, lanes_fma(lanes_of(1e-9), rounding, lanes_of(1e-12))));
 }
 
-/* The velocities that the laws are held to, `end` at the end of the step: those of contacts that
- * have left the ground in a rebound (`left`) are of the impact, before positions were mended. */
-HOT void step_hold(bool left, contact_set touching, const lanes (*end)[2], struct iterate *it)
-{
-    EACH_IN (c, touching) {
-        const mask off = mask_less(lanes_of(STEP_CLOSED), it->gap[c]);
-        EACH (a, 0, 2)
-            it->u[c][a] = left ? choose(off, it->u[c][a], end[c][a]) : end[c][a];
-    }
-}
-
 /* What one contact says in a step that has arrived: velocity u, impulses of all, where they are in
  * `part`. What hardly carries has no direction, see CONTACT_TOLERANCE. */
 HOT void report_contact(const struct step *step, const struct iterate *it, const mask *part,
@@ -245,7 +234,13 @@ HOT mask step_finish(const struct step *step, contact_set touching, enum step_ki
             impacts ? project_far(step, touching, lands, somewhere, it, u, energy)
                     : project_near(step, touching, kind == STEP_FULL, somewhere, it, u, energy);
         converged &= right | LANES_NOT(somewhere);
-        step_hold(impacts, touching, u, it);
+        /* The velocities that the laws are held to: those of contacts that have left the ground in
+         * a rebound are of the impact, before positions were mended. */
+        EACH_IN (c, touching) {
+            const mask off = mask_less(lanes_of(STEP_CLOSED), it->gap[c]);
+            EACH (a, 0, 2)
+                it->u[c][a] = impacts ? choose(off, it->u[c][a], u[c][a]) : u[c][a];
+        }
     }
     EACH_CONTACT (c, 0) {
         /* One that has left the ground may move back towards it. */
@@ -269,9 +264,9 @@ HOT mask step_finish(const struct step *step, contact_set touching, enum step_ki
     converged &= (rebounds & step_rebounds(set, from, it, report->work)) |
                  (LANES_NOT(rebounds) & step_balances(from, it, report->work));
     report->work -= damped; /* not above: a step is not admitted the less for it */
-    report->ambiguous_steps = choose(it->verdict.ambiguous & converged, lanes_of(1), none);
-    report->unranked_steps = choose(it->verdict.unranked & converged, lanes_of(1), none);
-    report->landed = choose(lands, lanes_of(1), none);
+    report->ambiguous_steps = lanes_where(it->verdict.ambiguous & converged);
+    report->unranked_steps = lanes_where(it->verdict.unranked & converged);
+    report->landed = lanes_where(lands);
     return converged;
 }
 
@@ -339,8 +334,7 @@ COLD mask step_within(const struct step *step, contact_set near, contact_set *mi
     it.impact = MASK_NONE;
     it.missed = 0;
     EACH_CONTACT (c, 0) {
-        closed[c] = mask_less(lanes_of(0), set->may_touch[c]) &
-                    mask_less_equal(from->gap[c], lanes_of(STEP_CLOSED));
+        closed[c] = motion_closed(set, from->gap, c);
         it.active[c] = closed[c] | brought[c];
         it.brought[c] = MASK_NONE;
         it.impact |= closed[c] & mask_less(from->approach[c], lanes_of(-STEP_APPROACH));
@@ -358,9 +352,7 @@ COLD mask step_within(const struct step *step, contact_set near, contact_set *mi
     it.iterations = lanes_of(0);
     for (int k = 0; k < STEP_MAX_ITERATIONS && mask_any(running); k++) {
         it.decides = k < STEP_DECIDED ? it.impact : MASK_NONE;
-        contact_set touching = 0;
-        EACH_CONTACT (c, 0)
-            touching |= mask_any(it.active[c] & running) ? contact_with(c) : 0;
+        const contact_set touching = contact_any(it.active, running);
         /* Responses of all that are near or none: position errors may have to be removed. */
         for (int c = 0; c < OWN_CONTACTS && moreau; c++)
             along[c] = choose(it.impact, tangential[c], lanes_of(0));
@@ -370,16 +362,14 @@ COLD mask step_within(const struct step *step, contact_set near, contact_set *mi
                                      .touching = touching,
                                      .near = touching ? near : 0};
         iterate_newton(step, &of, &it);
-        it.iterations += choose(running, lanes_of(1), lanes_of(0));
+        it.iterations += lanes_where(running);
         iterate_place(step, k >= step->freeze_after, &it);
         mask news = MASK_NONE;
         *missed = project_missed(set, near, running, &it);
         if (*missed)
             return MASK_NONE;
         EACH_CONTACT (c, 0) {
-            const mask hit = running & LANES_NOT(it.active[c]) &
-                             mask_less(lanes_of(0), set->may_touch[c]) &
-                             mask_less_equal(it.gap[c], lanes_of(STEP_CLOSED));
+            const mask hit = running & LANES_NOT(it.active[c]) & motion_closed(set, it.gap, c);
             it.active[c] |= hit;
             news |= hit;
         }
@@ -391,10 +381,7 @@ COLD mask step_within(const struct step *step, contact_set near, contact_set *mi
     mask converged = run & LANES_NOT(running);
     if (step->corner) {
         lanes u[SCENE_COORDINATES], v[SCENE_COORDINATES];
-        EACH (i, 0, SCENE_COORDINATES) {
-            v[i] = step_velocity(from->w[i], it.w[i]);
-            u[i] = from->s[i] + (METHOD_THETA * step->h) * v[i];
-        }
+        iterate_middle(step, &it, u, v);
         converged &= law_agrees(&set->law, u, v, step->corner);
     }
     if (step->freeze_after < STEP_MAX_ITERATIONS)

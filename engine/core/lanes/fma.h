@@ -58,10 +58,6 @@ static inline lanes fma_add_to_odd(lanes a, lanes b)
     return (lanes)(((fma_bits)sum - (beyond & inexact)) | (inexact & 1));
 }
 
-static inline mask fma_finite(lanes a)
-{
-    return mask_less_equal(lanes_abs(a), lanes_of(0x1.fffffffffffffp1023));
-}
 static inline mask fma_zero(lanes a)
 {
     return mask_equal(a, lanes_of(0));
@@ -73,10 +69,10 @@ static __attribute__((noinline, unused)) lanes fma_careful(lanes a, lanes b, lan
     const lanes p = a * b, q = fma_product_gain(a, b, p);
     const lanes high = p + c, low = fma_sum_gain(p, c, high);
     /* A product that is exact because it is zero, infinite or NAN; c that is one of the latter. */
-    const mask plain = fma_zero(a) | fma_zero(b) | ~(fma_finite(a) & fma_finite(b)) |
-                       (fma_finite(p) & ~fma_finite(c));
+    const mask plain = fma_zero(a) | fma_zero(b) | ~(mask_finite(a) & mask_finite(b)) |
+                       (mask_finite(p) & ~mask_finite(c));
     const mask sound =
-        mask_less_equal(lanes_of(FMA_SMALLEST_PRODUCT), lanes_abs(p)) & fma_finite(low + q);
+        mask_less_equal(lanes_of(FMA_SMALLEST_PRODUCT), lanes_abs(p)) & mask_finite(low + q);
     lanes sum = choose(plain, high, high - fma_add_to_odd(low, q));
     for (int lane = 0; lane < LANES; lane++)
         if (!(plain | sound)[lane])

@@ -125,6 +125,21 @@ static inline void law_clip(const struct law *law, lanes *torque)
         torque[i] = lanes_max(lanes_min(torque[i], law->limit[i]), -law->limit[i]);
 }
 
+/* Torques at a state: those that are held or, `coupled`, of a linear law that acts all the time;
+ * none where a decoupling law is to add its own. */
+HOT void law_drive(const struct law *law, const lanes *held, bool coupled, const lanes *s,
+                   const lanes *w, lanes *torque)
+{
+    EACH (i, 0, SCENE_ACTUATORS)
+        torque[i] = held[i];
+    if (coupled) {
+        law_torque(law, s, w, torque);
+        law_clip(law, torque);
+        EACH (i, 0, SCENE_ACTUATORS)
+            torque[i] = choose(mask_less(lanes_of(0), law->decouples), lanes_of(0), torque[i]);
+    }
+}
+
 /* The linear law acting inside the step: torque and its derivative by the velocity at the end, of
  * which the positions move by `lever` and the velocities by `rate_lever` per unit. A decoupling law
  * holds the torque. `corner`: NULL, or for each torque 0 where it is taken for free, -1 or 1 where

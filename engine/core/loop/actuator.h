@@ -38,14 +38,6 @@ static bool actuators_lag(const stance_case *c)
     return c->lag > 0 || (c->torque_rate > 0 && isfinite(c->torque_rate));
 }
 
-static void actuators_load(struct actuators *a, int lane, const stance_case *c)
-{
-    lane_set(&a->at, lane, -1);
-    lane_set(&a->lag, lane, c->lag);
-    lane_set(&a->rate, lane, c->torque_rate > 0 ? c->torque_rate : INFINITY);
-    lane_set(&a->left, lane, c->lag > 0 ? actuator_exp(-c->step / c->lag) : 0);
-}
-
 /* Torques of the steps of length h that begin at n in the lanes of `live`; those that have begun
  * before keep theirs. */
 COLD void actuators_follow(struct actuators *a, mask live, lanes n, lanes h, lanes *torque)

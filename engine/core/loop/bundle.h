@@ -6,7 +6,6 @@
 
 #include "actuator.h"
 #include "engine/core/mode/between_events.h"
-#include "walking.h"
 
 /* A case that takes more evaluations than this is given up: so many at once, so many a step. */
 #define BUNDLE_WORK 1e7
@@ -61,6 +60,25 @@ struct plates {
 };
 #endif
 
+/* What is kept of a lane's last steps. Steps back that a gait may repeat after, and how far back.
+ */
+enum { WALK_PERIODS = 4, WALK_KEPT = WALK_PERIODS };
+struct walking {
+    double last;          /* s, of the last footfall, be it a step */
+    double settled;       /* s, since when */
+    double steps, period; /* so far; with which they are alike, 0: they are not */
+    double length;        /* m, of the last one, from foot to foot */
+    double change;        /* how unlike the last one is to one before; INFINITY: there is none */
+    /* Of the last steps, the newest first: when, where, after which effort, with which angles and
+     * rates, legs exchanged where the second one stands. */
+    double when[WALK_KEPT + 1], where[WALK_KEPT + 1], after[WALK_KEPT + 1];
+    double section[WALK_KEPT][2 * POSTURES];
+    /* By period: how many in a row were alike, since when, s; the largest difference of the first
+     * half of those that are wanted, and of the others. */
+    double alike[WALK_PERIODS], since[WALK_PERIODS], first[WALK_PERIODS], later[WALK_PERIODS];
+    double off[WALK_PERIODS][WALK_KEPT]; /* of the last steps, the newest first, by period */
+};
+
 struct bundle {
     const stance_feed *feed;
     mask live;                                                        /* lanes that are not idle */
@@ -71,6 +89,7 @@ struct bundle {
     bool target_known, target_holds;
     const stance_case *which[LANES]; /* NULL: idle */
     stance_result *result[LANES];
+    struct walking walk[LANES];
     /* From here on everything is an array over the lanes, of 8 bytes each: see regroup.h. */
     _Alignas(sizeof(lanes)) struct setting set;
     struct motion now;
@@ -98,10 +117,15 @@ struct bundle {
     lanes settle_steps;
     struct window settled, resting;
 
-    lanes ahead[CONTACTS]; /* 1: lands only there, see feet.h */
-    lanes foot;            /* that landed last; -1: none has */
-    lanes leg;             /* that stands, of stance_exchange: 0, 1 */
-    struct walking walk;
+    lanes ahead[CONTACTS];  /* 1: lands only there, see feet.h */
+    lanes foot;             /* that landed last; -1: none has */
+    lanes leg;              /* that stands, of stance_exchange: 0, 1 */
+    lanes stands;           /* contact that stood up to now; -1: none */
+    lanes ended;            /* s, at which the last footfall ended the case; -1: none has */
+    lanes walks;            /* 1: in steps that are alike, or in enough of them */
+    lanes effort;           /* J, sum of |work| of each actuator so far, where ... */
+    lanes inside;           /* 1: within a step */
+    lanes moved[ACTUATORS]; /* ... these are their places */
 #if SCENE_PLATES
     struct plates plates;
 #endif
@@ -266,18 +290,14 @@ static bool case_is_noisy(const stance_case *c)
     return c->noise != 0 || c->angle_noise != 0 || c->rate_noise != 0;
 }
 
-/* Is there more to its torques than a linear law of the present state? */
-static bool case_is_unusual(const stance_case *c)
-{
-    return case_is_noisy(c) || c->delay > 0 || actuators_lag(c) || c->decouples || c->switches ||
-           c->program;
-}
-
 /* Counts a case among those that cost more, or (-1) no longer. */
 static void bundle_count(struct bundle *b, const stance_case *c, int by)
 {
+    /* Is there more to its torques than a linear law of the present state? */
+    const bool unusual = case_is_noisy(c) || c->delay > 0 || actuators_lag(c) || c->decouples ||
+                         c->switches || c->program;
     b->recorded += c->trajectory && c->trajectory->rows > 0 ? by : 0;
-    b->unusual += case_is_unusual(c) ? by : 0;
+    b->unusual += unusual ? by : 0;
     b->bending += c->bends ? by : 0;
     b->choosy += c->lands_ahead ? by : 0;
     b->walking += c->walk_steps > 0 ? by : 0;
@@ -311,7 +331,10 @@ static void bundle_load(struct bundle *b, int lane, const stance_case *c, stance
     b->program[lane] = c->program ? (uintptr_t)c->program->begin(c->program, c) : 0;
     lane_set(&b->delay, lane, (double)c->delay);
     lane_set(&b->lags, lane, actuators_lag(c));
-    actuators_load(&b->actuators, lane, c);
+    lane_set(&b->actuators.at, lane, -1);
+    lane_set(&b->actuators.lag, lane, c->lag);
+    lane_set(&b->actuators.rate, lane, c->torque_rate > 0 ? c->torque_rate : INFINITY);
+    lane_set(&b->actuators.left, lane, c->lag > 0 ? actuator_exp(-c->step / c->lag) : 0);
     bundle_clear_answers(b, lane);
     advance_load(&b->advance, lane, c);
     lane_set(&b->h, lane, c->step);
@@ -340,7 +363,12 @@ static void bundle_load(struct bundle *b, int lane, const stance_case *c, stance
     }
     lane_set(&b->foot, lane, -1);
     lane_set(&b->leg, lane, 0);
-    walking_load(&b->walk, lane, c);
+    b->walk[lane] = (struct walking){.last = -INFINITY, .change = INFINITY};
+    lane_set(&b->stands, lane, -1);
+    lane_set(&b->ended, lane, -1);
+    lane_set(&b->walks, lane, 0);
+    lane_set(&b->effort, lane, 0);
+    lane_set(&b->inside, lane, 0);
     lane_set(&b->angle_scale, lane, 1 / c->settle_angle);
     lane_set(&b->rate_scale, lane, 1 / c->settle_rate);
     lane_set(&b->settle_steps, lane, nearbyint(c->settle_hold / c->step));
@@ -352,10 +380,7 @@ static void bundle_begin(struct bundle *b, mask fresh)
 {
     scene_trig trig;
     scene_trigonometry(b->now.s, &trig);
-    for (int a = 0; a < SCENE_ANGLES; a++) {
-        b->now.trig.sine[a] = choose(fresh, trig.sine[a], b->now.trig.sine[a]);
-        b->now.trig.cosine[a] = choose(fresh, trig.cosine[a], b->now.trig.cosine[a]);
-    }
+    choose_all(fresh, &trig, &b->now.trig, sizeof trig);
     for (int c = 0; c < OWN_CONTACTS; c++) {
         lanes u[2];
         scene_contact_velocity(&b->set.body, &trig, c, b->now.w, u);

@@ -17,8 +17,7 @@
 /* Contacts of another foot that are on the ground, of those in play. */
 static inline mask feet_down(const struct bundle *b, int c)
 {
-    return mask_less(lanes_of(0), b->set.may_touch[c]) &
-           mask_less_equal(b->now.gap[c], lanes_of(STEP_CLOSED));
+    return motion_closed(&b->set, b->now.gap, c);
 }
 
 /* Those that have landed there: what they struck is past. */
@@ -84,11 +83,11 @@ COLD void feet_begin(struct bundle *b, mask fresh)
             if (rests)
                 stands &= mask_less_equal(lanes_abs(b->now.approach[c]), lanes_of(FEET_REST));
             feet_stand(b, stands, c);
-            b->walk.foot = choose(stands, lanes_of(c), b->walk.foot);
+            b->stands = choose(stands, lanes_of(c), b->stands);
         }
     for (int lane = 0; lane < LANES; lane++)
-        if (b->which[lane] && mask_get(fresh, lane) && lane_get(&b->walk.foot, lane) >= 0)
-            feet_lay(b, lane, (int)lane_get(&b->walk.foot, lane));
+        if (b->which[lane] && mask_get(fresh, lane) && lane_get(&b->stands, lane) >= 0)
+            feet_lay(b, lane, (int)lane_get(&b->stands, lane));
 }
 
 /* Which are in play from now on, in the lanes of `live`. */
@@ -109,9 +108,8 @@ HOT void feet_choose(struct bundle *b, mask live)
             if (feet_of(k) != feet_of(c))
                 behind |= down[k] & mask_less_equal(along[c], along[k]);
         const mask lands = mask_less(lanes_of(STEP_CLOSED), b->now.gap[c]) & LANES_NOT(behind);
-        b->set.may_touch[c] =
-            choose(live & mask_less(lanes_of(0), b->ahead[c]),
-                   choose(down[c] | lands, lanes_of(1), lanes_of(0)), b->set.may_touch[c]);
+        b->set.may_touch[c] = choose(live & mask_less(lanes_of(0), b->ahead[c]),
+                                     lanes_where(down[c] | lands), b->set.may_touch[c]);
     }
 }
 
@@ -125,7 +123,7 @@ COLD void feet_count(struct bundle *b, mask live, const mask *before)
         const mask other =
             live & feet_landed(b, c) & LANES_NOT(before[c]) &
             (mask_less(b->foot, lanes_of(foot)) | mask_less(lanes_of(foot), b->foot));
-        b->answer.footfalls += choose(other, lanes_of(1), lanes_of(0));
+        b->answer.footfalls += lanes_where(other);
         b->foot = choose(other, lanes_of(foot), b->foot);
         b->set.law.footfall = choose(other, b->now.t, b->set.law.footfall);
         if (mask_any(other)) {

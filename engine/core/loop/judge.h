@@ -190,7 +190,7 @@ HOT struct verdict bundle_judge(struct bundle *b, mask live, contact_set touchin
         on_way & window_advance(&b->settled, live, at_target, error, b->n, b->settle_steps);
     v.rested = on_way & window_advance(&b->resting, live, still, all, b->n, b->settle_steps);
     const mask at_end = live & last & LANES_NOT(on_way);
-    v.walks = live & walk_goes(b);
+    v.walks = live & mask_less(none, b->walks);
     v.stabilised |= at_end & at_target;
     v.rested |= at_end & still;
     if (mask_any(v.rested | v.stabilised)) {

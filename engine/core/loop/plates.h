@@ -49,14 +49,10 @@ HOT lanes plates_along(const struct bundle *b, int k)
                         : tree_point_place(body, b->now.s, &b->now.trig, k - CONTACTS, 0);
 }
 
-HOT lanes plates_slack(lanes x)
-{
-    return PLATES_SLACK * lanes_max(lanes_of(1), lanes_abs(x));
-}
 /* Lanes where a place is beyond the plate that it was over. */
 HOT mask plates_off(const struct bundle *b, int k, lanes x)
 {
-    const lanes slack = plates_slack(x);
+    const lanes slack = PLATES_SLACK * lanes_max(lanes_of(1), lanes_abs(x));
     return mask_less(x, b->plates.low[k] - slack) | mask_less(b->plates.high[k] + slack, x);
 }
 

@@ -35,7 +35,7 @@ static inline void program_known(const struct bundle *b, int lane, double *sampl
     sample[STANCE_SAMPLE_PERIOD] = lane_get(&b->sample_every, lane) * lane_get(&b->h, lane);
     sample[STANCE_SAMPLE_SINCE] = t - lane_get(&b->set.law.footfall, lane);
     sample[STANCE_SAMPLE_FOOTFALLS] = lane_get(&b->answer.footfalls, lane);
-    sample[STANCE_SAMPLE_FOOT] = lane_get(&b->walk.foot, lane);
+    sample[STANCE_SAMPLE_FOOT] = lane_get(&b->stands, lane);
 }
 
 /* The first contact that a robot is to stand on; -1: there is none. */

@@ -84,7 +84,7 @@ COLD void bundle_finish(struct bundle *b, int lane, stance_status status, stance
         .status = status,
         .outcome = outcome,
         .failure = failure,
-        .end_time = lane_get(&b->walk.ended, lane) >= 0 ? lane_get(&b->walk.ended, lane) : n * h,
+        .end_time = lane_get(&b->ended, lane) >= 0 ? lane_get(&b->ended, lane) : n * h,
         .settle_time = calm ? (since >= 0 ? since : n) * h : NAN,
         .fall_time = NAN,
         .steps = (int64_t)n,
@@ -121,13 +121,10 @@ static stance_failure bundle_failure(const struct bundle *b, int lane)
     double sum = 0;
     for (int i = 0; i < SCENE_COORDINATES; i++)
         sum += lane_get(&b->now.s[i], lane) + lane_get(&b->now.w[i], lane);
-    lanes ahead[SCENE_COORDINATES];
-    for (int i = 0; i < SCENE_COORDINATES; i++)
-        ahead[i] = b->now.s[i] + 2 * b->h * b->now.w[i];
     if (!isfinite(sum))
         return STANCE_FAILURE_NOT_FINITE;
-    return mask_get(scene_angles_in_range(ahead), lane) ? STANCE_FAILURE_NEWTON
-                                                        : STANCE_FAILURE_ANGLE;
+    return mask_get(motion_in_range(&b->now, b->h), lane) ? STANCE_FAILURE_NEWTON
+                                                          : STANCE_FAILURE_ANGLE;
 }
 
 /* Ends the lanes in `over`. */

@@ -38,8 +38,10 @@ static void regroup_swap(struct bundle *a, int i, struct bundle *b, int j)
 {
     const stance_case *const which = a->which[i];
     stance_result *const result = a->result[i];
+    const struct walking walk = a->walk[i];
     a->which[i] = b->which[j], b->which[j] = which;
     a->result[i] = b->result[j], b->result[j] = result;
+    a->walk[i] = b->walk[j], b->walk[j] = walk;
     const size_t begin = offsetof(struct bundle, set), column = LANES * sizeof(double);
     char *const p = (char *)a + begin + (size_t)i * sizeof(double);
     char *const q = (char *)b + begin + (size_t)j * sizeof(double);

@@ -66,8 +66,8 @@ COLD void rest_law(const stance_rest *asked, const double *s1, const double *w1,
     lanes s[SCENE_COORDINATES], w[SCENE_COORDINATES], integral[ACTUATORS];
     lanes torque[ACTUATORS], rate[ACTUATORS];
     struct dynamics e;
-    rest_lanes(s1, OWN_COORDINATES, SCENE_COORDINATES, s);
-    rest_lanes(w1, OWN_COORDINATES, SCENE_COORDINATES, w);
+    rest_lanes(s1, SCENE_COORDINATES, SCENE_COORDINATES, s);
+    rest_lanes(w1, SCENE_COORDINATES, SCENE_COORDINATES, w);
     rest_lanes(integral1, OWN_ACTUATORS, ACTUATORS, integral);
     rest_lanes(NULL, 0, ACTUATORS, rate);
     law_sampled(&r->set.law, s, w, torque);
@@ -91,7 +91,7 @@ COLD void rest_evaluate(const struct rest *r, const double *s1, const double *to
                         struct dynamics *e)
 {
     lanes still[SCENE_COORDINATES], torque[ACTUATORS];
-    rest_lanes(s1, OWN_COORDINATES, SCENE_COORDINATES, s);
+    rest_lanes(s1, SCENE_COORDINATES, SCENE_COORDINATES, s);
     rest_lanes(NULL, 0, SCENE_COORDINATES, still);
     rest_lanes(torque1, OWN_ACTUATORS, ACTUATORS, torque);
     const struct state at = {.t = r->t, .s = s, .w = still};
@@ -107,7 +107,7 @@ static void rest_accelerate(const stance_rest *asked, const double *s1, const do
     struct dynamics e;
     rest_evaluate(r, s1, torque, s, &e);
     between_solve(&r->set, &r->mode, &e);
-    rest_numbers(r, e.acceleration, OWN_COORDINATES, a);
+    rest_numbers(r, e.acceleration, SCENE_COORDINATES, a);
 }
 
 static void rest_project(const stance_rest *asked, const double *torque, double *s1)
@@ -117,7 +117,7 @@ static void rest_project(const stance_rest *asked, const double *torque, double 
     struct dynamics e;
     rest_evaluate(r, s1, torque, s, &e);
     between_project_position(&r->set, r->mode.closed, s, &e);
-    rest_numbers(r, s, OWN_COORDINATES, s1);
+    rest_numbers(r, s, SCENE_COORDINATES, s1);
 }
 
 /* Does contact c hold what slides along the ground, too? */
@@ -133,13 +133,13 @@ static int rest_rows(const stance_rest *asked, const double *s1,
     lanes s[SCENE_COORDINATES], unit[SCENE_COORDINATES], u[2];
     scene_trig trig;
     int n = 0;
-    rest_lanes(s1, OWN_COORDINATES, SCENE_COORDINATES, s);
+    rest_lanes(s1, SCENE_COORDINATES, SCENE_COORDINATES, s);
     scene_trigonometry(s, &trig);
     for (int c = 0; c < OWN_CONTACTS; c++) {
         if (!mask_get(r->mode.closed[c], r->lane))
             continue;
         const int held = rest_sticks(r, c) ? 2 : 1;
-        for (int i = 0; i < OWN_COORDINATES; i++) {
+        for (int i = 0; i < SCENE_COORDINATES; i++) {
             for (int k = 0; k < SCENE_COORDINATES; k++)
                 unit[k] = lanes_of(k == i);
             scene_contact_velocity(&r->set.body, &trig, c, unit, u);
@@ -247,7 +247,7 @@ static void rest_load_mode(struct rest *r, const stance_case *c)
     const lanes low = lanes_of(fmax(STANCE_GRAVITY * c->step * c->step, STEP_CLOSED));
     lanes s[SCENE_COORDINATES];
     scene_trig trig;
-    rest_lanes(r->asked.s, OWN_COORDINATES, SCENE_COORDINATES, s);
+    rest_lanes(r->asked.s, SCENE_COORDINATES, SCENE_COORDINATES, s);
     scene_trigonometry(s, &trig);
     for (int i = 0; i < OWN_CONTACTS; i++) {
         const lanes near =
@@ -270,7 +270,7 @@ COLD bool rest_holds(const struct bundle *b, int lane, const double *target)
         return false;
     memset(&r, 0, sizeof r);
     r.asked = (stance_rest){
-        .coordinates = OWN_COORDINATES,
+        .coordinates = SCENE_COORDINATES,
         .actuators = OWN_ACTUATORS,
         .angle = 1 / lane_get(&b->angle_scale, lane),
         .speed = 1 / lane_get(&b->rate_scale, lane),
@@ -293,10 +293,10 @@ COLD bool rest_holds(const struct bundle *b, int lane, const double *target)
     scene_push(&r.set.body, lanes_of(INFINITY), b->h); /* nothing pushes any more */
     r.set.friction = r.set.friction * (1 + REST_EDGE);
     if (target) {
-        memcpy(asked->s, target, OWN_COORDINATES * sizeof *target);
+        memcpy(asked->s, target, SCENE_COORDINATES * sizeof *target);
     } else {
-        rest_numbers(&r, b->now.s, OWN_COORDINATES, asked->s);
-        rest_numbers(&r, b->now.w, OWN_COORDINATES, asked->w);
+        rest_numbers(&r, b->now.s, SCENE_COORDINATES, asked->s);
+        rest_numbers(&r, b->now.w, SCENE_COORDINATES, asked->w);
         rest_numbers(&r, b->now.integral, OWN_ACTUATORS, asked->integral);
     }
     rest_load_actuators(b, lane, asked);

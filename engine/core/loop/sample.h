@@ -12,10 +12,6 @@
 
 /* Uniform in [-1, 1), keyed as stance.h says: of sampling instant k the `count` numbers of a
  * stream; the noise of torques is stream 0, that of measurements 1. */
-static inline double noise_value(uint64_t bits)
-{
-    return (double)(int64_t)(bits >> 11) * 0x1p-52 - 1;
-}
 static void bundle_noise(const stance_case *c, double instant, uint64_t stream, int count,
                          double *noise)
 {
@@ -26,7 +22,7 @@ static void bundle_noise(const stance_case *c, double instant, uint64_t stream, 
             {c->grid_index, c->sample_index, (uint64_t)instant, (uint64_t)i / 4}};
         if (i % 4 == 0)
             random = philox4x64(counter, key);
-        noise[i] = noise_value(random.v[i % 4]);
+        noise[i] = (double)(int64_t)(random.v[i % 4] >> 11) * 0x1p-52 - 1;
     }
 }
 
@@ -110,8 +106,7 @@ COLD mask bundle_program(struct bundle *b, mask due, const lanes *s, const lanes
     program_measure(&b->set, mask_any(due & mask_less(lanes_of(0), b->set.law.switches)), s, w,
                     trig, &is);
     for (int c = 0; c < OWN_CONTACTS; c++) /* feet feel what they do */
-        closed[c] = mask_less(lanes_of(0), b->set.may_touch[c]) &
-                    mask_less_equal(b->now.gap[c], lanes_of(STEP_CLOSED)) &
+        closed[c] = motion_closed(&b->set, b->now.gap, c) &
                     mask_less_equal(lanes_abs(b->now.approach[c]), lanes_of(SAMPLE_REST));
     for (int lane = 0; lane < LANES; lane++) {
         const stance_case *const c = b->which[lane];

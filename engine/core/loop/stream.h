@@ -11,16 +11,15 @@
  *                                         returns the lanes that are there, with *report about the
  *                                         whole step; the others go on at the next call, but for
  *                                         *failed,
- *   void advance_free(a)                  at the end of all,
  *
- * and may define ADVANCE_ORDINARY (see stream_ordinary) with advance_was_ordinary, ADVANCE_MOVES
- * where struct advance consists of lanes, so that cases may change lanes between steps,
- * ADVANCE_WATCHES with advance_watch(a, m, near), which is told of the lanes m from which state a
- * step may come to a fall or a larger answer between its ends, and
- * ADVANCE_PIECES where a step may be of any length: then pushes begin and end, and blows fall, at
- * their instants, and contacts cross edges of plates at the end of a piece. If it is not of lanes
- * that has advance_done(a, lane), how far into its step a lane is, and advance_back(a, before, m),
- * which puts the lanes m back.
+ * and may define ADVANCE_FREES with advance_free(a), at the end of all, ADVANCE_ORDINARY (see
+ * stream_ordinary) with advance_was_ordinary, ADVANCE_MOVES where struct advance consists of lanes,
+ * so that cases may change lanes between steps, ADVANCE_WATCHES with advance_watch(a, m, near),
+ * which is told of the lanes m from which state a step may come to a fall or a larger answer
+ * between its ends, and ADVANCE_PIECES where a step may be of any length: then pushes begin and
+ * end, and blows fall, at their instants, and contacts cross edges of plates at the end of a piece.
+ * If it is not of lanes that has advance_done(a, lane), how far into its step a lane is, and
+ * advance_back(a, before, m), which puts the lanes m back.
  */
 #ifndef STANCE_CORE_LOOP_STREAM_H
 #define STANCE_CORE_LOOP_STREAM_H
@@ -60,12 +59,12 @@ COLD void bundle_start(struct bundle *b, mask fresh, bool coupled)
         plates_begin(b, fresh);
 #endif
     feet_begin(b, fresh);
-    walk_begin(b, fresh);
+    for (int i = 0; i < SCENE_ACTUATORS; i++) /* where they begin */
+        b->moved[i] = choose(fresh, scene_actuated(b->now.s, i), b->moved[i]);
     feet_choose(b, fresh);
     mask loaded[CONTACTS];
     EACH_CONTACT (c, 0)
-        loaded[c] = mask_less(lanes_of(0), b->set.may_touch[c]) &
-                    mask_less_equal(b->now.gap[c], lanes_of(STEP_CLOSED));
+        loaded[c] = motion_closed(&b->set, b->now.gap, c);
     const struct verdict v = bundle_judge(b, fresh, CONTACT_ALL, loaded, MASK_NONE);
     /* A law with a model feels what pushes it from the beginning on. */
     if (SCENE_PUSHES > 0) {
@@ -181,12 +180,9 @@ HOT bool stream_try_ordinary(struct bundle *b, bool coupled)
 COLD mask stream_join(struct bundle *b, mask ok, struct step_report *report)
 {
     const mask last = ok & mask_less_equal(b->h, b->piece_to);
-    struct step_report sum = b->pieces, none;
-    report_add(&sum, report);
-    report_clear(&none);
-    choose_all(ok, &sum, &b->pieces, sizeof sum);
-    choose_all(last, &sum, report, sizeof sum);
-    choose_all(last, &none, &b->pieces, sizeof none);
+    report_add_where(ok, &b->pieces, report);
+    choose_all(last, &b->pieces, report, sizeof *report);
+    report_clear_where(last, &b->pieces);
     b->piece_from = choose(ok, choose(last, lanes_of(0), b->piece_to), b->piece_from);
 #if SCENE_PLATES
     b->plates.cut = choose(ok, lanes_of(INFINITY), b->plates.cut);
@@ -198,7 +194,7 @@ COLD mask stream_join(struct bundle *b, mask ok, struct step_report *report)
 /* Ends the cases that a footfall ends, wherever in their steps they are. */
 COLD void stream_footfalls(struct bundle *b)
 {
-    const mask ended = b->live & mask_less_equal(lanes_of(0), b->walk.ended);
+    const mask ended = b->live & mask_less_equal(lanes_of(0), b->ended);
     const struct verdict none = {0};
     if (mask_any(ended))
         bundle_end_lanes(b, ended, MASK_NONE, &none);
@@ -257,6 +253,14 @@ COLD void stream_any(struct bundle *b, bool coupled)
     stream_footfalls(b);
 }
 
+/* Ends the cases that have failed before their next step. */
+HOT void stream_fails(struct bundle *b, mask failed)
+{
+    const struct verdict none = {0};
+    if (mask_any(failed))
+        bundle_end(b, b->live, failed, &none, MASK_NONE);
+}
+
 /* Instants of pushes nearer to a lane's own than this part of a step are there already. */
 #define STREAM_INSTANT 0x1p-30
 
@@ -303,10 +307,7 @@ COLD void stream_strike(struct bundle *b, lanes from)
 #endif
     const mask failed = hit & LANES_NOT(solved);
     b->failure = choose(failed, lanes_of(STANCE_FAILURE_CONTACT), b->failure);
-    if (mask_any(failed)) {
-        const struct verdict none = {0};
-        bundle_end(b, b->live, failed, &none, MASK_NONE);
-    }
+    stream_fails(b, failed);
 }
 
 /* What the world does in the steps that begin, or in their next pieces: up to the next instant at
@@ -341,10 +342,7 @@ HOT int stream_step(struct bundle *b, bool coupled)
 {
     stream_push(b);
     const mask useless = bundle_sample(b, b->live);
-    if (mask_any(useless)) {
-        const struct verdict none = {0};
-        bundle_end(b, b->live, useless, &none, MASK_NONE);
-    }
+    stream_fails(b, useless);
 #ifdef ADVANCE_ORDINARY
     if (stream_try_ordinary(b, coupled))
         return 1;
@@ -432,7 +430,9 @@ static bool bundle_stream(const stance_feed *feed)
         all[k].feed = feed;
     const bool done = stream_go(&stream);
     for (int k = 0; k < 2 * STREAM_BUNDLES; k++) {
+#ifdef ADVANCE_FREES
         advance_free(&all[k].advance);
+#endif
         for (int lane = 0; lane < LANES; lane++) /* given up: told to leave */
             if (all[k].which[lane] && all[k].which[lane]->program)
                 all[k].which[lane]->program->end(all[k].which[lane]->program,

@@ -36,12 +36,12 @@ static void walk_section(const struct bundle *b, int lane, double section[2 * PO
 }
 
 /* By how much the section is off that of some steps before, in units of what is admitted. */
-static double walk_off(const struct bundle *b, int lane, const double *section, int back)
+static double walk_off(const struct walking *w, const stance_case *c, const double *section,
+                       int back)
 {
-    const stance_case *const c = b->which[lane];
     double off = 0;
     for (int j = 0; j < 2 * OWN_POSTURE; j++) {
-        const double is = fabs(section[j] - lane_get(&b->walk.section[back - 1][j], lane));
+        const double is = fabs(section[j] - w->section[back - 1][j]);
         off = fmax(off, is / (j < OWN_POSTURE ? c->walk_angle : c->walk_rate));
     }
     return off;
@@ -52,100 +52,96 @@ static double walk_off(const struct bundle *b, int lane, const double *section, 
 
 /* Whether steps as many back as divide `period` are coming to be alike, too: what alternates on its
  * way to a gait is alike in every second step before it is in each. */
-static bool walk_shortens(const struct walking *w, int lane, int period, const double *off)
+static bool walk_shortens(const struct walking *w, int period, const double *off)
 {
     bool shortens = false;
     for (int part = 1; part < period; part++)
-        shortens =
-            shortens || (period % part == 0 &&
-                         off[part] < WALK_SHRINKS * lane_get(&w->off[part - 1][period - 1], lane));
+        shortens |= period % part == 0 && off[part] < WALK_SHRINKS * w->off[part - 1][period - 1];
     return shortens;
 }
 
-/* How the steps so far are alike, with one more at this section. */
-static void walk_compare(struct walking *w, struct bundle *b, int lane, const double *section)
+/* How the steps so far are alike, with one more, at the time t, at this section. */
+static void walk_compare(struct walking *w, const stance_case *c, double t, const double *section)
 {
-    const double steps = lane_get(&w->steps, lane), wanted = lane_get(&w->wanted, lane);
-    double off[WALK_PERIODS + 1], change = INFINITY;
+    const double wanted = (double)c->walk_steps;
+    double off[WALK_PERIODS + 1];
+    w->change = INFINITY;
     for (int period = 1; period <= WALK_PERIODS; period++) {
-        off[period] = steps > period ? walk_off(b, lane, section, period) : INFINITY;
-        change = fmin(off[period], change);
+        off[period] = w->steps > period ? walk_off(w, c, section, period) : INFINITY;
+        w->change = fmin(off[period], w->change);
     }
-    lane_set(&w->change, lane, change);
     for (int period = WALK_PERIODS; period > 0; period--) {
         const int k = period - 1;
-        double alike = lane_get(&w->alike[k], lane);
-        double first = lane_get(&w->first[k], lane), later = lane_get(&w->later[k], lane);
-        alike = off[period] <= 1 ? alike + 1 : 0;
-        if (alike >= wanted && fmax(later, off[period]) > fmax(first, WALK_FLOOR))
-            alike = 1; /* it grows: again from here */
-        if (alike == 1) {
-            lane_set(&w->since[k], lane, lane_get(&b->now.t, lane));
-            first = later = 0;
+        const double largest = fmax(w->later[k], off[period]);
+        w->alike[k] = off[period] <= 1 ? w->alike[k] + 1 : 0;
+        if (w->alike[k] >= wanted && largest > fmax(w->first[k], WALK_FLOOR))
+            w->alike[k] = 1; /* it grows: again from here */
+        if (w->alike[k] == 1) {
+            w->since[k] = t;
+            w->first[k] = w->later[k] = 0;
         }
-        first = 2 * alike <= wanted ? fmax(first, off[period]) : first;
-        later = 2 * alike <= wanted ? later : fmax(later, off[period]);
-        if (alike >= wanted && !walk_shortens(w, lane, period, off)) {
-            lane_set(&w->period, lane, period); /* the shortest one last */
-            lane_set(&w->settled, lane, lane_get(&w->since[k], lane));
+        double *const half = 2 * w->alike[k] <= wanted ? &w->first[k] : &w->later[k];
+        *half = fmax(*half, off[period]);
+        if (w->alike[k] >= wanted && !walk_shortens(w, period, off)) {
+            w->period = period; /* the shortest one last */
+            w->settled = w->since[k];
         }
-        lane_set(&w->alike[k], lane, alike);
-        lane_set(&w->first[k], lane, first);
-        lane_set(&w->later[k], lane, later);
-        for (int i = WALK_KEPT; i-- > 0;)
-            lane_set(&w->off[k][i], lane, i > 0 ? lane_get(&w->off[k][i - 1], lane) : off[period]);
+        memmove(&w->off[k][1], w->off[k], sizeof w->off[k] - sizeof w->off[k][0]);
+        w->off[k][0] = off[period];
     }
 }
 
-static void walk_step(struct walking *w, struct bundle *b, int lane, double t, double place)
+/* A step that ends at the time t and a place along the ground. */
+static void walk_step(struct bundle *b, int lane, double t, double place)
 {
-    double section[2 * POSTURES];
-    lane_set(&w->steps, lane, lane_get(&w->steps, lane) + 1);
+    struct walking *const w = &b->walk[lane];
+    const stance_case *const c = b->which[lane];
+    double section[2 * POSTURES] = {0};
+    w->steps++;
     for (int k = WALK_KEPT; k > 0; k--) {
-        lane_set(&w->when[k], lane, lane_get(&w->when[k - 1], lane));
-        lane_set(&w->where[k], lane, lane_get(&w->where[k - 1], lane));
-        lane_set(&w->after[k], lane, lane_get(&w->after[k - 1], lane));
+        w->when[k] = w->when[k - 1];
+        w->where[k] = w->where[k - 1];
+        w->after[k] = w->after[k - 1];
     }
-    lane_set(&w->after[0], lane, lane_get(&w->effort, lane));
-    lane_set(&w->when[0], lane, t);
-    lane_set(&w->where[0], lane, place);
+    w->when[0] = t;
+    w->where[0] = place;
+    w->after[0] = lane_get(&b->effort, lane);
     walk_section(b, lane, section);
-    walk_compare(w, b, lane, section);
-    for (int k = WALK_KEPT; k-- > 0;)
-        for (int j = 0; j < 2 * OWN_POSTURE; j++)
-            lane_set(&w->section[k][j], lane,
-                     k > 0 ? lane_get(&w->section[k - 1][j], lane) : section[j]);
+    walk_compare(w, c, t, section);
+    memmove(w->section[1], w->section[0], sizeof w->section - sizeof w->section[0]);
+    memcpy(w->section[0], section, sizeof section);
+    const bool enough = c->walk_enough > 0 && w->steps >= (double)c->walk_enough;
+    lane_set(&b->walks, lane, w->period > 0 || enough);
 }
 
 /* Contact c, of another foot than the one that stood, is on the ground in the lanes of `where`. */
 COLD void walk_footfall(struct bundle *b, mask where, int c)
 {
-    struct walking *const w = &b->walk;
     for (int lane = 0; lane < LANES; lane++) {
         const stance_case *const of = b->which[lane];
+        struct walking *const w = &b->walk[lane];
         if (!of || !mask_get(where, lane))
             continue;
         SCENE_BEGIN(of);
-        const double t = lane_get(&b->now.t, lane), foot = lane_get(&w->foot, lane);
+        const double t = lane_get(&b->now.t, lane), foot = lane_get(&b->stands, lane);
         double length = 0;
         const lanes here = scene_along(&b->set.body, b->now.s, &b->now.trig, c);
         if (foot >= 0) {
             const lanes there = scene_along(&b->set.body, b->now.s, &b->now.trig, (int)foot);
             length = lane_get(&here, lane) - lane_get(&there, lane);
         }
-        const bool on = lane_get(&w->steps, lane) == 0 || length * lane_get(&w->length, lane) > 0;
-        lane_set(&w->foot, lane, c);
+        const bool on = w->steps == 0 || length * w->length > 0;
+        lane_set(&b->stands, lane, c);
         if (of->walk_steps > 0 && on && fabs(length) >= of->walk_length &&
-            t - lane_get(&w->last, lane) >= of->walk_time) {
-            walk_step(w, b, lane, t, lane_get(&here, lane));
-            lane_set(&w->length, lane, length);
+            t - w->last >= of->walk_time) {
+            walk_step(b, lane, t, lane_get(&here, lane));
+            w->length = length;
         } else {
-            for (int k = 0; k < WALK_PERIODS; k++)
-                lane_set(&w->alike[k], lane, 0);
+            memset(w->alike, 0, sizeof w->alike);
         }
-        lane_set(&w->last, lane, t);
+        w->last = t;
         if (of->footfalls > 0 && lane_get(&b->answer.footfalls, lane) >= (double)of->footfalls)
-            lane_set(&w->ended, lane, t);
+            lane_set(&b->ended, lane, t);
     }
 }
 
@@ -154,60 +150,46 @@ COLD void walk_footfall(struct bundle *b, mask where, int c)
  * footfall between. */
 HOT void walk_effort(struct bundle *b, mask where, const lanes *torque, bool inside)
 {
-    struct walking *const w = &b->walk;
     if (SCENE_ACTUATORS == 0 || !bundle_some(b->walking))
         return;
     for (int i = 0; i < SCENE_ACTUATORS; i++) {
-        const lanes now = scene_actuated(b->now.s, i), moved = now - w->moved[i];
+        const lanes now = scene_actuated(b->now.s, i), moved = now - b->moved[i];
         const lanes before =
             inside ? b->torque[i]
-                   : choose(mask_less(lanes_of(0), w->inside), torque[i], b->torque[i]);
+                   : choose(mask_less(lanes_of(0), b->inside), torque[i], b->torque[i]);
         const lanes work = lanes_abs(0.5 * (before + torque[i]) * moved);
-        w->effort = choose(where, w->effort + work, w->effort);
-        w->moved[i] = choose(where, now, w->moved[i]);
+        b->effort = choose(where, b->effort + work, b->effort);
+        b->moved[i] = choose(where, now, b->moved[i]);
     }
-    w->inside = choose(where, lanes_of(inside), w->inside);
-}
-
-/* Where the actuators of the cases in `fresh` begin. */
-COLD void walk_begin(struct bundle *b, mask fresh)
-{
-    for (int i = 0; i < SCENE_ACTUATORS; i++)
-        b->walk.moved[i] = choose(fresh, scene_actuated(b->now.s, i), b->walk.moved[i]);
-}
-
-/* Lanes that walk: in steps that are alike, or in enough of them. */
-static inline mask walk_goes(const struct bundle *b)
-{
-    return mask_less(lanes_of(0), b->walk.period) | mask_less_equal(b->walk.enough, b->walk.steps);
+    b->inside = choose(where, lanes_of(inside), b->inside);
 }
 
 /* The answers, at the end of a case. */
 static void walk_answer(const struct bundle *b, int lane, stance_result *r)
 {
-    const struct walking *const w = &b->walk;
-    const int steps = (int)fmin(lane_get(&w->steps, lane), WALK_KEPT + 1);
-    const int period = (int)lane_get(&w->period, lane), whole = period > 0 ? period : 1;
+    const struct walking *const w = &b->walk[lane];
+    const int steps = (int)fmin(w->steps, WALK_KEPT + 1);
+    const int period = (int)w->period, whole = period > 0 ? period : 1;
     const int last = (steps - 1) / whole * whole; /* whole periods */
     r->walked_steps = r->gait_period = STANCE_NO_COUNT;
     r->step_time = r->step_length = r->walking_speed = r->cost_of_transport = r->gait_change = NAN;
-    if (lane_get(&w->wanted, lane) <= 0)
+    if (b->which[lane]->walk_steps <= 0)
         return;
-    r->walked_steps = (int64_t)lane_get(&w->steps, lane);
+    r->walked_steps = (int64_t)w->steps;
     if (last > 0) {
-        r->step_time = (lane_get(&w->when[0], lane) - lane_get(&w->when[last], lane)) / last;
-        r->step_length = (lane_get(&w->where[0], lane) - lane_get(&w->where[last], lane)) / last;
+        r->step_time = (w->when[0] - w->when[last]) / last;
+        r->step_length = (w->where[0] - w->where[last]) / last;
         r->walking_speed = r->step_length / r->step_time;
-        const double effort = lane_get(&w->after[0], lane) - lane_get(&w->after[last], lane);
+        const double effort = w->after[0] - w->after[last];
         const stance_tree_numbers *const body = &b->which[lane]->body;
         const double weight = body->mass * hypot(body->gravity[0], body->gravity[1]);
         if (b->which[lane]->scene->actuators > 0 && weight > 0)
             r->cost_of_transport = effort / (weight * fabs(r->step_length) * last);
     }
-    if (isfinite(lane_get(&w->change, lane)))
-        r->gait_change = lane_get(&w->change, lane);
+    if (isfinite(w->change))
+        r->gait_change = w->change;
     if (period > 0 && r->outcome == STANCE_WALKS)
-        r->settle_time = lane_get(&w->settled, lane);
+        r->settle_time = w->settled;
     if (period > 0)
         r->gait_period = period;
 }

@@ -61,14 +61,7 @@ static inline void between_evaluate(const struct setting *set, const struct stat
     const mask decouples = mask_less(lanes_of(0), set->law.decouples);
     const bool servos = SCENE_ACTUATORS > 0 && drive->coupled && mask_any(decouples);
     lanes torque[ACTUATORS];
-    for (int i = 0; i < SCENE_ACTUATORS; i++)
-        torque[i] = drive->torque[i];
-    if (drive->coupled) {
-        law_torque(&set->law, at->s, at->w, torque);
-        law_clip(&set->law, torque);
-        for (int i = 0; i < SCENE_ACTUATORS; i++)
-            torque[i] = choose(decouples, lanes_of(0), torque[i]);
-    }
+    law_drive(&set->law, drive->torque, drive->coupled, at->s, at->w, torque);
     scene_trigonometry(at->s, &e->trig);
     dynamics_evaluate(set, at, torque, touching, servos, e);
     if (!servos)
@@ -84,10 +77,7 @@ static inline void between_evaluate(const struct setting *set, const struct stat
 static inline contact_set between_set(const mask *part)
 {
 #ifdef CONTACT_LISTS
-    contact_set set = 0;
-    for (int c = 0; c < OWN_CONTACTS; c++)
-        set |= mask_any(part[c]) ? contact_with(c) : 0;
-    return set;
+    return contact_any(part, LANES_ALL);
 #else
     (void)part;
     return CONTACT_ALL;
@@ -202,7 +192,7 @@ static inline void between_stands(const struct contact_state *m, lanes *stands)
         mask sticks = m->closed[c];
         if (contact_grip(c) >= 0)
             sticks &= mask_less_equal(lanes_abs(m->slide[contact_grip(c)]), lanes_of(0));
-        stands[c] = choose(sticks, lanes_of(1), lanes_of(0));
+        stands[c] = lanes_where(sticks);
     }
 }
 
@@ -233,14 +223,12 @@ static inline void between_mode(const struct setting *set, const struct dynamics
     lanes sliding[CONTACTS]; /* of each grip */
     *trouble = (struct between_trouble){MASK_NONE, MASK_NONE, MASK_NONE, MASK_NONE, MASK_NONE};
     for (int c = 0; c < OWN_CONTACTS; c++) {
-        const mask closed =
-            mask_less(none, set->may_touch[c]) & mask_less_equal(e->gap[c], lanes_of(STEP_CLOSED));
+        const mask closed = motion_closed(set, e->gap, c);
         trouble->impact |= closed & mask_less(e->u[c][0], lanes_of(-BETWEEN_REST));
         part[c] = closed & mask_less_equal(lanes_abs(e->u[c][0]), lanes_of(BETWEEN_REST));
         sliding[c] = none;
         if (contact_unknowns(c) == 2)
-            sliding[c] = choose(mask_less(lanes_of(BETWEEN_REST), lanes_abs(e->u[c][1])),
-                                choose(mask_less(e->u[c][1], none), -one, one), none);
+            sliding[c] = lanes_sign(e->u[c][1], lanes_of(BETWEEN_REST));
         any |= part[c];
         m->closed[c] = MASK_NONE;
         m->slide[c] = sliding[c];
@@ -262,15 +250,10 @@ static inline void between_mode(const struct setting *set, const struct dynamics
     }
     for (int c = 0; c < OWN_CONTACTS; c++)
         last[c][0] = stood[c], last[c][1] = none;
-    const struct contact_problem problem = {.D = e->D,
-                                            .uf = e->free,
-                                            .touching = touching,
-                                            .active = part,
-                                            .friction = set->friction,
-                                            .prefer = set->prefer,
-                                            .sliding = sliding,
-                                            .last = last,
-                                            .known = LANES_NOT(moves)};
+    struct contact_problem problem =
+        contact_pose(e->D, e->free, touching, part, set->friction, set->prefer);
+    problem.sliding = sliding;
+    problem.last = last, problem.known = LANES_NOT(moves);
     solve_contacts(&problem, LANES_ALL, r, &verdict);
     direct_velocities(e->D, e->free, CONTACT_ALL, r, u);
     trouble->none = any & verdict.unsolved;
@@ -300,6 +283,19 @@ static inline void between_mode(const struct setting *set, const struct dynamics
     }
     if (mask_any(begins))
         trouble->none |= between_jammed(set, e, m, starting);
+}
+
+/* The same for the beginning of a step, *e evaluated there. Returns what touches anywhere. */
+static inline contact_set between_begin(const struct step *step, const lanes *stood,
+                                        struct dynamics *e, struct contact_state *m,
+                                        struct between_trouble *trouble)
+{
+    const contact_set touching = step_touching(step->set, step->from->gap, LANES_ALL);
+    const struct drive drive = {step->torque, step->coupled, NULL};
+    const struct state at = state_of(step->from);
+    between_evaluate(step->set, &at, &drive, touching, e);
+    between_mode(step->set, e, touching, stood, m, trouble);
+    return touching;
 }
 
 /* Lanes where the state that *e was solved at is outside the mode. A slip may be backward by what
@@ -408,14 +404,11 @@ static inline mask between_impact(const struct setting *set, mask where, struct 
     struct contact_verdict verdict;
     const struct state at = state_of(now);
     struct impact_answer found;
-    lanes torque[ACTUATORS], energy = none;
-    for (int i = 0; i < ACTUATORS; i++)
-        torque[i] = none;
+    lanes torque[ACTUATORS] = {0}, energy = none;
     scene_trigonometry(now->s, &e.trig);
     dynamics_evaluate(set, &at, torque, CONTACT_ALL, false, &e);
     for (int c = 0; c < OWN_CONTACTS; c++)
-        part[c] = where & mask_less(none, set->may_touch[c]) &
-                  mask_less_equal(e.gap[c], lanes_of(STEP_CLOSED));
+        part[c] = where & motion_closed(set, e.gap, c);
     between_project_position(set, part, now->s, &e);
     mask impact = MASK_NONE; /* else only rounding is left to remove */
     for (int c = 0; c < OWN_CONTACTS; c++) {
@@ -452,7 +445,7 @@ static inline mask between_impact(const struct setting *set, mask where, struct 
     choose_all(where, &e.trig, &now->trig, sizeof e.trig);
     report->impact_energy =
         choose(where, lanes_max(energy, report->impact_energy), report->impact_energy);
-    report->limited_impacts += choose(limited, lanes_of(1), none);
+    report->limited_impacts += lanes_where(limited);
     report->ambiguous_steps =
         choose(where & verdict.ambiguous, lanes_of(1), report->ambiguous_steps);
     report->unranked_steps = choose(where & verdict.unranked, lanes_of(1), report->unranked_steps);

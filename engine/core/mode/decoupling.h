@@ -43,17 +43,10 @@
 static inline void decoupling_contacts(const struct setting *set, const struct dynamics *e,
                                        lanes rest, struct contact_state *contact)
 {
-    const lanes none = lanes_of(0);
     for (int c = 0; c < OWN_CONTACTS; c++) {
-        const lanes slip = e->u[c][1];
-        contact->closed[c] = mask_less(none, set->may_touch[c]) &
-                             mask_less_equal(e->gap[c], lanes_of(STEP_CLOSED)) &
-                             mask_less_equal(lanes_abs(e->u[c][0]), rest);
-        contact->slide[c] =
-            contact_unknowns(c) == 1
-                ? none
-                : choose(mask_less(rest, lanes_abs(slip)),
-                         choose(mask_less(slip, none), lanes_of(-1), lanes_of(1)), none);
+        contact->closed[c] =
+            motion_closed(set, e->gap, c) & mask_less_equal(lanes_abs(e->u[c][0]), rest);
+        contact->slide[c] = contact_unknowns(c) == 1 ? lanes_of(0) : lanes_sign(e->u[c][1], rest);
     }
 }
 
@@ -214,14 +207,9 @@ static inline mask decoupling_react(const struct decoupling *of, mask where,
                     for (int i = 0; i < OWN_ACTUATORS; i++)
                         problem.D[c][k][a][b] += reach[c][i][a] * answer[k][b][i];
                 }
-    const struct contact_problem reactions = {.D = problem.D,
-                                              .uf = problem.free,
-                                              .touching = touching,
-                                              .active = part,
-                                              .friction = set->friction,
-                                              .prefer = set->prefer,
-                                              .sliding = of->contact->slide,
-                                              .indefinite = true};
+    struct contact_problem reactions =
+        contact_pose(problem.D, problem.free, touching, part, set->friction, set->prefer);
+    reactions.sliding = of->contact->slide, reactions.indefinite = true;
     for (int round = 0; round < 2; round++) {
         solve_contacts(&reactions, LANES_ALL, problem.r, &verdict);
         several |= where & verdict.ambiguous;
@@ -242,7 +230,7 @@ static inline mask decoupling_react(const struct decoupling *of, mask where,
             for (int i = 0; i < OWN_ACTUATORS; i++)
                 torque[i] = choose(contact_part(c, part),
                                    torque[i] + answer[c][a][i] * problem.r[c][a], torque[i]);
-    e->several = choose(several, lanes_of(1), lanes_of(0));
+    e->several = lanes_where(several);
     return none;
 }
 
@@ -354,7 +342,7 @@ static inline void decouple(const struct setting *set, mask where, const struct 
     for (int i = 0; i < SCENE_ACTUATORS; i++)
         e->command[i] = torque[i] = choose(constant, weighted[i], torque[i]);
     law_integral_rate(&set->law, wish.error, at->integral, torque, e->integral_rate);
-    e->degraded = choose(where & degraded & LANES_NOT(constant), lanes_of(1), lanes_of(0));
+    e->degraded = lanes_where(where & degraded & LANES_NOT(constant));
 }
 
 /* Applies e->command, limited, in the lanes of `where`: torques, accelerations, contact terms. */

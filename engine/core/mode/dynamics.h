@@ -63,19 +63,7 @@ HOT void dynamics_place(const struct setting *set, contact_set touching, bool pu
 #endif
     EACH_IN (c, touching)
         scene_contact_response(&set->body, A, false, &e->trig, c, e->response[c]);
-    EACH_IN (c, touching) {
-        scene_rows rows;
-        scene_contact_rows(&set->body, &e->trig, c, NULL, lanes_of(0), &rows);
-        EACH_IN (k, touching)
-            EACH (b, 0, 2) {
-                lanes u[2];
-                if (b >= contact_unknowns(k))
-                    continue;
-                scene_rows_velocity(&set->body, c, &rows, e->response[k][b], u);
-                e->D[c][k][0][b] = u[0];
-                e->D[c][k][1][b] = u[1];
-            }
-    }
+    motion_operator(&set->body, &e->trig, touching, e->response, e->D);
 }
 
 /* What follows from velocities and torques there; contact terms but u of the contacts in `touching`

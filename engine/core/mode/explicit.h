@@ -72,29 +72,22 @@ static inline void explicit_report(const struct setting *set, const struct conta
 }
 
 #ifdef METHOD_EMBEDDED
-/* Where the torques of a state that was evaluated are: at the upper limit, at the lower, inside. */
-struct explicit_limits {
-    mask upper[ACTUATORS], lower[ACTUATORS];
-};
-
-static inline void explicit_limits(const struct law *law, const lanes *torque,
-                                   struct explicit_limits *at)
+/* Where torques are: 1 at their upper limit, -1 at the lower, 0 inside. */
+static inline void explicit_limits(const struct law *law, const lanes *torque, lanes *at)
 {
-    for (int i = 0; i < SCENE_ACTUATORS; i++) {
-        at->upper[i] = mask_less_equal(law->limit[i], torque[i]);
-        at->lower[i] = mask_less_equal(torque[i], -law->limit[i]);
-    }
+    for (int i = 0; i < SCENE_ACTUATORS; i++)
+        at[i] = lanes_where(mask_less_equal(law->limit[i], torque[i])) -
+                lanes_where(mask_less_equal(torque[i], -law->limit[i]));
 }
 
 /* Lanes where some torque is elsewhere. */
-static inline mask explicit_turned(const struct law *law, const struct explicit_limits *begin,
-                                   const lanes *torque)
+static inline mask explicit_turned(const struct law *law, const lanes *begin, const lanes *torque)
 {
-    struct explicit_limits now;
+    lanes now[ACTUATORS];
     mask turned = MASK_NONE;
-    explicit_limits(law, torque, &now);
+    explicit_limits(law, torque, now);
     for (int i = 0; i < SCENE_ACTUATORS; i++)
-        turned |= (begin->upper[i] ^ now.upper[i]) | (begin->lower[i] ^ now.lower[i]);
+        turned |= mask_less(lanes_of(0), lanes_abs(now[i] - begin[i]));
     return turned;
 }
 
@@ -124,7 +117,7 @@ COLD void explicit_look(const struct explicit_way *e, mask where, lanes x,
     if (e->touches)
         between_solve(set, e->drive->mode, &at);
     inside_tell(e->drive->mode, &at, where, report);
-    report->evaluations += choose(where, lanes_of(1), lanes_of(0));
+    report->evaluations += lanes_where(where);
 }
 
 /* What accelerations differ by between the stages and the end. */
@@ -155,11 +148,8 @@ static inline void explicit_take(const struct step *step, mask run, const struct
     lanes kz[METHOD_STAGES][ACTUATORS];
     const bool sums = law_sums(&set->law, coupled);
     const struct drive drive = {step->torque, coupled, m};
-    contact_set touches = 0;
+    const contact_set touches = contact_any(m->closed, run);
     struct dynamics e = *begin;
-    for (int c = 0; c < OWN_CONTACTS; c++)
-        if (mask_any(m->closed[c] & run))
-            touches |= contact_with(c);
     report_clear(&out->report);
     for (int i = 0; i < SCENE_ACTUATORS; i++) {
         out->torque[i] = begin->torque[i];
@@ -169,12 +159,12 @@ static inline void explicit_take(const struct step *step, mask run, const struct
     out->end = *from;
 #ifdef METHOD_EMBEDDED
     struct inside_values values = {.parabola = false};
-    struct explicit_limits limits;
+    lanes limits[ACTUATORS];
     mask turned = MASK_NONE;
     const mask decouples = mask_less(lanes_of(0), set->law.decouples);
     const bool jumps = SCENE_ACTUATORS > 0 && coupled && mask_any(decouples);
     if (jumps)
-        explicit_limits(&set->law, begin->torque, &limits);
+        explicit_limits(&set->law, begin->torque, limits);
 #endif
 #pragma GCC unroll 16
     for (int k = 0; k < METHOD_STAGES; k++) {
@@ -204,7 +194,7 @@ static inline void explicit_take(const struct step *step, mask run, const struct
         if (tableau_dip[k] >= 0)
             inside_note(&e, tableau_dip[k], &values);
         if (jumps && k > 0)
-            turned |= explicit_turned(&set->law, &limits, e.torque);
+            turned |= explicit_turned(&set->law, limits, e.torque);
 #endif
         if (tableau_b[k] != 0) {
             lanes moved[SCENE_COORDINATES];
@@ -235,9 +225,7 @@ static inline void explicit_take(const struct step *step, mask run, const struct
     out->violated |= between_violated(set, m, &e);
     out->error = lanes_of(0);
 #ifdef METHOD_EMBEDDED
-    lanes es[SCENE_COORDINATES], ew[SCENE_COORDINATES];
-    for (int i = 0; i < SCENE_COORDINATES; i++)
-        es[i] = ew[i] = lanes_of(0);
+    lanes es[SCENE_COORDINATES] = {0}, ew[SCENE_COORDINATES] = {0};
 #pragma GCC unroll 16
     for (int k = 0; k < METHOD_STAGES; k++)
         if (tableau_e[k] != 0)
@@ -252,7 +240,7 @@ static inline void explicit_take(const struct step *step, mask run, const struct
     for (int i = 0; i < SCENE_COORDINATES; i++)
         out->error = lanes_max(lanes_max(lanes_abs(es[i]), lanes_abs(ew[i])), out->error);
     if (jumps)
-        turned |= explicit_turned(&set->law, &limits, e.torque);
+        turned |= explicit_turned(&set->law, limits, e.torque);
     turned &= decouples;
     if (mask_any(turned)) {
         const lanes most = h * (EXPLICIT_JUMP * explicit_range(kw, e.acceleration));

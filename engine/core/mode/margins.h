@@ -209,12 +209,6 @@ static void event_margins(const struct event_problem *problem, const double *y,
         margin[k] += problem->mode.depth[k];
 }
 
-static void event_look(struct event_problem *problem, struct event_point *p)
-{
-    event_evaluate(problem, p->tau, p->y, &p->e);
-    event_margins(problem, p->y, &p->e, p->margin);
-}
-
 /* Depths and windows of the margins for the mode that begins at *p, with e solved there. */
 static void event_set_depths(struct event_problem *problem, const struct event_point *p)
 {

@@ -242,21 +242,6 @@ HOT mask standing_clear(contact_set touching, const struct setting *set, lanes h
     return clear;
 }
 
-/* Torques at a state: those that are held or, `coupled`, of a linear law that acts all the time;
- * none where a decoupling law is to add its own. */
-HOT void standing_torque(const struct setting *set, const lanes *held, bool coupled, const lanes *s,
-                         const lanes *w, lanes *torque)
-{
-    EACH (i, 0, SCENE_ACTUATORS)
-        torque[i] = held[i];
-    if (coupled) {
-        law_torque(&set->law, s, w, torque);
-        law_clip(&set->law, torque);
-        EACH (i, 0, SCENE_ACTUATORS)
-            torque[i] = choose(mask_less(lanes_of(0), set->law.decouples), lanes_of(0), torque[i]);
-    }
-}
-
 /* The decoupling law in the lanes where it acts, with the contacts in `touching` standing: torques
  * and what they do go into *e, evaluated with pushes and without torques there. Returns the lanes
  * where it is what it promises. */
@@ -322,7 +307,7 @@ HOT mask standing_take(contact_set touching, const struct step *step, mask run, 
             lanes moved[SCENE_COORDINATES], torque[ACTUATORS];
             if (again && k != 1)
                 continue;
-            standing_torque(set, step->torque, coupled, s, w, torque);
+            law_drive(&set->law, step->torque, coupled, s, w, torque);
             dynamics_motion(set, &at, torque, touching, &A, &e);
             if (k == 0)
                 good &= standing_rests(touching, e.u);
@@ -404,7 +389,7 @@ HOT mask standing_take(contact_set touching, const struct step *step, mask run, 
         end->approach[c] = u[0];
         end->gap[c] = scene_gap(&set->body, end->s, &end->trig, c);
     }
-    standing_torque(set, step->torque, coupled, end->s, end->w, report->torque);
+    law_drive(&set->law, step->torque, coupled, end->s, end->w, report->torque);
     EACH (i, 0, SCENE_ACTUATORS)
         if (servos) /* as forces, of the last place */
             report->torque[i] = choose(decouples, e.torque[i], report->torque[i]);

@@ -1,7 +1,7 @@
 /* rows.c - see rows.h. */
-#include "engine/scenes/rows.h"
+#include "rows.h"
 
-#include "engine/matrix.h"
+#include "matrix.h"
 
 enum { SWEEPS = 40 };
 

@@ -1,8 +1,8 @@
 /* rows.h - small systems of linear equations of any rank, by Hestenes' one-sided Jacobi rotations:
  * turned among each other until they are orthogonal, the rows of A have the singular values as
  * lengths, and A x = b, turned along, is solved row by row. */
-#ifndef STANCE_SCENES_ROWS_H
-#define STANCE_SCENES_ROWS_H
+#ifndef STANCE_ROWS_H
+#define STANCE_ROWS_H
 
 enum { STANCE_ROWS_STRIDE = 128 };
 
