@@ -329,7 +329,10 @@ static bool add_facts(const struct search_study *study, json_t *facts)
     say_add(facts, ".best", study->plain ? "%.2f %%" : "%.6g",
             (study->plain ? 100 : 1) * f->objective[best]);
     const struct scenario *const s = study->first;
-    const bool samples = s && s->search.given && s->base.sample_time > 0;
+    double least, longest = 0; /* sample times, of which a grid may have several */
+    if (s && s->search.given)
+        scenario_extent(s, offsetof(struct scenario_values, sample_time), &least, &longest);
+    const bool samples = longest != 0;
     if (samples && isnan(s->search.critical))
         say_add(facts, ".required", "two sample times");
     else if (samples && s->search.critical > 0)

@@ -198,6 +198,11 @@ static void share(struct search *search)
             parallel_broadcast(parallel, axis->value,
                                axis->count * (size_t)axis->paths * sizeof *axis->value);
     }
+    struct space *const space = &search->space; /* logarithms differ between machines */
+    parallel_broadcast(parallel, space->unit, sizeof space->unit);
+    parallel_broadcast(parallel, space->first, sizeof space->first);
+    parallel_broadcast(parallel, space->low, sizeof space->low);
+    parallel_broadcast(parallel, space->high, sizeof space->high);
     parallel_broadcast(parallel, f->length, sizeof f->length);
     const size_t known = f->length[SEARCH_CANDIDATE];
     parallel_broadcast(parallel, f->score, known * sizeof *f->score);

@@ -126,15 +126,15 @@ static json_t *search_facts(const char *file, const struct state *state)
     const size_t last = f->length[SEARCH_GENERATION] - 1;
     const double best = f->objective[f->best[last]],
                  chosen = f->chosen < 0 ? NAN : f->confirmed_objective[f->chosen];
-    return json_pack("{s:s, s:b, s:I, s:I, s:I, s:I, s:I, s:o, s:o, s:f, s:b, s:I, s:s, s:b, s:s}",
-                     "file", file, "finished", f->finished, "generations", (json_int_t)last + 1,
-                     "most_generations", (json_int_t)f->most_generations, "candidates",
-                     (json_int_t)f->length[SEARCH_CANDIDATE], "starts", (json_int_t)f->starts[last],
-                     "best", (json_int_t)f->best[last], "best_objective", objective_or_null(best),
-                     "chosen_objective", objective_or_null(chosen), ".best",
-                     f->chosen < 0 ? best : chosen, ".chosen", f->chosen >= 0, ".fresh",
-                     (json_int_t)f->length[SEARCH_START], ".note", f->note, ".complete",
-                     f->finished, ".command", "optimise");
+    return json_pack(
+        "{s:o, s:b, s:I, s:I, s:I, s:I, s:I, s:o, s:o, s:o, s:b, s:I, s:s, s:b, s:s}", "file",
+        json_string_nocheck(file), "finished", f->finished, "generations", (json_int_t)last + 1,
+        "most_generations", (json_int_t)f->most_generations, "candidates",
+        (json_int_t)f->length[SEARCH_CANDIDATE], "starts", (json_int_t)f->starts[last], "best",
+        (json_int_t)f->best[last], "best_objective", objective_or_null(best), "chosen_objective",
+        objective_or_null(chosen), ".best", objective_or_null(f->chosen < 0 ? best : chosen),
+        ".chosen", f->chosen >= 0, ".fresh", (json_int_t)f->length[SEARCH_START], ".note", f->note,
+        ".complete", f->finished, ".command", "optimise");
 }
 
 static const char search_text[] =

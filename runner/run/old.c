@@ -61,12 +61,16 @@ static bool other_scenario(struct run *run, const char *file, const char *old)
     if (read)
         adopt_differ(before.root, after.root, "",
                      &(struct adopted_differences){tell_difference, &telling});
-    if (telling.to && fclose(telling.to) == 0)
-        fprintf(stderr,
-                "stance run: %.200s was made from another scenario%s; %zu value%s of the resolved "
-                "text differ%s:\n%s%s",
-                file, file == run->file ? " (--force-scenario goes on with this one)" : "",
-                telling.count, telling.count == 1 ? "" : "s", telling.count == 1 ? "s" : "", list,
+    const bool told = telling.to && fclose(telling.to) == 0 && read;
+    fprintf(stderr, "stance run: %.200s was made from another scenario%s", file,
+            file == run->file ? " (--force-scenario goes on with this one)" : "");
+    if (!told)
+        fprintf(stderr, ": %s\n", run->message.text);
+    else if (telling.count == 0) /* other versions may write it otherwise */
+        fputs(", in whose resolved text no value differs\n", stderr);
+    else
+        fprintf(stderr, "; %zu value%s of the resolved text differ%s:\n%s%s", telling.count,
+                telling.count == 1 ? "" : "s", telling.count == 1 ? "s" : "", list,
                 telling.count > MOST_SHOWN ? "  ...\n" : "");
     free(list);
     tree_free(&before);
@@ -244,7 +248,7 @@ static bool take_rows(void *context, struct store *store, stance_message *messag
 
 void run_old_rows(struct run *run, const char *hosts)
 {
-    struct taking taking = {.old = &run->old};
+    struct taking taking = {.old = &run->old, .rows.may_stop = run->succeed};
     const struct adopted_filling filling = {
         take_rows, &taking, run->succeed ? &run->old.origin : NULL, run->parallel.size, hosts};
     char real[PATH_MAX]; /* a file that is gone on with through a link is the one that it names */
@@ -252,10 +256,7 @@ void run_old_rows(struct run *run, const char *hosts)
     const bool good = adopt_make(link ? real : run->file, &run->plan, &filling, &run->message);
     const uint64_t damaged = taking.rows.damaged;
     if (taking.rows.stopped)
-        run_stop_early(run, run->succeed
-                                ? "stopped before the file could go on with another scenario"
-                                : "stopped before it had the old file's cases: nothing is "
-                                  "stored");
+        run_stop_early(run, "stopped before the file could go on with another scenario");
     else if (!good)
         run_fail_io(run);
     else if (run->succeed)

@@ -90,7 +90,8 @@ static void take_file(struct run *run)
 
     if (!run_claim_file(run, &exists))
         return;
-    adopt_clear(run->file);
+    if (exists || o->extend_count > 0)
+        adopt_clear(run->file);
     run->resume = exists && o->resume;
     run->replace = exists && o->force;
     run_old_open(run);

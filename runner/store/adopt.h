@@ -26,6 +26,7 @@ struct adopted {
 
 /* What became of rows that were to be taken over; the numbers add up over calls. */
 struct adopted_rows {
+    bool may_stop; /* asked: where the new plan says to stop; else that is its sign of life alone */
     uint64_t copied;
     uint64_t same;        /* were there already */
     uint64_t damaged;     /* are not as their checksums say, and were left out */

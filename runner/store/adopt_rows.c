@@ -92,6 +92,15 @@ struct moving {
     stance_message *message;
 };
 
+/* Whether the new file lacks nothing of a row that the old one has. */
+static bool has_all(const struct moving *m, uint64_t row, uint64_t aim)
+{
+    const struct plan *const old = m->from->plan, *const new = m->to->plan;
+    uint64_t place;
+    return !plan_recorded(new, aim, &place) ||
+           (plan_recorded(old, row, &place) && old->record_rows == new->record_rows);
+}
+
 /* Copies the first `count` rows, at least one, whose aims ascend. */
 static bool copy_some(struct moving *m, size_t count)
 {
@@ -109,6 +118,8 @@ static bool copy_some(struct moving *m, size_t count)
         if (!found[i].whole) {
             told->damaged++;
         } else if (!there[i].whole) {
+            if (!has_all(m, m->row[i], m->aim[i]))
+                continue;
             if (plan_recorded(m->from->plan, m->row[i], &place) &&
                 plan_recorded(m->to->plan, m->aim[i], &aim) &&
                 !copy_trajectory(m->from, place, m->to, aim, m->message))
@@ -126,15 +137,6 @@ static bool copy_some(struct moving *m, size_t count)
                                     &(struct rows){.row = m->aim, .count = kept}, m->message);
 }
 
-/* Whether the new file lacks nothing of a row that the old one has. */
-static bool has_all(const struct moving *m, uint64_t row, uint64_t aim)
-{
-    const struct plan *const old = m->from->plan, *const new = m->to->plan;
-    uint64_t place;
-    return !plan_recorded(new, aim, &place) ||
-           (plan_recorded(old, row, &place) && old->record_rows == new->record_rows);
-}
-
 bool adopt_rows(const struct adopted *a, struct store *to, struct adopted_rows *told,
                 stance_message *message)
 {
@@ -150,12 +152,12 @@ bool adopt_rows(const struct adopted *a, struct store *to, struct adopted_rows *
             good = hdf_move(m.from->column[COLUMN_STATUS], H5T_STD_U8LE, r,
                             all - r < PIECE ? all - r : PIECE, HDF_READ, status) ||
                    store_failed(message, m.from->file, "read the results");
-        if (r % STORE_ROWS == 0 && plan->stop && plan->stop(plan->stop_context)) {
-            told->stopped = true;
+        if (r % STORE_ROWS == 0 && plan->stop)
+            told->stopped = plan->stop(plan->stop_context) && told->may_stop;
+        if (told->stopped)
             return false;
-        }
         const uint64_t aim = adopt_row(a, r);
-        if (!good || status[r % PIECE] == STANCE_PENDING || !has_all(&m, r, aim))
+        if (!good || status[r % PIECE] == STANCE_PENDING)
             continue;
         /* Rows may come in another order than they go to. */
         if (count == STORE_ROWS || (count > 0 && aim <= m.aim[count - 1])) {
