@@ -2,6 +2,7 @@
  * integration in small steps; the loop with all of it against the eigenvalues of its linear theory;
  * how noise makes it wander; limits by joint; convergence; what is said to rest. */
 #include "support.h"
+#include "tests.h"
 
 enum { STEPS = 400, EVERY = 4 };
 
@@ -51,9 +52,8 @@ static double follow(double command, double lag, double rate, double h, double *
     return sum / PARTS;
 }
 
-static void torques_follow(void **state)
+TEST(torques_follow)
 {
-    (void)state;
     static const struct {
         int delay;
         double lag, rate;
@@ -84,9 +84,8 @@ static void torques_follow(void **state)
         }
 }
 
-static void limits_by_joint(void **state)
+TEST(limits_by_joint)
 {
-    (void)state;
     static double torque[STEPS][2];
     stance_case c = shaken_case();
     double most[2] = {0};
@@ -124,9 +123,8 @@ static struct plant plant_of(const stance_case *c)
 
 /* Just below the critical sample time of the loop, late and lagging, a small deviation dies out;
  * just above it grows; and only the former is said to be stabilised. */
-static void late_loops_are_lost_where_theory_says(void **state)
+TEST(late_loops_are_lost_where_theory_says)
 {
-    (void)state;
     static const struct {
         int delay;
         double lag;
@@ -161,9 +159,8 @@ static void late_loops_are_lost_where_theory_says(void **state)
 }
 
 /* Root mean squares of the states, at the samples of a long run, against the covariance. */
-static void noise_wanders_as_theory_says(void **state)
+TEST(noise_wanders_as_theory_says)
 {
-    (void)state;
     enum { ROWS = 200000 };
     static const struct {
         int delay;
@@ -210,9 +207,8 @@ static void noise_wanders_as_theory_says(void **state)
 
 /* The plant with a lag is that of a time-varying torque: steps half as long, a quarter the error.
  */
-static void lags_converge(void **state)
+TEST(lags_converge)
 {
-    (void)state;
     double end[4][3];
     for (int k = 0; k < 4; k++) {
         stance_case c = balance_case(-0.04, 0);
@@ -230,16 +226,4 @@ static void lags_converge(void **state)
         print_message("# angle %d: ratios of differences %.2f, %.2f\n", i, first, second);
         assert_true(first > 3 && first < 5 && second > 3.5 && second < 4.5);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(torques_follow),
-        cmocka_unit_test(limits_by_joint),
-        cmocka_unit_test(late_loops_are_lost_where_theory_says),
-        cmocka_unit_test(noise_wanders_as_theory_says),
-        cmocka_unit_test(lags_converge),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -3,6 +3,7 @@
  * sample time found by simulation. */
 #include "long.h"
 #include "support.h"
+#include "tests.h"
 
 static void run(const char *method, const stance_case *cases, stance_result *results, size_t n)
 {
@@ -34,23 +35,20 @@ static void count(double theta, uint32_t contacts, int outcome[5])
     }
 }
 
-static void test_1_recovers(void **state)
+TEST(test_1_recovers)
 {
-    (void)state;
     int outcome[5] = {0};
     count(-0.04, 1, outcome);
     assert_int_equal(outcome[STANCE_STABILISED], 2 * SEEDS);
 }
-static void test_2_falls(void **state)
+TEST(test_2_falls)
 {
-    (void)state;
     int outcome[5] = {0};
     count(0.029, 1, outcome);
     assert_int_equal(outcome[STANCE_FELL], 2 * SEEDS);
 }
-static void test_1_scuffs_with_both_feet(void **state)
+TEST(test_1_scuffs_with_both_feet)
 {
-    (void)state;
     int outcome[5] = {0};
     count(-0.04, 3, outcome);
     print_message("# both feet: %d stabilised, %d fell, %d rested\n", outcome[STANCE_STABILISED],
@@ -60,9 +58,8 @@ static void test_1_scuffs_with_both_feet(void **state)
 
 /* ---- the domain ---- */
 
-static void interval_at_rest(void **state)
+TEST(interval_at_rest)
 {
-    (void)state;
     enum { N = 721 };
     stance_case *c = calloc(N, sizeof *c);
     stance_result *r = calloc(N, sizeof *r);
@@ -92,9 +89,8 @@ static int descending(const void *a, const void *b)
     return (x < y) - (x > y);
 }
 
-static void friction_used_in_the_domain(void **state)
+TEST(friction_used_in_the_domain)
 {
-    (void)state;
     enum { MOST = 96 };
     const int N = long_tests() ? MOST : MOST / 2;
     stance_case *c = calloc((size_t)(N * N), sizeof *c);
@@ -123,9 +119,8 @@ static void friction_used_in_the_domain(void **state)
 
 /* Against the pinned robot with three coordinates, integrated by another program: equal labels
  * everywhere but within one cell of the boundary. */
-static void domain_against_pinned_robot(void **state)
+TEST(domain_against_pinned_robot)
 {
-    (void)state;
     enum { N = 64 };
     json_t *root = reference_load("tests/reference/pinned_basin.json");
     json_t *rows = json_object_get(root, "labels");
@@ -212,9 +207,8 @@ static double simulated_limit(const char *method, double step)
     return low;
 }
 
-static void critical_sample_time_by_simulation(void **state)
+TEST(critical_sample_time_by_simulation)
 {
-    (void)state;
     const double theory = 0.1363;
     static const struct {
         const char *method;
@@ -229,18 +223,4 @@ static void critical_sample_time_by_simulation(void **state)
                       1e3 * expected[i].step, T, 100 * (T / theory - 1));
         assert_true(fabs(T / theory - 1 - expected[i].shift) < expected[i].tolerance);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_1_recovers),
-        cmocka_unit_test(test_2_falls),
-        cmocka_unit_test(test_1_scuffs_with_both_feet),
-        cmocka_unit_test(interval_at_rest),
-        cmocka_unit_test(friction_used_in_the_domain),
-        cmocka_unit_test(domain_against_pinned_robot),
-        cmocka_unit_test(critical_sample_time_by_simulation),
-    };
-    return cmocka_run_group_tests_name("balance", tests, NULL, NULL);
 }

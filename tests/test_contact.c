@@ -11,6 +11,7 @@
 #include "dense.h"
 #include "long.h"
 #include "support.h"
+#include "tests.h"
 
 struct problem {
     double D[4][4], v[4], e[2], friction; /* v: velocities without impulses; e: restitution terms */
@@ -223,34 +224,19 @@ static int problems(void)
 {
     return long_tests() ? 1000000 : 30000;
 }
-static void problems_of_the_default_robot(void **state)
+TEST(problems_of_the_default_robot)
 {
-    (void)state;
     least_energy("default robot, e = 0", true, false, problems());
 }
-static void default_robot_rebounds(void **state)
+TEST(default_robot_rebounds)
 {
-    (void)state;
     least_energy("default robot, e > 0", true, true, problems());
 }
-static void random_robots(void **state)
+TEST(random_robots)
 {
-    (void)state;
     least_energy("random robots, e = 0", false, false, problems());
 }
-static void random_robots_rebound(void **state)
+TEST(random_robots_rebound)
 {
-    (void)state;
     least_energy("random robots, e > 0", false, true, problems());
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(problems_of_the_default_robot),
-        cmocka_unit_test(default_robot_rebounds),
-        cmocka_unit_test(random_robots),
-        cmocka_unit_test(random_robots_rebound),
-    };
-    return cmocka_run_group_tests_name("contact", tests, NULL, NULL);
 }

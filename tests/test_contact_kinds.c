@@ -25,6 +25,7 @@ static const int scene_other[SCENE_CONTACTS] = {-1, -1, -1, -1, -1, -1, 7, 6, 9,
 #include "dense.h"
 #include "long.h"
 #include "support.h"
+#include "tests.h"
 
 enum { M = 12, ROWS = DENSE_ROWS, MOST = 8 };
 
@@ -316,11 +317,10 @@ static void family(const struct family *f)
     assert_true(worst < 1e-9);
 }
 
-#define FAMILY(function, ...)                                                                      \
-    static void function(void **state)                                                             \
+#define FAMILY(name, ...)                                                                          \
+    TEST(name)                                                                                     \
     {                                                                                              \
-        (void)state;                                                                               \
-        family(&(struct family){#function, __VA_ARGS__});                                          \
+        family(&(struct family){#name, __VA_ARGS__});                                              \
     }
 FAMILY(one_point, 1, 0, 0, 0, false, 20000, 0.0005)
 FAMILY(two_points, 2, 0, 0, 0, false, 10000, 0.001)
@@ -337,25 +337,3 @@ FAMILY(sole_point_stop, 1, 1, 1, 0, true, 4000, 0.0005)
 FAMILY(one_foot_of_two_points, 2, 0, 0, 1, false, 10000, 0)
 FAMILY(two_feet_of_two_points, 4, 0, 0, 2, false, 2000, 0)
 FAMILY(two_feet_of_three_points, 6, 0, 0, 2, false, 60, 0)
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(one_point),
-        cmocka_unit_test(two_points),
-        cmocka_unit_test(three_points_rebound),
-        cmocka_unit_test(four_points),
-        cmocka_unit_test(five_points),
-        cmocka_unit_test(six_points),
-        cmocka_unit_test(stops),
-        cmocka_unit_test(points_and_stops),
-        cmocka_unit_test(one_sole),
-        cmocka_unit_test(two_soles),
-        cmocka_unit_test(two_soles_rebound),
-        cmocka_unit_test(sole_point_stop),
-        cmocka_unit_test(one_foot_of_two_points),
-        cmocka_unit_test(two_feet_of_two_points),
-        cmocka_unit_test(two_feet_of_three_points),
-    };
-    return cmocka_run_group_tests_name("contact kinds", tests, NULL, NULL);
-}

@@ -2,6 +2,7 @@
  * control.json (other equations, other libraries: see control.py), closed formulas and the figures
  * that were published for the default robot. */
 #include "linear.h"
+#include "tests.h"
 
 #define REFERENCE "tests/reference/control.json"
 
@@ -84,9 +85,8 @@ static void compare_case(const json_t *record)
     compare_design(record, name, A, B);
 }
 
-static void reference_cases(void **state)
+TEST(reference_cases)
 {
-    (void)state;
     json_t *root = reference_load(REFERENCE);
     const json_t *cases = json_object_get(root, "cases");
     size_t i;
@@ -100,9 +100,8 @@ static void reference_cases(void **state)
 }
 
 /* What is known of the default robot on one foot, to the digits known. */
-static void published_figures(void **state)
+TEST(published_figures)
 {
-    (void)state;
     const double open_re[6] = {-5.616145, 5.616145, -3.601149, 3.601149, 0, 0};
     const double open_im[6] = {0, 0, 0, 0, 4.320429, -4.320429};
     const double gain[12] = {318.97,  308.17,  -43.08, 83.55,  71.79,  -7.38,
@@ -135,9 +134,8 @@ static void published_figures(void **state)
 
 /* Every branch of every unknown balances: no moment about the foot, by the stick figure's own
  * points; and the torques obey the paper's (20) ... (22). */
-static void equilibria_balance(void **state)
+TEST(equilibria_balance)
 {
-    (void)state;
     const stance_scene *scene = stance_scene_find("biped");
     uint64_t seed = 7;
     int found = 0;
@@ -181,9 +179,8 @@ static void equilibria_balance(void **state)
     assert_true(found > 800);
 }
 
-static void standing_is_exact(void **state)
+TEST(standing_is_exact)
 {
-    (void)state;
     const stance_scene *scene = stance_scene_find("biped");
     uint64_t seed = 3;
     for (int i = 0; i < 20000; i++) {
@@ -215,9 +212,8 @@ static void standing_is_exact(void **state)
 }
 
 /* Kinetic energy by differences of the stick figure along the motion, potential by its heights. */
-static void energy_of_point_masses(void **state)
+TEST(energy_of_point_masses)
 {
-    (void)state;
     const stance_scene *scene = stance_scene_find("biped");
     const double robot[STANCE_MAX_ROBOT] = {0.6, 0.4, 1.1,
                                             1.7, 3.1, [STANCE_ROBOT_GRAVITY] = STANCE_GRAVITY},
@@ -244,9 +240,8 @@ static void energy_of_point_masses(void **state)
     }
 }
 
-static void equilibrium_messages(void **state)
+TEST(equilibrium_messages)
 {
-    (void)state;
     const stance_scene *scene = stance_scene_find("biped");
     const double heavy_trunk[STANCE_MAX_ROBOT] = {
         0.4, 0.6, 1, 9, 1, [STANCE_ROBOT_GRAVITY] = STANCE_GRAVITY};
@@ -311,9 +306,8 @@ static void equilibrium_messages(void **state)
 /* ---- placement in general -------------------------------------------------------------------- */
 
 /* Random systems of every shape, with repeated inputs, real poles and pairs. */
-static void places_any_system(void **state)
+TEST(places_any_system)
 {
-    (void)state;
     uint64_t seed = 11;
     for (int round = 0; round < 300; round++) {
         const int n = 1 + round % 8, m = 1 + round / 8 % (n + 1);
@@ -349,9 +343,8 @@ static void places_any_system(void **state)
 }
 
 /* One input leaves no choice: the gain of a companion form can be read off the polynomial. */
-static void single_input(void **state)
+TEST(single_input)
 {
-    (void)state;
     const double A[9] = {0, 1, 0, 0, 0, 1, 2, -3, 4}, B[3] = {0, 0, 2};
     const double re[3] = {-1, -2, -2}, im[3] = {0, 3, -3}; /* (s + 1)(s^2 + 4 s + 13) */
     const double wanted[3] = {(2 + 13) / 2.0, (-3 + 17) / 2.0, (4 + 5) / 2.0};
@@ -362,9 +355,8 @@ static void single_input(void **state)
 }
 
 /* As many inputs as states: the best eigenvectors are orthonormal, also for a repeated pole. */
-static void full_inputs(void **state)
+TEST(full_inputs)
 {
-    (void)state;
     const double A[9] = {1, 2, 3, 4, 5, 6, 7, 8, 10}, B[9] = {1, 0, 1, 0, 2, 0, 0, 1, 1};
     const double re[3] = {-1, -1, -1}, pair_re[3] = {-1, -2, -1}, none[3] = {0},
                  pair_im[3] = {2, 0, -2};
@@ -386,9 +378,8 @@ static void full_inputs(void **state)
 
 /* A double pole on two inputs, and the mirror rule: the stiffer of two equally robust gains, which
  * does not depend on the order of the poles. */
-static void repeated_and_reordered(void **state)
+TEST(repeated_and_reordered)
 {
-    (void)state;
     const stance_equilibrium e = equilibrium_of(DEFAULT_ROBOT, 0, -0.41, NAN, 0.82, false);
     const double twice[6] = {-3, -3.3, -3, -3.9, -4.2, -4.2}, none[6] = {0};
     const double reversed[6] = {-3.9, -4.6, -3, -4.2, -3.3, -3.6};
@@ -408,9 +399,8 @@ static void repeated_and_reordered(void **state)
     assert_matrix(12, other, K, 1e-7, "poles in another order");
 }
 
-static void placement_messages(void **state)
+TEST(placement_messages)
 {
-    (void)state;
     /* Two chains of integrators, lengths 2 and 1, an input each; and a mode out of reach. */
     const double A[9] = {0, 1, 0, 0, 0, 0, 0, 0, 0}, B[6] = {0, 0, 1, 0, 0, 1};
     const double stuck[4] = {1, 0, 0, 2}, push[2] = {1, 0}, nothing[2] = {0, 0};
@@ -478,9 +468,8 @@ static void placement_messages(void **state)
 }
 
 /* Rosenbrock: chains of lengths 3 and 1 cannot have two double poles with full eigenvectors. */
-static void spread_too_thin(void **state)
+TEST(spread_too_thin)
 {
-    (void)state;
     const double A[16] = {0, 1, 0, 0, 0, 0, 1, 0}, B[8] = {0, 0, 0, 0, 1, 0, 0, 1};
     const double re[4] = {-1, -1, -2, -2}, im[4] = {0};
     double K[8];
@@ -493,9 +482,8 @@ static void spread_too_thin(void **state)
 
 /* ---- eigenvalues, rank, sampling ------------------------------------------------------------- */
 
-static void eigenvalues_are_sorted(void **state)
+TEST(eigenvalues_are_sorted)
 {
-    (void)state;
     const double A[25] = {[0] = 3, [6] = -1, [7] = 2, [11] = -2, [12] = -1, [18] = -7, [24] = -1};
     const double wanted_re[5] = {-7, -1, -1, -1, 3}, wanted_im[5] = {0, -2, 0, 2, 0};
     double re[5], im[5];
@@ -510,9 +498,8 @@ static void eigenvalues_are_sorted(void **state)
 }
 
 /* The rank, and here even the singular values, do not depend on the unit of time. */
-static void kalman_rank(void **state)
+TEST(kalman_rank)
 {
-    (void)state;
     const stance_equilibrium e = equilibrium_of(DEFAULT_ROBOT, 0, -0.41, NAN, 0.82, false);
     const double chain[9] = {0, 1, 0, 0, 0, 1, 0, 0, 0}, last[3] = {0, 0, 1}, first[3] = {1, 0, 0};
     double A[36], B[12], sv[6], slow[6];
@@ -533,9 +520,8 @@ static void kalman_rank(void **state)
     assert_int_equal(rank, 1);
 }
 
-static void discretisation(void **state)
+TEST(discretisation)
 {
-    (void)state;
     const double w = 3, T = 0.7, A[9] = {0, 1, 0, -w * w, 0, 0, 0, 0, -0.5}, B[3] = {0, 1, 2};
     const double wanted_A[9] = {cos(w * T), sin(w * T) / w, 0, -w * sin(w * T), cos(w * T), 0, 0,
                                 0,          exp(-0.5 * T)};
@@ -554,9 +540,8 @@ static void discretisation(void **state)
     assert_int_equal(stance_discretise(PLANT(3, 1, A, B), NAN, Ad, Bd), STANCE_BAD_ARGUMENT);
 }
 
-static void critical_sample_times(void **state)
+TEST(critical_sample_times)
 {
-    (void)state;
     double T;
     /* x' = a x + u, u = -k x: the sampled pole exp(a T) (1 - k / a) + k / a passes -1. */
     for (int i = 0; i < 20; i++) {
@@ -588,9 +573,8 @@ static void critical_sample_times(void **state)
 
 /* A sampled oscillator under rate feedback becomes unstable and stable again as T passes half
  * turns; it is the first loss that counts. Looked for by brute force. */
-static void first_crossing(void **state)
+TEST(first_crossing)
 {
-    (void)state;
     uint64_t seed = 17;
     int lost = 0;
     for (int i = 0; i < 40; i++) {
@@ -615,28 +599,4 @@ static void first_crossing(void **state)
         }
     }
     assert_true(lost > 10);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(reference_cases),
-        cmocka_unit_test(published_figures),
-        cmocka_unit_test(equilibria_balance),
-        cmocka_unit_test(standing_is_exact),
-        cmocka_unit_test(energy_of_point_masses),
-        cmocka_unit_test(equilibrium_messages),
-        cmocka_unit_test(places_any_system),
-        cmocka_unit_test(single_input),
-        cmocka_unit_test(full_inputs),
-        cmocka_unit_test(repeated_and_reordered),
-        cmocka_unit_test(placement_messages),
-        cmocka_unit_test(spread_too_thin),
-        cmocka_unit_test(eigenvalues_are_sorted),
-        cmocka_unit_test(kalman_rank),
-        cmocka_unit_test(discretisation),
-        cmocka_unit_test(critical_sample_times),
-        cmocka_unit_test(first_crossing),
-    };
-    return cmocka_run_group_tests_name("control", tests, NULL, NULL);
 }

@@ -1,6 +1,7 @@
 /* The decoupling law: every pair of coordinates follows the error dynamics that it promises, in
  * flight and on a foot; singular postures, torque limits, delays, switching; lanes. */
 #include "support.h"
+#include "tests.h"
 
 enum { PAIRS = 10, HORIZON = 20 };
 
@@ -101,9 +102,8 @@ static double worst_error(const char *method, bool stands, double ki)
     return worst;
 }
 
-static void pairs_follow(void **state)
+TEST(pairs_follow)
 {
-    (void)state;
     static const char *const methods[] = {"event-driven", "capturing", "lagrange"};
     for (int m = 0; m < 3; m++)
         for (int stands = 0; stands < 2; stands++) {
@@ -116,9 +116,8 @@ static void pairs_follow(void **state)
 }
 
 /* Sampled, and once a step with implicit methods, the law converges to the continuous one. */
-static void sampling_converges(void **state)
+TEST(sampling_converges)
 {
-    (void)state;
     static const char *const methods[] = {"capturing", "implicit", "midpoint"};
     for (int m = 0; m < 3; m++) {
         double error[2];
@@ -183,9 +182,8 @@ static void compare_methods(stance_case c, const double tolerance[2], double wor
 
 /* Where a foot's slip comes to rest or turns, errors go on shrinking with the tolerance: law and
  * contact mode agree about which slip is none. */
-static void slips_turn(void **state)
+TEST(slips_turn)
 {
-    (void)state;
     static const double tolerance[2] = {1e-6, 1e-9}, bound[2] = {3e-5, 3e-8};
     double worst[2] = {0, 0};
     int turned = 0;
@@ -204,9 +202,8 @@ static void slips_turn(void **state)
 
 /* Near a singular posture torques are thrown from one limit to the other inside a step: errors go
  * on shrinking with the tolerance. */
-static void limits_turn(void **state)
+TEST(limits_turn)
 {
-    (void)state;
     static const double tolerance[2] = {1e-6, 1e-8}, bound[2] = {1e-5, 1e-7};
     double worst[2] = {0, 0};
     for (int k = 0; k < 8; k++) {
@@ -224,9 +221,8 @@ static void limits_turn(void **state)
 }
 
 /* The inertia matrix against the kinetic energy. */
-static void inertia_is_energy(void **state)
+TEST(inertia_is_energy)
 {
-    (void)state;
     const stance_scene *scene = stance_scene_find("biped");
     const stance_case c = plain_case();
     uint64_t seed = 4;
@@ -246,9 +242,8 @@ static void inertia_is_energy(void **state)
 
 /* Driven into a singular posture the law goes on with finite torques and says so; with a limit it
  * stays within it. */
-static void singular_is_survived(void **state)
+TEST(singular_is_survived)
 {
-    (void)state;
     for (int limited = 0; limited < 2; limited++) {
         static const double upright[3] = {0, 0, 0}; /* no torque lifts the trunk here */
         stance_case c = pair_case(0, upright, false, 0);
@@ -271,9 +266,8 @@ static void singular_is_survived(void **state)
 
 /* Errors that cannot be driven away do not pile up: not while a torque is at its limit, and not
  * beyond the integral's own. */
-static void integrals_are_bounded(void **state)
+TEST(integrals_are_bounded)
 {
-    (void)state;
     stance_case c = pair_case(9, flight[9], false, 50);
     stance_trajectory t = {.interval = 0.01, .rows = 601};
     double position[601 * 5], velocity[601 * 5], torque[601 * 2], force[601 * 4], gap[601 * 2];
@@ -301,9 +295,8 @@ static void integrals_are_bounded(void **state)
 
 /* A one-sample delay: the linear loop with it loses its stability where the spectral radius of
  * [[Ad, Bd], [-K, 0]] reaches 1. */
-static void delay_shortens(void **state)
+TEST(delay_shortens)
 {
-    (void)state;
     const stance_scene *scene = stance_scene_find("biped");
     stance_case c = balance_case(1e-6, 0);
     const stance_equilibrium_choice choice = {1, {-0.41, NAN, 0.82}, 0};
@@ -353,9 +346,8 @@ static void delay_shortens(void **state)
 
 /* Inside the ellipsoid a switching law is the linear one, outside it is the other: one sample from
  * either side equals the run with that law alone. */
-static void switching_is_either(void **state)
+TEST(switching_is_either)
 {
-    (void)state;
     for (int far = 0; far < 2; far++) {
         stance_case alone = balance_case(-0.02, 0), c;
         stance_result a, b;
@@ -381,9 +373,8 @@ static void switching_is_either(void **state)
 
 /* A law without gains that acts all the time: a constant torque, here on legs in free fall, where
  * both turn against the trunk with the accelerations of the inertia matrix. */
-static void constant_torque_acts(void **state)
+TEST(constant_torque_acts)
 {
-    (void)state;
     static const char *const methods[] = {"implicit", "midpoint", "capturing", "lagrange",
                                           "event-driven"};
     for (int m = 0; m < 5; m++) {
@@ -406,9 +397,8 @@ static void constant_torque_acts(void **state)
 }
 
 /* Cases beside one that sums errors do what they do alone. */
-static void neighbours_do_not_matter(void **state)
+TEST(neighbours_do_not_matter)
 {
-    (void)state;
     static const double walk[3] = {0, -0.1, 1.4};
     static const double ki[4] = {0, 1, 5, 7};
     stance_case cases[4];
@@ -431,9 +421,8 @@ static void neighbours_do_not_matter(void **state)
 
 /* A state in which no reactions fit the torques that the law wants (found by a program of others):
  * it takes the reactions without torques, and counts it. */
-static void missing_reactions_are_counted(void **state)
+TEST(missing_reactions_are_counted)
 {
-    (void)state;
     static const double q[5] = {0, 1.0318272571437432, -0.23655252531852627, -0.059493821218375875,
                                 -0.28928725863443333};
     static const double v[5] = {-0.5399258832462454, 0.16260795914402282, 0.062380140162429085,
@@ -469,9 +458,8 @@ static void missing_reactions_are_counted(void **state)
 }
 
 /* An integral that has brought a torque to its limit lets it go again. */
-static void integrals_unwind(void **state)
+TEST(integrals_unwind)
 {
-    (void)state;
     static const double posture[3] = {0, 0.3, -0.3};
     stance_case c = pair_case(9, posture, false, 1000);
     stance_result r;
@@ -491,9 +479,8 @@ static void integrals_unwind(void **state)
 }
 
 /* The same bits in every lane of every width, sampled and continuous, falling and standing. */
-static void lanes_agree(void **state)
+TEST(lanes_agree)
 {
-    (void)state;
     enum { N = 120 };
     static const char *const methods[] = {"implicit", "capturing", "lagrange"};
     stance_case cases[N];
@@ -520,25 +507,4 @@ static void lanes_agree(void **state)
                 assert_memory_equal(&first[i], &other[i], sizeof first[i]);
         }
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(pairs_follow),
-        cmocka_unit_test(sampling_converges),
-        cmocka_unit_test(slips_turn),
-        cmocka_unit_test(limits_turn),
-        cmocka_unit_test(inertia_is_energy),
-        cmocka_unit_test(singular_is_survived),
-        cmocka_unit_test(integrals_are_bounded),
-        cmocka_unit_test(delay_shortens),
-        cmocka_unit_test(switching_is_either),
-        cmocka_unit_test(lanes_agree),
-        cmocka_unit_test(constant_torque_acts),
-        cmocka_unit_test(neighbours_do_not_matter),
-        cmocka_unit_test(missing_reactions_are_counted),
-        cmocka_unit_test(integrals_unwind),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,6 +1,7 @@
 /* The event-driven reference: independent figures, conserved quantities, closed forms, agreement
  * with the method that never locates an event, and events that are easy to miss. */
 #include "support.h"
+#include "tests.h"
 
 #include <unistd.h>
 
@@ -37,9 +38,8 @@ static stance_case event_case(const char *name, double step, double time)
 
 /* The drop of tests/reference/drop.json: position to 1e-11 wherever it is given in full digits,
  * velocity too, events as many as there. */
-static void drop_against_reference(void **state)
+TEST(drop_against_reference)
 {
-    (void)state;
     static const double robot[5] = {0.5, 0.5, 1, 1, 3}, q[5] = {0, 1.5, -0.5, 0.9, -1};
     json_t *root = reference_load("tests/reference/drop.json"), *row;
     json_t *second = json_object_get(root, "second");
@@ -118,9 +118,8 @@ static bool feet_meet(const stance_trajectory *t, double end)
 
 /* Two methods that have the equations of motion in common but neither how they integrate them nor
  * how they find and cross events: where both come to the end they agree. */
-static void agrees_with_capturing(void **state)
+TEST(agrees_with_capturing)
 {
-    (void)state;
     enum { N = 300 };
     uint64_t seed = 2024;
     int both = 0, gave_up[2] = {0}, meet = 0;
@@ -184,9 +183,8 @@ static void momenta(const double *robot, const double *q, const double *v, doubl
 
 /* In flight without torques: energy and the momenta, less what gravity adds, stay. With a servo
  * the momenta stay, and the energy changes by the work. */
-static void flight_conserves(void **state)
+TEST(flight_conserves)
 {
-    (void)state;
     uint64_t seed = 5;
     double worst = 0;
     for (int i = 0; i < 40; i++) {
@@ -232,9 +230,8 @@ static void flight_conserves(void **state)
 
 /* A ball at e < 1 comes to the instant at which its bounces accumulate and not beyond; every bounce
  * before that is where it belongs. */
-static void zeno_fails(void **state)
+TEST(zeno_fails)
 {
-    (void)state;
     for (double e = 0.1; e < 0.95; e += 0.2)
         for (double step = 1e-4; step < 0.05; step *= 10) {
             stance_case c = event_case("ball", step, 30);
@@ -249,9 +246,8 @@ static void zeno_fails(void **state)
 }
 
 /* A rod that slides on one end: refused where no force, or several, fit the accelerations. */
-static void painleve_fails(void **state)
+TEST(painleve_fails)
 {
-    (void)state;
     json_t *root = reference_load("tests/reference/known.json"), *row;
     size_t i, refused = 0;
     json_array_foreach(json_object_get(json_object_get(root, "painleve"), "cases"), i, row)
@@ -320,9 +316,8 @@ static void graze(const char *method, double tolerance, double least)
             }
     }
 }
-static void grazing_is_seen(void **state)
+TEST(grazing_is_seen)
 {
-    (void)state;
     graze("event-driven", 1e-12, 0);
     graze("capturing", 1e-10, 1e-7);
     graze("capturing", 1e-8, 1e-5);
@@ -369,9 +364,8 @@ static void short_slips(const char *method, double tolerance, double least)
                             (tolerance > 1e-11 ? tolerance : 1e-6 * (double)wanted + 1e-14));
             }
 }
-static void short_slip_is_seen(void **state)
+TEST(short_slip_is_seen)
 {
-    (void)state;
     short_slips("event-driven", 1e-12, 0);
     short_slips("capturing", 1e-10, 1e-2);
     short_slips("capturing", 1e-8, 1e-1);
@@ -379,9 +373,8 @@ static void short_slip_is_seen(void **state)
 
 /* Rebounds die out on a robot whose servo presses the foot onto the ground a hundred times harder
  * than its weight: the impacts that count no longer depend on that. */
-static void pressed_rebounds_end(void **state)
+TEST(pressed_rebounds_end)
 {
-    (void)state;
     stance_case c = event_case("biped", 0.01, 0.8);
     static const double start[] = {-0.6190420068784885, 0.6001175971973135, -0.8832618334430357};
     c.position[1] = 1.3;
@@ -399,9 +392,8 @@ static void pressed_rebounds_end(void **state)
 }
 
 /* What a case gives depends on nothing but the case, and SUNDIALS says nothing. */
-static void cases_are_independent(void **state)
+TEST(cases_are_independent)
 {
-    (void)state;
     enum { N = 60 };
     stance_case cases[N], reversed[N];
     stance_result results[N], back[N];
@@ -446,16 +438,4 @@ static void cases_are_independent(void **state)
     for (int i = 0; i < 12; i++)
         assert_memory_equal(&rods_there[i], &rods_back[11 - i], sizeof rods_there[i]);
     assert_ptr_equal(kernel_of("event-driven", "avx2"), kernel);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(drop_against_reference), cmocka_unit_test(agrees_with_capturing),
-        cmocka_unit_test(flight_conserves),       cmocka_unit_test(zeno_fails),
-        cmocka_unit_test(painleve_fails),         cmocka_unit_test(grazing_is_seen),
-        cmocka_unit_test(short_slip_is_seen),     cmocka_unit_test(cases_are_independent),
-        cmocka_unit_test(pressed_rebounds_end),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

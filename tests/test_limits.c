@@ -3,6 +3,7 @@
  * which must never run away. */
 #include "long.h"
 #include "support.h"
+#include "tests.h"
 
 #include <complex.h>
 
@@ -113,9 +114,8 @@ static bool swings_up(const char *method, double h, double kp, double kd, const 
     return r.status != STANCE_DONE || size[2] > 1.01 * size[0] || size[1] > 1e-3;
 }
 
-static void explicit_steps(void **state)
+TEST(explicit_steps)
 {
-    (void)state;
     static const double stiffness[] = {20, 500, 2e4, 1e6}, damping[] = {0, 0.3, 1, 3};
     double worst = 0;
     for (size_t i = 0; i < 4; i++)
@@ -246,9 +246,8 @@ static double simulated_limit(const char *method, const stance_case *base, int p
     return low + gap * (TRIES - 1) / 2;
 }
 
-static void sampled_controllers(void **state)
+TEST(sampled_controllers)
 {
-    (void)state;
     double worst[3] = {0};
     const size_t n = sizeof balances / sizeof *balances;
     for (size_t i = 0; i < n; i++) {
@@ -475,9 +474,8 @@ static void run_wild(const char *method, int batches, struct tally tally[GROUPS]
     }
 }
 
-static void implicit_steps(void **state)
+TEST(implicit_steps)
 {
-    (void)state;
     static const char *const methods[] = {"implicit", "midpoint"};
     const int batches = long_tests() ? 1000 : 5;
     for (int m = 0; m < 2; m++) {
@@ -515,9 +513,8 @@ static stance_case endless_case(double damping)
 
 /* However hard a case is, it ends, and says why: by the attempts of one step, or by the sum of its
  * evaluations, 1e7 and 1e3 a step. Without these bounds this test would not end. */
-static void work_is_bounded(void **state)
+TEST(work_is_bounded)
 {
-    (void)state;
     static const char *const methods[] = {"event-driven", "lagrange", "implicit", "midpoint"};
     stance_case c = endless_case(4.7e6);
     stance_result r;
@@ -533,9 +530,8 @@ static void work_is_bounded(void **state)
 
 /* Landings in steps of 10 ms: what is left of a velocity that the law forbids, of the stored state.
  */
-static void little_is_left_after_landings(void **state)
+TEST(little_is_left_after_landings)
 {
-    (void)state;
     static const char *const methods[] = {"implicit", "midpoint"};
     const int count = long_tests() ? 100000 : 20000;
     for (int m = 0; m < 2; m++) {
@@ -557,16 +553,4 @@ static void little_is_left_after_landings(void **state)
                       above, count, largest);
         assert_true(above < count / 1000);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(little_is_left_after_landings),
-        cmocka_unit_test(work_is_bounded),
-        cmocka_unit_test(explicit_steps),
-        cmocka_unit_test(sampled_controllers),
-        cmocka_unit_test(implicit_steps),
-    };
-    return cmocka_run_group_tests_name("limits", tests, NULL, NULL);
 }

@@ -2,6 +2,7 @@
  * forms, against all directions, and against torques that steer a point just inside home. */
 #include "linear.h"
 #include "long.h"
+#include "tests.h"
 
 #include "runner/plan/design.h"
 
@@ -85,9 +86,8 @@ static stance_null_set *made(int n, int m, const double *A, const double *B, con
 }
 
 /* x' = a x + b u: |x| < b u / a, by sides. */
-static void one_mode(void **state)
+TEST(one_mode)
 {
-    (void)state;
     const double a = 2, b = 3, low = -1, high = 5;
     stance_null_set *const set = made(1, 1, &a, &b, &low, &high);
     double re[K], im[K];
@@ -103,9 +103,8 @@ static void one_mode(void **state)
 
 /* diag(l1, l2), one symmetric torque |u| <= 1, b = (1, 1): the boundary is traced by u switching
  * once at time T: z = -(1/l) (1 - 2 exp(-l T)) of each mode (Hu and Lin, section 2.4). */
-static void two_modes(void **state)
+TEST(two_modes)
 {
-    (void)state;
     const double A[4] = {3, 0, 0, 1.2}, B[2] = {1, 1}, low = -1, high = 1;
     stance_null_set *const set = made(2, 1, A, B, &low, &high);
     for (double T = 0; T < 6; T += 0.01) {
@@ -273,9 +272,8 @@ static void compare(uint64_t *seed, const struct plant *p, const stance_null_set
 }
 
 /* Of 1 to 5 modes, pairs among them. */
-static void support_is_the_integral(void **state)
+TEST(support_is_the_integral)
 {
-    (void)state;
     uint64_t seed = 3;
     struct errors e = {0};
     const int rounds = long_tests() ? 10 : 3;
@@ -329,9 +327,8 @@ static void project(struct plant *p, double shift)
 }
 
 /* Robots with random numbers, of one, two and three unstable modes beside others. */
-static void robots(void **state)
+TEST(robots)
 {
-    (void)state;
     static const struct {
         const char *file, *robot;
         int modes;
@@ -471,9 +468,8 @@ static void random_modes(uint64_t *seed, struct modal *p)
 
 /* The set of all of it, in a random basis, against that of the unstable modes that torques reach
  * alone, wherever what they do not reach and what lasts is 0; and nothing elsewhere. */
-static void unreached_modes(void **state)
+TEST(unreached_modes)
 {
-    (void)state;
     uint64_t seed = 11;
     int lasting[KINDS] = {0}, decaying = 0;
     double worst = 0;
@@ -553,9 +549,8 @@ static void unreached_modes(void **state)
 
 /* How little of a torque counts: far less than what moves a robot, more than rounding. With x2 = 0
  * the boundary is where exp(-2 T) = 1/2 (two_modes): x1 = b (sqrt(2) - 1). */
-static void hardly_reached(void **state)
+TEST(hardly_reached)
 {
-    (void)state;
     const double A[4] = {1, 0, 0, 2}, low = -1, high = 1, x[2] = {1e-7, 0};
     for (int i = 0; i < 2; i++) {
         const double B[2] = {i ? 1e-14 : 1e-7, 1};
@@ -574,9 +569,8 @@ static void hardly_reached(void **state)
  * body moved as well, a cart so that the centre of mass stays where it was, a wheel so that its own
  * angle does; and the first with a speed. Without anything else to hold it the cart keeps place and
  * momentum of the centre of mass, with damping d the momentum + d times its place. */
-static void drifting_robots(void **state)
+TEST(drifting_robots)
 {
-    (void)state;
     static const struct {
         const char *what, *first, *parent;
         int poles, unreached;
@@ -648,9 +642,8 @@ static void drifting_robots(void **state)
     }
 }
 
-static void refusals(void **state)
+TEST(refusals)
 {
-    (void)state;
     const double A[4] = {1, 0, 0, 2}, B[2] = {0, 1}, low = -1, high = 1, none = -INFINITY, up = 0.1;
     stance_null_set *set;
     stance_message message;
@@ -664,19 +657,4 @@ static void refusals(void **state)
     set = made(2, 1, calm, B, &low, &high);
     assert_true(stance_null_set_holds(set, x) && stance_null_set_gauge(set, x) == 0);
     stance_null_set_free(set);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(one_mode),
-        cmocka_unit_test(two_modes),
-        cmocka_unit_test(support_is_the_integral),
-        cmocka_unit_test(robots),
-        cmocka_unit_test(unreached_modes),
-        cmocka_unit_test(hardly_reached),
-        cmocka_unit_test(drifting_robots),
-        cmocka_unit_test(refusals),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -7,6 +7,7 @@
 #define STANCE_SCENE_LANES "engine/scenes/biped_lanes.h"
 #include "engine/methods/implicit.c"
 #include "inside.h"
+#include "tests.h"
 
 /* A random operator: symmetric and positive, of condition up to 1e4, bent a little. */
 static void random_operator(uint64_t *seed, int n, double bend, double D[2][2][2][2])
@@ -25,9 +26,8 @@ static void random_operator(uint64_t *seed, int n, double bend, double D[2][2][2
 }
 
 /* Where direct solutions call themselves certain, trying every mode finds the same and no other. */
-static void direct_is_exact(void **state)
+TEST(direct_is_exact)
 {
-    (void)state;
     enum { TRIES = 200000 };
     uint64_t seed = 5;
     for (int contacts = 1; contacts <= 2; contacts++) {
@@ -88,9 +88,8 @@ static void direct_is_exact(void **state)
 
 /* Every mode of two points in lanes finds what trying every mode alone does, and says the same of
  * other solutions: operators of any kind, legs that are parallel, slips that go on, impacts. */
-static void pairs_are_exact(void **state)
+TEST(pairs_are_exact)
 {
-    (void)state;
     enum { TRIES = 100000 };
     uint64_t seed = 11;
     int found = 0, several = 0, solved = 0, unlike = 0;
@@ -154,9 +153,8 @@ static void pairs_are_exact(void **state)
 
 /* Over a very short time velocities are as small as what a solution may be off by. What is found
  * is one to rounding all the same, where there is one: the laws have no scale. */
-static void small_ones_are_exact(void **state)
+TEST(small_ones_are_exact)
 {
-    (void)state;
     enum { TRIES = 50000 };
     const double small = 1e-9, admitted = 1e-4 * small;
     uint64_t seed = 23;
@@ -281,23 +279,11 @@ static void steps_are_converged(bool coupled)
         assert_true(ordinary > 0.8 * taken);
     }
 }
-static void ordinary_steps_are_converged(void **state)
+TEST(ordinary_steps_are_converged)
 {
-    (void)state;
     steps_are_converged(false);
 }
-static void with_a_law_inside(void **state)
+TEST(with_a_law_inside)
 {
-    (void)state;
     steps_are_converged(true);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(direct_is_exact),      cmocka_unit_test(pairs_are_exact),
-        cmocka_unit_test(small_ones_are_exact), cmocka_unit_test(ordinary_steps_are_converged),
-        cmocka_unit_test(with_a_law_inside),
-    };
-    return cmocka_run_group_tests_name("quick", tests, NULL, NULL);
 }

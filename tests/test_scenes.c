@@ -2,6 +2,7 @@
  * (tests/reference/known.py), and what only one scene shows: thresholds, Zeno, Painleve. */
 #include "long.h"
 #include "support.h"
+#include "tests.h"
 
 /* What a method is asked for on motions with impacts and switches: the longest step, a tolerance
  * where it has one, and the largest error of a position (m, rad) and a velocity (m/s, rad/s). */
@@ -135,9 +136,8 @@ static bool known_error(const stance_scene *scene, const json_t *entry, const st
     return true;
 }
 
-static void known_motions(void **state)
+TEST(known_motions)
 {
-    (void)state;
     json_t *root = reference_load("tests/reference/known.json");
     int missed = 0;
     double worst[DEMANDS][2] = {{0}};
@@ -202,9 +202,8 @@ static stance_result run_one(const char *scene, const char *method, const stance
 /* At rest on a slope whose tangent is the friction, but for a relative 1e-9: a block stays
  * where it is, but for rounding, on one side of the threshold, and slides by t^2 g (sin - mu cos) /
  * 2 on the other. */
-static void slope_threshold(void **state)
+TEST(slope_threshold)
 {
-    (void)state;
     for (int d = 0; d < DEMANDS; d++)
         for (double slope = 0.1; slope < 1.5; slope += 0.2)
             for (int side = -1; side <= 1; side += 2) {
@@ -227,9 +226,8 @@ static void slope_threshold(void **state)
  * over 10,000 bounces (1000 in the short test, event-driven 100); midpoint, exact
  * in flight, meets the ground at some place inside a step but keeps the rebound's speed; theta = 1
  * loses m g^2 h / 2 in every second of flight. */
-static void endless_bounces(void **state)
+TEST(endless_bounces)
 {
-    (void)state;
     const struct {
         const char *method;
         double step, time, loss_rate, tolerance; /* of the energy, relative */
@@ -262,9 +260,8 @@ static void endless_bounces(void **state)
 /* A rod that slides on end 1 (slip of 1 m/s) where the accelerations are unique, do not exist or
  * are ambiguous: methods of forces say so, methods of impulses go through with finite velocities
  * and without more energy. */
-static void painleve(void **state)
+TEST(painleve)
 {
-    (void)state;
     json_t *root = reference_load("tests/reference/known.json");
     json_t *cases = json_object_get(json_object_get(root, "painleve"), "cases");
     int counts[2][2] = {{0}};
@@ -310,9 +307,8 @@ static void painleve(void **state)
 }
 
 /* Where no forces exist the end stops dead: the one impact that resolves the state. */
-static void jams(void **state)
+TEST(jams)
 {
-    (void)state;
     json_t *root = reference_load("tests/reference/known.json");
     size_t i;
     json_t *jam;
@@ -340,9 +336,8 @@ static void jams(void **state)
 
 /* A rod that lies on both ends, pressed and pulled by nothing else, stays: the tangential forces
  * are redundant, the motion is not. */
-static void redundant_rest(void **state)
+TEST(redundant_rest)
 {
-    (void)state;
     for (int d = 0; d < DEMANDS; d++) {
         stance_case c = scene_case_of("rod", 1e-2, 10);
         c.friction = 0.3;
@@ -356,9 +351,8 @@ static void redundant_rest(void **state)
 }
 
 /* The kernels' rule and the description's. */
-static void fallen_is_said_alike(void **state)
+TEST(fallen_is_said_alike)
 {
-    (void)state;
     const stance_scene *const scene = stance_scene_find("biped");
     uint64_t seed = 17;
     int fallen = 0, by_trunk = 0, by_hip = 0;
@@ -385,18 +379,4 @@ static void fallen_is_said_alike(void **state)
             says && !scene->fallen(scene, c.robot, (double[]){0, 5, 0, 0, 0}) && r.position[1] <= 0;
     }
     assert_true(fallen > 500 && fallen < 2500 && by_trunk > 100 && by_hip > 100 && by_hip < fallen);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(known_motions),
-        cmocka_unit_test(slope_threshold),
-        cmocka_unit_test(endless_bounces),
-        cmocka_unit_test(painleve),
-        cmocka_unit_test(jams),
-        cmocka_unit_test(redundant_rest),
-        cmocka_unit_test(fallen_is_said_alike),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

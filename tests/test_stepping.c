@@ -3,6 +3,7 @@
  * an independent event-driven program (tests/reference). */
 #include "long.h"
 #include "support.h"
+#include "tests.h"
 
 #define PENETRATION 1e-9
 #define CONE 1e-9
@@ -59,22 +60,19 @@ static void contact_laws(const char *method)
         assert_int_equal(e.failed, 0);
     }
 }
-static void contact_laws_implicit(void **state)
+TEST(contact_laws_implicit)
 {
-    (void)state;
     contact_laws("implicit");
 }
-static void contact_laws_midpoint(void **state)
+TEST(contact_laws_midpoint)
 {
-    (void)state;
     contact_laws("midpoint");
 }
 
 /* Newton's restitution with Coulomb friction can create energy (Kane); limited, or by Moreau's law,
  * it does not, with any method. */
-static void restitution_creates_energy_by_newton_alone(void **state)
+TEST(restitution_creates_energy_by_newton_alone)
 {
-    (void)state;
     const double e[] = {0.2, 0.5, 0.8, 1};
     int gained[4];
     for (int k = 0; k < 4; k++) {
@@ -99,9 +97,8 @@ static void restitution_creates_energy_by_newton_alone(void **state)
 
 /* The contact forces of a trajectory obey the laws, checked from outside: gaps from the scene's
  * own kinematics, the cone and complementarity from the recorded forces. */
-static void trajectories_obey_the_laws(void **state)
+TEST(trajectories_obey_the_laws)
 {
-    (void)state;
     const stance_scene *const scene = stance_scene_find("biped");
     const stance_kernel *const kernel = kernel_of("implicit", NULL);
     uint64_t seed = 3;
@@ -130,9 +127,8 @@ static void trajectories_obey_the_laws(void **state)
 }
 
 /* Impacts at a vanishing step against the independent exact solutions: least kinetic energy. */
-static void impacts_against_reference(void **state)
+TEST(impacts_against_reference)
 {
-    (void)state;
     json_t *root = reference_load("tests/reference/impacts.json"), *item;
     json_t *problems = json_object_get(root, "problems");
     assert_non_null(problems);
@@ -258,9 +254,8 @@ static double slope(const double *h, const double *error, int n)
     return (n * sxy - sx * sy) / (n * sxx - sx * sx);
 }
 
-static void second_drop_converges(void **state)
+TEST(second_drop_converges)
 {
-    (void)state;
     static const double h[] = {1e-2, 5e-3, 2e-3, 1e-3, 5e-4, 2e-4, 1e-4, 5e-5, 2e-5, 1e-5};
     enum { N = sizeof h / sizeof *h };
     static const char *const methods[] = {"implicit", "midpoint"};
@@ -312,9 +307,8 @@ static double smooth_error(const char *method, bool stance, double h)
     return error;
 }
 
-static void smooth_order(void **state)
+TEST(smooth_order)
 {
-    (void)state;
     static const double h[] = {8e-3, 4e-3, 2e-3, 1e-3};
     static const struct {
         const char *method;
@@ -334,9 +328,8 @@ static void smooth_order(void **state)
 
 /* ---- the drop of section 2.4 ---------------------------------------------------------------- */
 
-static void first_drop_stages(void **state)
+TEST(first_drop_stages)
 {
-    (void)state;
     enum { ROWS = 1501 };
     stance_case c = plain_case();
     c.position[1] = 1.5, c.position[2] = -0.5, c.position[3] = 0.9, c.position[4] = -1;
@@ -389,9 +382,8 @@ static void first_drop_stages(void **state)
 /* The equation of a long step has further roots, far away and fast. A robot without torques gains
  * no energy but what discretisation makes of it; the first case went from 193 J to 302,772 J in one
  * step that had converged. */
-static void far_roots_are_refused(void **state)
+TEST(far_roots_are_refused)
 {
-    (void)state;
     stance_case c = plain_case();
     c.friction = 0.5;
     c.position[1] = 1.3749378810949437, c.position[2] = 0.5359201713349733;
@@ -434,9 +426,8 @@ static void far_roots_are_refused(void **state)
 
 /* One value for every width, order and slicing, and for every processor and compiler. It changes
  * only when the mathematics of a step changes: then say so in the CHANGELOG. */
-static void golden(void **state)
+TEST(golden)
 {
-    (void)state;
     static const struct {
         const char *scene, *method;
         uint64_t hash;
@@ -468,9 +459,8 @@ static void golden(void **state)
 }
 
 /* So many cases that some have several contact solutions beside neighbours of every kind. */
-static void neighbours_change_nothing(void **state)
+TEST(neighbours_change_nothing)
 {
-    (void)state;
     static const char *const methods[] = {"implicit", "midpoint"};
     for (size_t m = 0; m < sizeof methods / sizeof *methods; m++) {
         const stance_kernel *const wide = kernel_of(methods[m], stance_isa(0));
@@ -485,9 +475,8 @@ static void neighbours_change_nothing(void **state)
 /* ---- bad days
  * ------------------------------------------------------------------------------------- */
 
-static void failures_are_reported(void **state)
+TEST(failures_are_reported)
 {
-    (void)state;
     stance_case c[3];
     stance_result r[3];
     for (int i = 0; i < 3; i++) {
@@ -503,23 +492,4 @@ static void failures_are_reported(void **state)
     assert_int_equal(r[1].status, STANCE_FAILED);
     assert_int_equal(r[1].failure, STANCE_FAILURE_ANGLE);
     assert_int_equal(r[2].status, STANCE_DONE); /* a bad neighbour does no harm */
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(contact_laws_implicit),
-        cmocka_unit_test(contact_laws_midpoint),
-        cmocka_unit_test(restitution_creates_energy_by_newton_alone),
-        cmocka_unit_test(trajectories_obey_the_laws),
-        cmocka_unit_test(impacts_against_reference),
-        cmocka_unit_test(second_drop_converges),
-        cmocka_unit_test(smooth_order),
-        cmocka_unit_test(first_drop_stages),
-        cmocka_unit_test(far_roots_are_refused),
-        cmocka_unit_test(golden),
-        cmocka_unit_test(neighbours_change_nothing),
-        cmocka_unit_test(failures_are_reported),
-    };
-    return cmocka_run_group_tests_name("stepping", tests, NULL, NULL);
 }
