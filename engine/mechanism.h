@@ -128,6 +128,14 @@ typedef struct stance_mechanism {
     bool varies[STANCE_MAX_ROBOT];
 } stance_mechanism;
 
+/* A contact of a scene: the first or second end (0, 1) of an element, or (element -1) the stop at
+ * the lower or upper limit of a body's joint. */
+typedef struct stance_contact_place {
+    int element, body, end;
+} stance_contact_place;
+/* Contact c, in their order; false: there are fewer. */
+bool stance_mechanism_contact(const stance_mechanism *m, int c, stance_contact_place *place);
+
 /* Has the joint of body b, a hinge or a slide, a stop at its lower (side 0) or upper (1) limit? */
 bool stance_mechanism_stops(const stance_mechanism *m, int b, int side);
 

@@ -433,29 +433,31 @@ static bool add_contact(const struct frames *f, stance_tree *tree, int kind, int
 static bool tables_contacts(const struct frames *f, stance_tree *tree)
 {
     static const double none[2] = {0, 0};
+    const stance_mechanism *const m = f->m;
+    stance_contact_place at;
     bool fits = true, rough = false;
-    for (; tree->plates < f->m->plates; tree->plates++)
-        rough |= f->m->plate[tree->plates].rough;
-    for (int e = 0; e < f->m->elements; e++) {
-        const int b = f->m->element[e].body, c = tree->contacts;
-        const stance_element_numbers *const at = &f->v->element[e];
-        double end[2][2];
-        frames_place(f, b, at->at, end[0]);
-        frames_place(f, b, at->to, end[1]);
-        const int kind = at->radius != 0         ? STANCE_TREE_DISC
-                         : f->m->element[e].sole ? STANCE_TREE_SOLE
-                                                 : STANCE_TREE_POINT;
-        fits = fits && add_contact(f, tree, kind, b, end[0], f->m->element[e].sole ? c + 1 : -1, c);
-        if (f->m->element[e].sole)
-            fits = fits && add_contact(f, tree, kind, b, end[1], c, f->m->plates ? c + 1 : c);
-        for (int k = c; k < tree->contacts; k++)
-            tree->rough[k] = rough || f->m->element[e].rough;
-    }
-    for (int b = 0; b < f->m->bodies; b++) {
-        for (int side = 0; side < 2; side++)
-            if (stance_mechanism_stops(f->m, b, side))
-                fits = fits && add_contact(f, tree, side ? STANCE_TREE_HIGH : STANCE_TREE_LOW, b,
-                                           none, -1, -1);
+    for (; tree->plates < m->plates; tree->plates++)
+        rough |= m->plate[tree->plates].rough;
+    for (int c = 0; fits && stance_mechanism_contact(m, c, &at); c++) {
+        if (at.element < 0) {
+            const int kind = at.end ? STANCE_TREE_HIGH : STANCE_TREE_LOW;
+            fits = add_contact(f, tree, kind, at.body, none, -1, -1);
+            continue;
+        }
+        const stance_element_numbers *const of = &f->v->element[at.element];
+        const bool sole = m->element[at.element].sole;
+        const int kind = of->radius != 0 ? STANCE_TREE_DISC
+                         : sole          ? STANCE_TREE_SOLE
+                                         : STANCE_TREE_POINT;
+        double end[2];
+        frames_place(f, at.body, at.end ? of->to : of->at, end);
+        fits = add_contact(f, tree, kind, at.body, end,
+                           !sole    ? -1
+                           : at.end ? c - 1
+                                    : c + 1,
+                           m->plates ? c : c - at.end);
+        if (fits)
+            tree->rough[c] = rough || m->element[at.element].rough;
     }
     return fits;
 }
@@ -579,29 +581,27 @@ static bool is_upright(const stance_tree *tree, int joint)
     return joint >= 0 && tree->above[joint] < 0 && !tree->slide[joint];
 }
 
-/* Numbers of contacts, in the order of tables_contacts; returns the longest arm. */
+/* Numbers of contacts; returns the longest arm. */
 static double number_contacts(const stance_tree *tree, const struct frames *f,
                               stance_tree_numbers *number)
 {
     const double *const slope = number->slope;
-    double(*const end)[3] = number->end, arm = 0;
-    int c = 0;
-    for (int e = 0; e < f->m->elements; e++) {
-        const stance_element_numbers *const at = &f->v->element[e];
-        const int b = f->m->element[e].body;
-        for (int side = 0; side < 1 + f->m->element[e].sole; side++, c++) {
-            frames_place(f, b, side ? at->to : at->at, end[c]);
-            if (f->of[b] < 0)
-                lay(slope[1], slope[2], end[c], end[c]);
-            end[c][2] = at->radius;
-            number->rough[c] = f->m->element[e].rough ? at->friction_factor : 1;
-            arm = fmax(arm, longest_arm(tree, f, c, end[c]) + end[c][2]);
+    stance_contact_place at;
+    double arm = 0;
+    for (int c = 0; stance_mechanism_contact(f->m, c, &at); c++) {
+        double *const end = number->end[c];
+        if (at.element < 0) {
+            end[0] =
+                f->v->body[at.body].limits[at.end] + is_upright(tree, f->joint[at.body]) * slope[0];
+            continue;
         }
-    }
-    for (int b = 0; b < f->m->bodies; b++) {
-        for (int side = 0; side < 2; side++)
-            if (stance_mechanism_stops(f->m, b, side))
-                end[c++][0] = f->v->body[b].limits[side] + is_upright(tree, f->joint[b]) * slope[0];
+        const stance_element_numbers *const of = &f->v->element[at.element];
+        frames_place(f, at.body, at.end ? of->to : of->at, end);
+        if (f->of[at.body] < 0)
+            lay(slope[1], slope[2], end, end);
+        end[2] = of->radius;
+        number->rough[c] = f->m->element[at.element].rough ? of->friction_factor : 1;
+        arm = fmax(arm, longest_arm(tree, f, c, end) + end[2]);
     }
     return arm;
 }

@@ -15,6 +15,8 @@ struct sample {
     stance_equilibrium equilibrium;
 };
 
+#define PLANT_OF(s) PLANT(N, M, (s)->A, (s)->B)
+
 static double number_of(const struct sample *s, const char *key)
 {
     return json_number_value(json_object_get(s->record, key));
@@ -58,7 +60,7 @@ static void eigenvalues_of(const struct sample *s, const char *key, double *re, 
 static void sampled_closed_loop(const struct sample *s, const double *K, double *loop)
 {
     double Ad[N * N], Bd[N * M];
-    assert_int_equal(stance_discretise(PLANT(N, M, s->A, s->B), s->T, Ad, Bd), STANCE_OK);
+    assert_int_equal(stance_discretise(PLANT_OF(s), s->T, Ad, Bd), STANCE_OK);
     closed_loop(N, M, Ad, Bd, K, loop);
 }
 
@@ -75,14 +77,14 @@ static void check_regulator(const struct sample *s)
     double K[M * N], wanted[M * N], loop[N * N], re[N], im[N];
     stance_message message = {""};
 
-    TRY(stance_lqr(PLANT(N, M, s->A, s->B), 0, s->states, s->torques, K, &message), message);
+    TRY(stance_lqr(PLANT_OF(s), 0, s->states, s->torques, K, &message), message);
     matrix_of(s->record, "gain", M, N, wanted);
     assert_matrix(M * N, K, wanted, 2e-10, s->name);
     closed_loop(N, M, s->A, s->B, K, loop);
     eigenvalues_of(s, "eigenvalues", re, im);
     assert_eigenvalues(N, loop, re, im, 1e-7, s->name);
 
-    TRY(stance_lqr(PLANT(N, M, s->A, s->B), s->T, s->states, s->torques, K, &message), message);
+    TRY(stance_lqr(PLANT_OF(s), s->T, s->states, s->torques, K, &message), message);
     matrix_of(s->record, "sampled_gain", M, N, wanted);
     assert_matrix(M * N, K, wanted, 2e-10, s->name);
     sampled_closed_loop(s, K, loop);
@@ -102,10 +104,9 @@ static void check_limit(const struct sample *s)
     double K[M * N], sampled[M * N], distance[2];
     const double T[2] = {2e-4, 1e-4};
     stance_message message = {""};
-    TRY(stance_lqr(PLANT(N, M, s->A, s->B), 0, s->states, s->torques, K, &message), message);
+    TRY(stance_lqr(PLANT_OF(s), 0, s->states, s->torques, K, &message), message);
     for (int k = 0; k < 2; k++) {
-        TRY(stance_lqr(PLANT(N, M, s->A, s->B), T[k], s->states, s->torques, sampled, &message),
-            message);
+        TRY(stance_lqr(PLANT_OF(s), T[k], s->states, s->torques, sampled, &message), message);
         distance[k] = 0;
         for (int i = 0; i < M * N; i++)
             distance[k] = fmax(distance[k], fabs(sampled[i] - K[i]));
@@ -185,18 +186,14 @@ static void check_placement(const struct sample *s)
 
     eigenvalues_of(s, "poles", re, im);
     eigenvalues_of(s, "sampled_poles", zre, zim);
-    TRY(stance_place(STANCE_SCHUR, PLANT(N, M, s->A, s->B), 0, POLES(re, im), K, NULL, &message),
-        message);
+    TRY(stance_place(STANCE_SCHUR, PLANT_OF(s), 0, POLES(re, im), K, NULL, &message), message);
     closed_loop(N, M, s->A, s->B, K, loop);
     assert_eigenvalues(N, loop, re, im, 1e-6, s->name);
-    TRY(stance_place(STANCE_SCHUR, PLANT(N, M, s->A, s->B), s->T, POLES(re, im), K, &got, &message),
-        message);
+    TRY(stance_place(STANCE_SCHUR, PLANT_OF(s), s->T, POLES(re, im), K, &got, &message), message);
     sampled_closed_loop(s, K, loop);
     assert_eigenvalues(N, loop, zre, zim, 1e-8, s->name);
     assert_true(got.sweeps == 0 && isnan(got.condition));
-    TRY(stance_place(STANCE_ROBUST, PLANT(N, M, s->A, s->B), s->T, POLES(re, im), K, &got,
-                     &message),
-        message);
+    TRY(stance_place(STANCE_ROBUST, PLANT_OF(s), s->T, POLES(re, im), K, &got, &message), message);
     sampled_closed_loop(s, K, loop);
     assert_eigenvalues(N, loop, zre, zim, 1e-8, s->name);
     assert_true(got.sweeps > 0 && got.condition >= 1);
@@ -219,12 +216,10 @@ static void check_placement_limit(const struct sample *s)
     for (int real = 0; real < 2; real++) {
         if (strstr(s->name, "right angle"))
             continue;
-        TRY(stance_place(STANCE_ROBUST, PLANT(N, M, s->A, s->B), 0, POLES(re, im), K, NULL,
-                         &message),
-            message);
+        TRY(stance_place(STANCE_ROBUST, PLANT_OF(s), 0, POLES(re, im), K, NULL, &message), message);
         for (int k = 0; k < 2; k++) {
-            TRY(stance_place(STANCE_ROBUST, PLANT(N, M, s->A, s->B), T[k], POLES(re, im), sampled,
-                             NULL, &message),
+            TRY(stance_place(STANCE_ROBUST, PLANT_OF(s), T[k], POLES(re, im), sampled, NULL,
+                             &message),
                 message);
             distance[k] = 0;
             for (int i = 0; i < M * N; i++)
@@ -374,16 +369,14 @@ static void check_critical(const struct sample *s)
         for (int delay = 0; delay < 2; delay++) {
             const double wanted = number_at(json_object_get(s->record, keys[g]), (size_t)delay);
             assert_int_equal(
-                stance_critical_sample_time(PLANT(N, M, s->A, s->B), SAMPLING(K, 0, delay), 10, &T),
-                STANCE_OK);
+                stance_critical_sample_time(PLANT_OF(s), SAMPLING(K, 0, delay), 10, &T), STANCE_OK);
             if (isnan(wanted))
                 assert_true(T == 0 || isinf(T));
             else
                 assert_near(T, wanted, 1e-8 * wanted, s->name);
         }
     }
-    assert_int_equal(stance_sampled_loop(PLANT(N, M, s->A, s->B), SAMPLING(K, s->T, 1), re, im),
-                     STANCE_OK);
+    assert_int_equal(stance_sampled_loop(PLANT_OF(s), SAMPLING(K, s->T, 1), re, im), STANCE_OK);
     for (int i = 0; i < N + M; i++)
         radius = fmax(radius, hypot(re[i], im[i]));
     assert_near(radius, number_of(s, "delayed_radius"), 1e-9, s->name);

@@ -191,9 +191,10 @@ static void test_json(void **state)
 {
     double values[] = {0.25, 0.5};
     char *words[] = {"one", "two"};
-    struct results r = {.axes = 2,
-                        .axis = {{.name = "ground.friction", .count = 2, .value = values},
-                                 {.name = "method.name", .count = 2, .word = words}}};
+    struct results r = {
+        .axes = 2,
+        .axis = {{.name = "ground.friction", .count = 2, .value = values},
+                 {.name = "method.name", .count = 2, .value = (double[]){0, 1}, .word = words}}};
     const size_t point[SCENARIO_MAX_AXES] = {1, 1};
     struct table t = {0}, none = {0};
     (void)state;
@@ -323,6 +324,40 @@ static void test_say(void **state)
     wrote(out, "");
 }
 
+/* Facts that are listed once: values of columns and members, keys as -h has them. */
+#define FACTS(X)                                                                                   \
+    X("n", "", as_whole(n), "n", .width = 3)                                                       \
+    X("part", "of all, null: none", as_number(part), "part", "%.1f %%", .percent = true)           \
+    X("word", NULL, as_text("w"), .hidden = TABLE_NO_JSON)                                         \
+    X("at", "[low, high]", as_tree(table_pair(1, NAN)), .hidden = TABLE_NO_CSV)
+
+static void test_facts(void **state)
+{
+    static const struct say_key inner[] = {FACTS(TABLE_KEY){0}},
+                                rows[] = {TABLE_KEY_AT{"inner", "", inner}, {0}},
+                                list[] = {FACTS(TABLE_KEY){"rows", "null beyond", rows}, {0}},
+                                keys[] = {{NULL, "", list}, {NULL, "of --one:", inner}, {0}};
+    static const char members[] = "{\"n\":7,\"part\":0.5,\"word\":\"w\",\"at\":[1.0,null]}";
+    struct table t = {0};
+    const uint64_t n = 7;
+    const double part = 0.5;
+    (void)state;
+    TABLE_FACTS(&t, FACTS(TABLE_FACT));
+    table_end_row(&t);
+    assert_seen(&t, "n part", 0, "    n   part\n    7 50.0 %\n");
+    assert_csv(&t, "n,part,word\r\n7,0.5,w\r\n");
+    assert_json(table_json(&t, false), "[{\"n\":7,\"part\":0.5,\"at\":[1.0,null]}]");
+    assert_json(TABLE_OBJECT(FACTS(TABLE_MEMBER)), members);
+    table_free(&t);
+    FILE *const out = begin();
+    say_keys(keys, out);
+    wrote(out, "    n, part (of all, null: none), at: [low, high]\n"
+               "    rows    [{at: {path: value}, inner: {n, part (of all, null: none), at: [low, "
+               "high]}}]; null beyond\n"
+               "  of --one:\n"
+               "    n, part (of all, null: none), at: [low, high]\n");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -330,7 +365,7 @@ int main(void)
         cmocka_unit_test(test_nothing),   cmocka_unit_test(test_quotes),
         cmocka_unit_test(test_hostile),   cmocka_unit_test(test_json),
         cmocka_unit_test(test_no_memory), cmocka_unit_test(test_no_output),
-        cmocka_unit_test(test_say),
+        cmocka_unit_test(test_say),       cmocka_unit_test(test_facts),
     };
     const int failed = cmocka_run_group_tests(tests, NULL, NULL);
     free(text);

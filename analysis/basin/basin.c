@@ -371,23 +371,15 @@ static struct draw *draws_of(const struct basin *b, const struct basin_row *row,
     return all + (size_t)(row - b->row) * b->draws;
 }
 
-/* The map's faces as those of the box. */
-static face_set faces_of(const struct basin *b, uint64_t faces)
-{
-    face_set set = 0;
-    for (int d = 0; d < b->start_axes; d++)
-        for (int k = 0; k < b->faces.starts; k++)
-            if (b->faces.start[k].axis == b->start[d])
-                set |= (faces >> 2 * d & 3) << 2 * k;
-    return set;
-}
-
 static bool add_part(const struct basin *b, const struct lattice *lattice, struct basin_row *row)
 {
     struct basin_part part;
     if (!basin_map_part(&lattice->map, b->choice.of, lattice->origin, &part))
         return false;
-    row->part.faces |= faces_of(b, part.faces);
+    for (int d = 0; d < b->start_axes; d++) /* the map's faces as those of the box */
+        for (int k = 0; k < b->faces.starts; k++)
+            if (b->faces.start[k].axis == b->start[d])
+                row->part.faces |= (part.faces >> 2 * d & 3) << 2 * k;
     row->part.unknown = row->part.unknown || part.unknown;
     row->part.low += part.volume.low;
     row->part.high += part.volume.high;

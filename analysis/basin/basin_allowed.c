@@ -46,18 +46,8 @@ struct motion {
     double *slip, *footfalls, *least;
 };
 
-static enum excuse excuse_of(const struct motion *m, uint64_t i)
-{
-    const double slip = m->slip ? m->slip[i] : NAN, steps = m->footfalls ? m->footfalls[i] : NAN,
-                 least = m->least ? m->least[i] : NAN;
-    return steps > 0 || least <= 0                         ? LIFTED
-           : slip > SLIPPED                                ? SLID
-           : isnan(slip) || (isnan(steps) && isnan(least)) ? UNKNOWN
-                                                           : NEITHER;
-}
-
 static void count_case(struct row *row, uint64_t index, const stance_case *c, bool has_outcome,
-                       const struct motion *motion)
+                       const struct motion *m)
 {
     double x[DESIGN_STATES];
     allowed_state(&row->of, c->position, c->velocity, x);
@@ -67,7 +57,13 @@ static void count_case(struct row *row, uint64_t index, const stance_case *c, bo
     row->inside += holds && has_outcome;
     if (holds || !has_outcome)
         return;
-    const enum excuse e = excuse_of(motion, index);
+    const double slip = m->slip ? m->slip[index] : NAN,
+                 steps = m->footfalls ? m->footfalls[index] : NAN,
+                 least = m->least ? m->least[index] : NAN;
+    const enum excuse e = steps > 0 || least <= 0                         ? LIFTED
+                          : slip > SLIPPED                                ? SLID
+                          : isnan(slip) || (isnan(steps) && isnan(least)) ? UNKNOWN
+                                                                          : NEITHER;
     const double gauge = stance_null_set_gauge(row->of.set, x);
     row->outside++;
     if (row->excuse[e].starts++ == 0 || gauge > row->excuse[e].gauge) {

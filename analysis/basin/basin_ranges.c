@@ -393,24 +393,20 @@ static void tell(void *context, uint64_t more)
 
 /* ---- all of it ---------------------------------------------------------------------------- */
 
-/* Whether an axis moves anything else than starts. */
-static bool is_parameter(const struct scenario *s, const struct scenario_axis *axis)
-{
-    bool other = axis->words;
-    for (int k = 0; k < axis->paths; k++)
-        other = other || (coordinate_at(s, axis->offset[k]) < 0 &&
-                          axis->offset[k] != offsetof(struct scenario_values, offset_scale));
-    return other;
-}
-
-/* Case at point `left` of the parameters alone, and how many points they have. */
+/* Case at point `left` of the parameters alone, axes that move anything else than starts, and how
+ * many points they have. */
 static uint64_t parameter_case(const struct scenario *s, uint64_t left, uint64_t *points)
 {
     uint64_t index = 0, stride = 1;
     *points = 1;
     for (int a = s->axes - 1; a >= 0; a--) {
-        const size_t count = s->axis[a].count;
-        if (is_parameter(s, &s->axis[a])) {
+        const struct scenario_axis *const axis = &s->axis[a];
+        const size_t count = axis->count;
+        bool other = axis->words;
+        for (int k = 0; k < axis->paths; k++)
+            other = other || (coordinate_at(s, axis->offset[k]) < 0 &&
+                              axis->offset[k] != offsetof(struct scenario_values, offset_scale));
+        if (other) {
             index += stride * (left % count);
             left /= count;
             *points *= count;

@@ -28,23 +28,12 @@ static bool read_bounds(const char *text, double bound[2])
     return good && (isfinite(bound[0]) || isfinite(bound[1])) && bound[0] <= bound[1];
 }
 
-/* "settle_time <= 2", "0.1 <= ...": how it is said. */
-static void bounds_text(const char *name, const double bound[2], char *text, size_t size)
-{
-    if (!isfinite(bound[1]))
-        snprintf(text, size, "%s >= %g", name, bound[0]);
-    else if (!isfinite(bound[0]))
-        snprintf(text, size, "%s <= %g", name, bound[1]);
-    else
-        snprintf(text, size, "%g <= %s <= %g", bound[0], name, bound[1]);
-}
-
 /* One of them, whose bounds are put into the text. Returns an exit code. */
 static int keep_within(struct results *r, const struct basin_within *within, const char *asked,
                        char *said, size_t size, stance_message *message)
 {
     const char *const equals = strchr(asked, '=');
-    char name[96], text[180];
+    char name[96];
     double *value = NULL, bound[2];
     snprintf(name, sizeof name, "%.*s", equals ? (int)(equals - asked) : 0, asked);
     if (!equals || !read_bounds(equals + 1, bound) || !basin_numbers(r, name, &value, message) ||
@@ -73,8 +62,13 @@ static int keep_within(struct results *r, const struct basin_within *within, con
         if (r->kind[i] == within->of && !(bound[0] <= value[i] && value[i] <= bound[1]))
             r->kind[i] = within->of == RESULTS_UNDECIDED ? RESULTS_FELL : RESULTS_UNDECIDED;
     free(value);
-    bounds_text(name, bound, text, sizeof text);
-    add_text(said, size, "%s%s", said[0] ? ", " : "", text);
+    add_text(said, size, "%s", said[0] ? ", " : "");
+    if (!isfinite(bound[1]))
+        add_text(said, size, "%s >= %g", name, bound[0]);
+    else if (!isfinite(bound[0]))
+        add_text(said, size, "%s <= %g", name, bound[1]);
+    else
+        add_text(said, size, "%g <= %s <= %g", bound[0], name, bound[1]);
     return EXIT_DONE;
 }
 

@@ -60,76 +60,66 @@ static int show_basin(const struct report *report, const struct results *r,
                       struct basin_sample *sample, stance_message *message)
 {
     const struct request *request = (const struct request *)report;
+    const enum table_form form = report->form;
     struct basin basin;
-    bool usage = false;
+    bool usage = true, good = false;
 
     if (request->descents > 0) {
         basin_sample_free(sample);
         complain(message,
                  "stance basin: --descend goes on from rays, and %.150s has none (stance basin -h)",
                  report->file);
-        return EXIT_USAGE;
+    } else if (basin_make(&basin, r, &request->choice, sample, &usage, message)) {
+        usage = request->boundary && basin.starts != BASIN_GRID;
+        if (request->threshold > 0)
+            good = basin_print_threshold(&basin, request->along, request->threshold, form, &usage,
+                                         message);
+        else if (request->allowed)
+            good = basin_print_allowed(&basin, form, &usage, message);
+        else if (request->answer)
+            good = basin_print_answer(&basin, request->answer, form, &usage, message);
+        else if (usage)
+            complain(message,
+                     "stance basin: --boundary needs starts on a grid; those of %.150s are a "
+                     "sample",
+                     report->file);
+        else
+            good = request->boundary ? basin_print_boundary(&basin) : basin_print(&basin, form);
+        basin_free(&basin);
     }
-    if (!basin_make(&basin, r, &request->choice, sample, &usage, message))
-        return usage ? EXIT_USAGE : EXIT_IO;
-    usage = request->boundary && basin.starts != BASIN_GRID;
-    const bool good =
-        request->threshold > 0 ? basin_print_threshold(&basin, request->along, request->threshold,
-                                                       report->form, &usage, message)
-        : request->allowed     ? basin_print_allowed(&basin, report->form, &usage, message)
-        : request->answer
-            ? basin_print_answer(&basin, request->answer, report->form, &usage, message)
-        : usage             ? complain(message,
-                                       "stance basin: --boundary needs starts on a grid; those of %.150s are a "
-                                                   "sample",
-                                       report->file)
-        : request->boundary ? basin_print_boundary(&basin)
-                            : basin_print(&basin, report->form);
-    basin_free(&basin);
     return good ? EXIT_DONE : usage ? EXIT_USAGE : EXIT_IO;
 }
 
-static int show(struct report *report, const struct results *r, stance_message *message)
-{
-    const struct request *request = (const struct request *)report;
-    struct basin_sample sample;
-    bool usage = false;
-    if (request->lost)
-        return basin_print_loss(r, request->lost, request->choice.of, report->form, &usage, message)
-                   ? EXIT_DONE
-               : usage ? EXIT_USAGE
-                       : EXIT_IO;
-    if (!basin_sample_make(&sample, r, message))
-        return EXIT_IO;
-    return (basin_is_rays(r, &sample) ? show_rays : show_basin)(report, r, &sample, message);
-}
-
-/* On a copy of what became of the cases. */
-static int work_within(struct report *report, const struct results *r, stance_message *message)
-{
-    struct request *const request = (struct request *)report;
-    const struct basin_within within = {"basin", &request->within, request->choice.of};
-    struct results own;
-    int code = basin_within_make(&own, r, &within, request->within_text,
-                                 sizeof request->within_text, message);
-    request->choice.within = request->within_text;
-    if (code == EXIT_DONE)
-        code = show(report, &own, message);
-    free(own.kind);
-    return code;
-}
-
+/* On a copy of what became of the cases, of which --within may leave less. */
 static int work(struct report *report, const struct results *r, stance_message *message)
 {
     struct request *request = (struct request *)report;
+    struct basin_choice *const choice = &request->choice;
+    struct basin_sample sample;
+    struct results own;
+    bool usage = false;
 
-    if (request->choice.of == RESULTS_KIND_COUNT)
-        request->choice.of = statistics_judged(r);
+    if (choice->of == RESULTS_KIND_COUNT)
+        choice->of = statistics_judged(r);
     if (memchr(r->kind, RESULTS_DONE, r->cases)) {
         complain(message, "%.150s: holds no outcomes (record.answers left them out)", report->file);
         return EXIT_USAGE;
     }
-    return request->within.count > 0 ? work_within(report, r, message) : show(report, r, message);
+    int code =
+        basin_within_make(&own, r, &(struct basin_within){"basin", &request->within, choice->of},
+                          request->within_text, sizeof request->within_text, message);
+    choice->within = request->within_text[0] ? request->within_text : NULL;
+    if (code == EXIT_DONE && request->lost)
+        code = basin_print_loss(&own, request->lost, choice->of, report->form, &usage, message)
+                   ? EXIT_DONE
+               : usage ? EXIT_USAGE
+                       : EXIT_IO;
+    else if (code == EXIT_DONE)
+        code = !basin_sample_make(&sample, &own, message) ? EXIT_IO
+               : basin_is_rays(&own, &sample) ? show_rays(report, &own, &sample, message)
+                                              : show_basin(report, &own, &sample, message);
+    free(own.kind);
+    return code;
 }
 
 /* "PATH=SIZE" */

@@ -297,16 +297,14 @@ const struct command command_ranges = {
     options,
     "Simulates a few hundred rays from the equilibrium (with initial.state: from that start) "
     "until the outcome is lost along each, and prints how far it reaches, ranges that hold all of "
-    "it with a margin and that the equilibrium is a point of, and what share of them it fills: as "
-    "lines of the scenario, what is for people as comments. One that has no sweep takes them as "
-    "they are: stance ranges own.yaml >> own.yaml. Of a domain that fills less than a tenth, "
-    "ranges about the equilibrium are told, too, which come first where the others have too few "
-    "points for it. The axes are those of sweep.grid and sweep.sample over initial.offset and "
-    "initial.state, along which several paths may move together; where there are none, the angle "
-    "and the rate of the coordinate along which the outcome is lost first, in units of the window "
-    "of settling. Of the sweep's other axes up to 3 points are looked at, evenly spread: the "
-    "ranges hold the domains of all. A ray ends where the outcome is lost first: islands beyond "
-    "do not count. Angles are followed up to 3.14 rad, places to 10 m, rates to 100 rad/s or m/s, "
-    "and ranges end where starts cease to exist: at which ends they cut the domain is said.\n",
+    "it with a margin, and what share of them it fills: as lines of a scenario, which one without "
+    "a sweep takes as they are (stance ranges own.yaml >> own.yaml), what is for people as "
+    "comments. Of a domain that fills less than a tenth, ranges about the equilibrium are told, "
+    "too. The axes are those of sweep.grid and sweep.sample over initial.offset and initial.state; "
+    "without any the angle and the rate of the coordinate along which the outcome is lost first, "
+    "in "
+    "units of the window of settling. Of the sweep's other axes up to 3 points are looked at. "
+    "Islands beyond the end of a ray do not count. Angles are followed up to 3.14 rad, places to "
+    "10 m, rates to 100 rad/s or m/s; ends at which ranges cut the domain are said.\n",
     NULL,
 };

@@ -10,7 +10,6 @@
 #include <math.h>
 
 enum { CURVES = 6 };
-static const int types[CURVES] = {7, 5, 9, 11, 15, 13}; /* of points */
 
 struct page {
     struct gnuplot g;
@@ -111,7 +110,7 @@ static void put_curve(struct page *page, size_t curve, const struct statistics_p
     gnuplot_series(g,
                    "using 1:2 with lines lw 1.6 lc rgb %s notitle, '' using 1:2 every %d with "
                    "points pt %d ps %g lc rgb %s",
-                   hue, several ? 8 : 1, several ? types[curve] : 7, several ? 0.9 : 0.3, hue);
+                   hue, several ? 8 : 1, gnuplot_mark(curve), several ? 0.9 : 0.3, hue);
     for (size_t i = 0; i <= points; i++)
         put_end(page, order[i % points].index, ray_end(&ray[order[i % points].index]));
     gnuplot_series(g, "using 1:2 with points pt 6 ps 0.7 lc rgb %s", hue);
@@ -143,8 +142,7 @@ static void put_plane(struct page *page)
     gnuplot_panel(&page->g, 440, "");
     for (size_t c = 0; order && c < page->curves; c++)
         put_curve(page, c, order);
-    gnuplot_series(&page->g, "using 1:2 with points pt 1 ps 1.6 lw 2 lc rgb 0x000000");
-    GNUPLOT_ROW(&page->g, 0, 0);
+    gnuplot_cross(&page->g, 0, 0);
     gnuplot_note(&page->g, "cross: the equilibrium");
     gnuplot_note(&page->g, "dashed: the ray that ends first");
     gnuplot_note(&page->g, "circles: followed no further");
@@ -178,7 +176,7 @@ static void put_distribution(struct page *page)
         gnuplot_series(g,
                        "using 1:2 with steps lw 1.8 lc rgb %s notitle, '' using 1:2 every 40::%zu "
                        "with points pt %d ps 0.9 lc rgb %s",
-                       gnuplot_hue(c), 12 * (c + 1), page->curves > 1 ? types[c] : -1,
+                       gnuplot_hue(c), 12 * (c + 1), page->curves > 1 ? gnuplot_mark(c) : -1,
                        gnuplot_hue(c));
         GNUPLOT_ROW(g, 0, 0);
         for (size_t i = 0; i < n; i++)
@@ -206,7 +204,7 @@ static void put_legend(struct page *page)
                                sizeof value);
             add_text(text, sizeof text, "%s%.100s", k ? ", " : "", value);
         }
-        gnuplot_legend(&page->g, gnuplot_hue(c), several, several ? types[c] : 0, text, "");
+        gnuplot_legend(&page->g, gnuplot_hue(c), several, several ? gnuplot_mark(c) : 0, text, "");
     }
     if (is_found(&page->nearest[0]))
         gnuplot_note(&page->g, "diamond: the nearest end");

@@ -31,14 +31,13 @@ static double place_of(const struct accuracy_row *row, enum shown shown, bool *n
 static void put_method(struct gnuplot *g, const struct accuracy *a, const stance_method *method,
                        size_t style, enum shown shown)
 {
-    static const int types[] = {7, 5, 9, 11, 13}; /* filled points; one less is the open one */
     const char *const hue = gnuplot_hue(style);
     gnuplot_series(g,
                    "using 1:2 with lines lc rgb %s lw 1.6 notitle, '' using 1:($3 > 0 ? NaN : $2) "
                    "with points lc rgb %s pt %d ps 1 notitle, '' using 1:($3 > 0 ? $2 : NaN) with "
                    "points lc rgb %s pt %d ps 0.9 notitle, '' using 1:($4 > 0 ? $2 : NaN) with "
                    "points lc rgb '#b00000' pt 2 ps 1.6 lw 1.6",
-                   hue, hue, types[style] - 1, hue, types[style]);
+                   hue, hue, gnuplot_mark(style) - 1, hue, gnuplot_mark(style));
     for (size_t k = 0; k < a->rows; k++) {
         bool none;
         const double place = place_of(&a->row[k], shown, &none);

@@ -137,6 +137,13 @@ void gnuplot_row(struct gnuplot *g, const double *values, size_t count)
     putc('\n', g->data);
 }
 
+void gnuplot_segment(struct gnuplot *g, double x, double y, double x_end, double y_end)
+{
+    GNUPLOT_ROW(g, x, y);
+    GNUPLOT_ROW(g, x_end, y_end);
+    gnuplot_gap(g);
+}
+
 void gnuplot_gap(struct gnuplot *g)
 {
     putc('\n', g->data);
@@ -211,6 +218,24 @@ const char *gnuplot_hue(size_t k)
     static const char *const hues[] = {"hue[1]", "hue[2]", "hue[3]", "hue[4]",
                                        "hue[5]", "hue[6]", "hue[7]"};
     return hues[k % (sizeof hues / sizeof *hues)];
+}
+
+int gnuplot_mark(size_t k)
+{
+    static const int types[] = {7, 5, 9, 11, 15, 13};
+    return types[k % (sizeof types / sizeof *types)];
+}
+
+double gnuplot_dot(size_t n)
+{
+    return n > 4000 ? 0.25 : n > 400 ? 0.4 : n > 100 ? 0.6 : 0.8;
+}
+
+void gnuplot_cross(struct gnuplot *g, double x, double y)
+{
+    gnuplot_series(g, "using 1:2 with points pt 1 ps 1.6 lw 4.5 lc rgb 'white' notitle, '' using "
+                      "1:2 with points pt 1 ps 1.4 lw 2 lc rgb 0x000000");
+    GNUPLOT_ROW(g, x, y);
 }
 
 void gnuplot_colour(struct gnuplot *g, const char *colour, const char *name)

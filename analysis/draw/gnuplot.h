@@ -1,13 +1,13 @@
 /* gnuplot.h - a picture, drawn by gnuplot in the formats and sizes of a look.
  *
- * A picture is data: axes, rows of numbers, a legend, notes. chart.gp draws panels of curves one
- * under the other; what has a form of its own (maps, figures of robots) has a script NAME.gp beside
- * the NAME.c that hands it the data. What they share stands in style.gp, legend.gp, page.gp and
- * panels.gp here; all are embedded in the program. In a scratch directory gnuplot loads style.gp,
- * the data (variables, data blocks), legend.gp and the script, so that no path of the user's enters
- * a script; the finished files are copied to where they belong. No text is interpreted: see
- * gnuplot_quote. STANCE_SCRIPTS=DIR in the environment keeps scripts and data in DIR/STEM, where
- * `gnuplot script` draws the picture anew.
+ * A picture is data: panels, axes, series of rows of numbers, a legend, notes. chart.gp lays it
+ * out, one panel under the other or in a grid; what has a form of its own has a script NAME.gp
+ * beside the NAME.c that hands it the data. What they share stands in style.gp, legend.gp, page.gp
+ * and panels.gp here; all are embedded in the program. In a scratch directory gnuplot loads
+ * style.gp, the data (variables, data blocks), legend.gp and the script, so that no path of the
+ * user's enters a script; the finished files are copied to where they belong. No text is
+ * interpreted: see gnuplot_quote. STANCE_SCRIPTS=DIR in the environment keeps scripts and data in
+ * DIR/STEM, where `gnuplot script` draws the picture anew.
  */
 #ifndef STANCE_DRAW_GNUPLOT_H
 #define STANCE_DRAW_GNUPLOT_H
@@ -99,6 +99,8 @@ void gnuplot_row(struct gnuplot *g, const double *values, size_t count);
                 sizeof((const double[]){__VA_ARGS__}) / sizeof(double))
 /* What follows in the block is apart from what was before. */
 void gnuplot_gap(struct gnuplot *g);
+/* A straight line, apart from what follows. */
+void gnuplot_segment(struct gnuplot *g, double x, double y, double x_end, double y_end);
 /* The next binary file: cells1, cells2 ... */
 void gnuplot_cells(struct gnuplot *g, const void *cells, size_t size);
 
@@ -128,7 +130,7 @@ struct plot_range plot_roomy(struct plot_range range, double part);
 const char *gnuplot_axis(struct gnuplot *g, char which, enum plot_scale scale,
                          struct plot_range range, const char *name, const char *unit);
 /* The next panel of a chart, of this height in px as long as the page has no other, under a heading
- * ("": none). */
+ * ("": none): how panels stand is said in variables of style.gp, columns, chart_width ... */
 void gnuplot_panel(struct gnuplot *g, double height, const char *heading);
 /* What is drawn in it next, a data block as gnuplot's `plot` has it: "using 1:2 with lines". */
 void gnuplot_series(struct gnuplot *g, const char *style, ...)
@@ -145,6 +147,12 @@ void gnuplot_about(struct gnuplot *g, const char *format, ...)
 void gnuplot_note(struct gnuplot *g, const char *format, ...) __attribute__((format(printf, 2, 3)));
 /* The colour of curve k = 0, 1 ... beside others. */
 const char *gnuplot_hue(size_t k);
+/* The type of its points, filled; one less is the open one. */
+int gnuplot_mark(size_t k);
+/* The size of points of which there are n. */
+double gnuplot_dot(size_t n);
+/* A cross over all that was drawn: where the equilibrium is. */
+void gnuplot_cross(struct gnuplot *g, double x, double y);
 /* The colour of a kind of case, as style.gp has it: "#rrggbb", or "" of one that it does not name.
  */
 void gnuplot_kind_colour(const char *kind, char colour[8]);

@@ -161,7 +161,6 @@ const char *plot_axis_write(const struct plot_axis *along, struct gnuplot *g, ch
 {
     const char *const axis = gnuplot_axis(g, which, along->scale, along->range, "", "");
     plot_label_write(along->axis, g, axis);
-    gnuplot_set(g, "%s_step = %#.17g; %s_count = %zu", axis, along->step, axis, along->axis->count);
     if (along->scale == PLOT_LIST)
         put_words(along, g, axis);
     return axis;

@@ -71,7 +71,6 @@ cut(s, n) = strlen(s) <= n || n < 4 ? s : s[1:n-3].'...'
 # Of "controller.sample_time = 0.002 s" the end, which has the value.
 end_of(s, n) = strlen(s) <= n ? s : strstrt(s, '.') > 0 && strstrt(s, '.') < strstrt(s, ' ') ? end_of(s[strstrt(s, '.')+1:*], n) \
     : '...'.s[at_least(1, strlen(s) - int(n) + 4):*]
-with_unit(name, unit) = unit eq '' ? name : name.' ('.unit.')'
 # What the title and the line under it take of a page that is page_width wide.
 title_text(s, size) = wrap(s, letters(page_width - 2*margin, size))
 title_height(_) = margin + lines_height(title_text(title, title_size), title_size) \
@@ -132,9 +131,6 @@ legends = 0
 notes = 0
 legend_step = 24
 legend_head = ''
-# A page of one column of panels, `width` px wide from `left` on: its width and top, and its legend beside them.
-column_page = "page_width = left + width + legend_room; top = title_height(0)"
-column_legend = "legend_x = left + width + 20; legend_y = top + 10"
 legend_x = 0
 legend_y = 0
 box(left, y, colour) = sprintf("set object rectangle from screen %.6f,%.6f to screen %.6f,%.6f fillcolor rgb %d " \
@@ -165,7 +161,6 @@ linear_tics(a, low, high, n, labelled) = (f_round = round_step(low, high, n), f_
     range(a, low, high).(f_two == f_round ? sprintf('%.10g', f_round) : (f_from = tic_first(low, f_two), \
         f_to = tic_last(high, f_two), sprintf('%.10g,%.10g,%.10g', f_from, f_to - f_from, f_to))) \
     .sprintf("; set format %s '%s'", a[1:1], labelled ? '%.10g' : ''))
-panel_tics(low, high, height) = linear_tics('y', low, high, height < 160 ? 4 : int(height/36), 1)
 # Places are decimal logarithms, low and high too; on an axis that is logarithmic itself they are not.
 # Less than a decade has round steps, more the mantissas for which there is room.
 log_place(real, power) = real ? 10**power : power

@@ -129,8 +129,7 @@ static bool spread(const struct scenario *s, const struct return_map *map, const
 static const struct say_key spread_keys[] = {SPREAD(TABLE_KEY){0}};
 static const struct say_key gait_keys[] = {
     GAIT(TABLE_KEY){"sensitivity", "", spread_keys},
-    {NULL, "with --along title, path, stopped and", NULL},
-    {"rows", "", along_keys},
+    {"rows", "with --along there are title, path, stopped and these alone", along_keys},
     {0},
 };
 

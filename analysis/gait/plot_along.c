@@ -25,11 +25,8 @@ static void put_panel(struct picture *p, double height, struct plot_range range,
     range = plot_roomy(range, 0.059); /* what ends outside is not drawn */
     gnuplot_series(&p->g, "using 1:2 with lines dt 3 lw 1.4 lc rgb 0x606060");
     for (size_t k = 0; k < p->count; k++)
-        if (p->gait[k].place) {
-            GNUPLOT_ROW(&p->g, p->gait[k].value, range.low);
-            GNUPLOT_ROW(&p->g, p->gait[k].value, range.high);
-            gnuplot_gap(&p->g);
-        }
+        if (p->gait[k].place)
+            gnuplot_segment(&p->g, p->gait[k].value, range.low, p->gait[k].value, range.high);
 }
 
 static double step_time(const struct picture *p, const struct along_gait *gait)
@@ -91,11 +88,9 @@ static void put_multipliers(struct picture *p, struct plot_range along)
         for (int i = 0; i < p->gait[k].n; i++)
             plot_widen(&range, p->gait[k].re[i]);
     put_panel(p, 220, range, "multipliers of a step", "");
-    for (int sign = -1; sign <= 1; sign += 2) {
-        gnuplot_series(&p->g, "using 1:2 with lines lw 1 lc rgb 0x606060");
-        GNUPLOT_ROW(&p->g, along.low, sign);
-        GNUPLOT_ROW(&p->g, along.high, sign);
-    }
+    gnuplot_series(&p->g, "using 1:2 with lines lw 1 lc rgb 0x606060");
+    for (int sign = -1; sign <= 1; sign += 2)
+        gnuplot_segment(&p->g, along.low, sign, along.high, sign);
     for (int paired = 0; paired < 2; paired++) {
         gnuplot_series(&p->g, "using 1:2 with points pt %d ps 0.6 lc rgb %s", paired ? 6 : 7,
                        paired ? "hue[4]" : "hue[1]");

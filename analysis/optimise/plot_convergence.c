@@ -36,17 +36,13 @@ static void put_candidates(struct page *page)
 {
     const struct search_file *const f = &page->study->f;
     const size_t n = f->length[SEARCH_CANDIDATE], every = (n + MOST_DRAWN - 1) / MOST_DRAWN;
-    gnuplot_series(&page->g, "using 1:2 with points pt 7 ps %g lc rgb grey",
-                   n > 4000  ? 0.2
-                   : n > 400 ? 0.35
-                             : 0.6);
+    gnuplot_series(&page->g, "using 1:2 with points pt 7 ps %g lc rgb grey", 0.8 * gnuplot_dot(n));
     for (size_t i = 0; i < n; i += every)
         GNUPLOT_ROW(&page->g, (double)i + 1, page->scale * f->objective[i]);
     for (int k = SEARCH_CURVES; k-- > 0;) {
         gnuplot_series(&page->g, "using 1:2 with lines lc rgb %s dt %d lw 2.2",
                        search_styles[k].colour, search_styles[k].dash);
-        GNUPLOT_ROW(&page->g, 0, page->at[k]);
-        GNUPLOT_ROW(&page->g, (double)n, page->at[k]);
+        gnuplot_segment(&page->g, 0, page->at[k], (double)n, page->at[k]);
     }
     gnuplot_series(&page->g, "using 1:2 with lines lc rgb 0x000000 lw 2");
     for (size_t g = 0; g < f->length[SEARCH_GENERATION]; g++) {

@@ -174,7 +174,7 @@ bool plot_page_begin(struct case_page *page, const char *name, const char *what)
     }
     if (!(page->time.high > page->time.low))
         page->time.high = page->time.low + 1;
-    gnuplot_set(g, "chart_width = 700; headed = 1");
+    gnuplot_set(g, "chart_width = 700");
     gnuplot_axis(g, 'x', PLOT_LINEAR, page->time, "time", "s");
     if (page->c->other)
         gnuplot_note(g, "dashed: the second case");
@@ -196,9 +196,8 @@ static void put_panel(struct case_page *page, double height, const char *heading
         gnuplot_series(&page->g, "using 1:2 with lines dt 3 lw 1 lc rgb 0x606060");
     for (size_t k = 0; k < page->marks; k++) {
         /* A line with both ends outside, be it by a rounding, is not drawn. */
-        GNUPLOT_ROW(&page->g, page->mark[k], middle - 0.999 * half);
-        GNUPLOT_ROW(&page->g, page->mark[k], middle + 0.999 * half);
-        gnuplot_gap(&page->g);
+        gnuplot_segment(&page->g, page->mark[k], middle - 0.999 * half, page->mark[k],
+                        middle + 0.999 * half);
     }
 }
 

@@ -96,7 +96,6 @@ static void put_band(struct page *page, size_t curve, const char *colour)
 
 static void put_curve(struct page *page, size_t curve)
 {
-    static const int types[CURVES] = {7, 5, 9, 11, 15, 13}; /* of points */
     struct gnuplot *const g = &page->g;
     const struct critical *const c = page->c;
     const bool several = page->curves > 1;
@@ -110,7 +109,7 @@ static void put_curve(struct page *page, size_t curve)
         put_islands(page, curve, colour);
     if (c->sampled ? !c->blocks && c->choice.share < 1 : !several)
         put_band(page, curve, colour);
-    gnuplot_series(g, "using 1:2 with linespoints lw 2 pt %d ps %g lc rgb %s", types[curve],
+    gnuplot_series(g, "using 1:2 with linespoints lw 2 pt %d ps %g lc rgb %s", gnuplot_mark(curve),
                    several ? 0.8 : 0.5, several ? colour : "0x202020");
     for (size_t k = 0; k < page->across.axis->count; k++)
         GNUPLOT_ROW(g, page->points[k].value, number_of(page, row_of(page, curve, k)));
@@ -123,7 +122,7 @@ static void put_curve(struct page *page, size_t curve)
                          sizeof value);
         add_text(text, sizeof text, "%s%s", text[0] ? ", " : "", value);
     }
-    gnuplot_legend(g, several ? colour : "0x202020", 1, types[curve],
+    gnuplot_legend(g, several ? colour : "0x202020", 1, gnuplot_mark(curve),
                    several ? text : "critical value", "");
     if (!several && !c->sampled)
         gnuplot_legend(g, colour, 0, 0, results_kind_names[c->of], "");

@@ -30,10 +30,9 @@ double figure_fall(const struct plot_case *c)
 static double radius_of(const stance_mechanism *m, const stance_mechanism_numbers *number,
                         int contact)
 {
-    int e = 0;
-    for (; contact > m->element[e].sole; e++)
-        contact -= m->element[e].sole ? 2 : 1;
-    return m->element[e].sole ? 0 : number->element[e].radius;
+    stance_contact_place at;
+    stance_mechanism_contact(m, contact, &at);
+    return m->element[at.element].sole ? 0 : number->element[at.element].radius;
 }
 
 /* Which contact's each point is: its own; of a robot with two legs also its disc's rim and centre,

@@ -60,9 +60,7 @@ static void put_answer(struct line *line, const char *name, const char *unit, co
     gnuplot_series(&line->g,
                    "using 1:2 with lines lc rgb '#b0b0b0' lw 1 notitle, '' using "
                    "1:2:(kind_colour[$3+1]) with points pt 7 ps %g lc rgb variable",
-                   n > 400   ? 0.25
-                   : n > 100 ? 0.45
-                             : 0.8);
+                   gnuplot_dot(n));
     for (size_t i = 0; i < n; i++)
         GNUPLOT_ROW(&line->g, line->points[i].value, values[line->points[i].index],
                     line->g.plot->r->kind[line->points[i].index]);

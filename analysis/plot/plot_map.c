@@ -124,11 +124,8 @@ static void put(struct gnuplot *g, const void *values, bool numbers)
             plot_allowed_write(&allowed.panel[p], g,
                                "lw 4.4 dt 1 lc rgb 'white' notitle, '' using 1:2 with lines lw 2 "
                                "dt 11 lc rgb colour_allowed");
-        if (cross) {
-            gnuplot_series(g, "using 1:2 with points pt 1 ps 1.6 lw 4.5 lc rgb 'white' notitle, '' "
-                              "using 1:2 with points pt 1 ps 1.4 lw 2 lc rgb 0x000000");
-            GNUPLOT_ROW(g, x, y);
-        }
+        if (cross)
+            gnuplot_cross(g, x, y);
     }
 }
 

@@ -207,9 +207,9 @@ static void put_lines(struct model *m)
         if (!moved->turns)
             continue;
         gnuplot_gap(m->g);
-        GNUPLOT_ROW(m->g, moved->centre[0], moved->centre[1]);
-        GNUPLOT_ROW(m->g, moved->centre[0] + length * cos(zero),
-                    moved->centre[1] + length * sin(zero));
+        gnuplot_segment(m->g, moved->centre[0], moved->centre[1],
+                        moved->centre[0] + length * cos(zero),
+                        moved->centre[1] + length * sin(zero));
     }
 }
 

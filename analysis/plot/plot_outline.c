@@ -241,8 +241,7 @@ static void put(struct page *page)
     put_allowed(page);
     if (cross) {
         gnuplot_legend(g, "0x000000", 0, 1, "equilibrium", "");
-        gnuplot_series(g, "using 1:2 with points pt 1 ps 1.4 lw 2 lc rgb 0x000000");
-        GNUPLOT_ROW(g, 0, 0);
+        gnuplot_cross(g, 0, 0);
     }
 }
 

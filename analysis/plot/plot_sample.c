@@ -215,10 +215,7 @@ static void put_scatter(struct page *page)
     if (page->shares)
         gnuplot_set(&page->g, "bars = 1; bar_high = 100; bar_text = '%s (%%)'", judged);
     gnuplot_series(&page->g, "using 1:2:%s with points pt 7 ps %g lc %s",
-                   page->shares ? "3" : "(kind_colour[$3+1])",
-                   points > 4000  ? 0.25
-                   : points > 400 ? 0.45
-                                  : 0.8,
+                   page->shares ? "3" : "(kind_colour[$3+1])", gnuplot_dot(points),
                    page->shares ? "palette" : "rgb variable");
     (page->shares ? put_shares : put_cases)(page);
 }

@@ -167,7 +167,6 @@ static double find_most(const struct page *page)
 /* The shares in per cent, with their intervals: of words bars, else bands under lines. */
 static void put_shares(struct page *page)
 {
-    static const int types[SHARES] = {7, 5, 9, 11, 13, 15}; /* of points */
     static const char *const band = "using 1:%s with filledcurves lc rgb %s fillstyle transparent "
                                     "solid %g",
                              *const bar =
@@ -181,7 +180,7 @@ static void put_shares(struct page *page)
             const struct share *const share = &page->share[k];
             snprintf(kind, sizeof kind, "colour_%s", results_kind_names[share->kind]);
             const char *const colour = apart ? gnuplot_hue((size_t)k) : kind;
-            const int type = apart ? types[k] : 7;
+            const int type = gnuplot_mark(apart ? (size_t)k : 0);
             if (pass == 2)
                 gnuplot_series(g, "using 1:2 with linespoints lc rgb %s lw 2 dt %d pt %d ps 0.8",
                                colour, apart ? k + 1 : 1, type);
@@ -223,8 +222,7 @@ static void put_extent(struct page *page, int axis)
     gnuplot_panel(g, 150, "");
     gnuplot_axis(g, 'y', PLOT_LINEAR, range.range, dot ? dot + 1 : of->name, of->unit);
     gnuplot_series(g, "using 1:2 with lines dt 2 lc rgb 0x909090");
-    GNUPLOT_ROW(g, page->along.range.low, 0);
-    GNUPLOT_ROW(g, page->along.range.high, 0);
+    gnuplot_segment(g, page->along.range.low, 0, page->along.range.high, 0);
     gnuplot_series(g, words ? "using 1:2:($1-0.05):($1+0.05):2:3 with boxxyerror lc rgb hue[1] "
                               "fillstyle solid noborder"
                             : "using 1:2:3 with filledcurves lc rgb hue[1] fillstyle transparent "

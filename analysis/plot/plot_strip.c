@@ -105,7 +105,7 @@ static void put_row(struct gnuplot *g, struct strip *strip, int first, int colum
                         strip->ground[k][1] - strip->figure[i].base);
         gnuplot_gap(g);
     }
-    for (int k = 0; k < 3; k++) {
+    for (int k = strip->c->other ? 0 : 1; k < 3; k++) {
         gnuplot_series(g, "using %s", styles[k]);
         for (int i = first; i < end; i++)
             figure_put(g, k > 0 ? &strip->figure[i] : &strip->other[i], strip->contacts,

@@ -162,18 +162,14 @@ static void put_figures(struct case_page *page)
     gnuplot_axis(g, 'y', PLOT_LINEAR, height, "height", "m");
     const int contacts = figure_colours(g, c->scenario->scene);
     gnuplot_series(g, "using 1:($2 > 0 ? y1_high : y1_low) with lines dt 3 lw 1 lc rgb 0x606060");
-    for (size_t k = 0; k < page->marks; k++) {
-        GNUPLOT_ROW(g, page->mark[k], 0);
-        GNUPLOT_ROW(g, page->mark[k], 1);
-        gnuplot_gap(g);
-    }
+    for (size_t k = 0; k < page->marks; k++)
+        gnuplot_segment(g, page->mark[k], 0, page->mark[k], 1);
     if (c->floor) {
         put_plates(page, figure);
     } else {
         gnuplot_series(
             g, "using 1:(-figure_fall*($1 - x_low)/metre(0)) with lines lw 2 lc rgb 0xa0a0a0");
-        GNUPLOT_ROW(g, page->time.low, 0);
-        GNUPLOT_ROW(g, page->time.high, 0);
+        gnuplot_segment(g, page->time.low, 0, page->time.high, 0);
     }
     for (int part = FIGURE_SEGMENTS; part <= FIGURE_POINTS; part++) {
         gnuplot_series(g, "using " FIGURE_PLACE " with %s lc rgb variable",

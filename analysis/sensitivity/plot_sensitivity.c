@@ -98,8 +98,7 @@ static void put_indices(struct drawing *d, size_t t)
     const struct sensitivity *const s = &d->study->table[t].s;
     const bool both = s->measure[series[0].measure] && s->measure[series[1].measure];
     gnuplot_series(&d->g, "using 1:2 with lines lw 1 lc rgb grey");
-    GNUPLOT_ROW(&d->g, 0, -0.66);
-    GNUPLOT_ROW(&d->g, 0, (double)d->study->factors - 0.34);
+    gnuplot_segment(&d->g, 0, -0.66, 0, (double)d->study->factors - 0.34);
     for (int c = 0; c < SERIES; c++) {
         const struct sensitivity_value *const v = s->measure[series[c].measure];
         if (!v)
@@ -160,8 +159,7 @@ static void put_effects(struct drawing *d, size_t t)
     const struct sensitivity_value *const mu_star = s->measure[SENSITIVITY_MU_STAR],
                                           *const sigma = s->measure[SENSITIVITY_SIGMA];
     gnuplot_series(&d->g, "using 1:2 with lines lc rgb grey dt 2");
-    GNUPLOT_ROW(&d->g, 0, 0);
-    GNUPLOT_ROW(&d->g, d->index.high, d->index.high);
+    gnuplot_segment(&d->g, 0, 0, d->index.high, d->index.high);
     gnuplot_series(&d->g, "using 1:2:3:4:5:6 with xyerrorbars lc rgb '#9ecae1' lw 1 pt 0 notitle, "
                           "'' using 1:2 with points pt 7 ps 0.8 lc rgb hue[1]");
     for (size_t i = 0; i < d->study->factors; i++) {

@@ -90,18 +90,6 @@ static bool find_parameters(struct listing *t, stance_message *message)
     return good || no_memory(message);
 }
 
-static void close_listing(struct listing *t)
-{
-    table_free(&t->rows);
-    for (size_t k = 0; k < t->columns; k++) {
-        results_column_close(&t->column[k]);
-        free(t->block[k]);
-    }
-    for (size_t k = 0; k < t->parameters; k++)
-        free(t->parameter[k].value);
-    free(t->inferred);
-}
-
 /* ---- rows --------------------------------------------------------------------------------- */
 
 static void add_columns(struct listing *t)
@@ -223,7 +211,14 @@ static int work(struct report *report, const struct results *r, stance_message *
     if (good)
         add_columns(t);
     const bool written = good && put_rows(t, message);
-    close_listing(t);
+    table_free(&t->rows);
+    for (size_t k = 0; k < t->columns; k++) {
+        results_column_close(&t->column[k]);
+        free(t->block[k]);
+    }
+    for (size_t k = 0; k < t->parameters; k++)
+        free(t->parameter[k].value);
+    free(t->inferred);
     free(t);
     return written ? EXIT_DONE : EXIT_IO;
 }

@@ -21,36 +21,6 @@
 #define FAR 1e6   /* m */
 #define TURNS 1e3 /* rad */
 
-static int add_body(stance_mechanism *m, const char *name, stance_joint joint, int parent)
-{
-    const int b = m->bodies++;
-    snprintf(m->body[b].name, STANCE_NAME, "%s", name);
-    m->body[b].joint = joint;
-    m->body[b].parent = parent;
-    return b;
-}
-
-static void add_contact(stance_mechanism *m, const char *name, int body)
-{
-    snprintf(m->element[m->elements].name, STANCE_NAME, "%s", name);
-    m->element[m->elements++].body = body;
-}
-
-static void add_point(stance_mechanism *m, const char *name, int body, bool falls, bool swings)
-{
-    snprintf(m->point[m->points].name, STANCE_NAME, "%s", name);
-    m->point[m->points].body = body;
-    m->point[m->points].falls = falls;
-    m->point[m->points].swings = swings;
-    m->point[m->points++].pushed = swings ? STANCE_FORCE : STANCE_NO_PUSH;
-}
-
-static void add_actuator(stance_mechanism *m, const char *name, int body)
-{
-    snprintf(m->actuator[m->actuators].name, STANCE_NAME, "%s", name);
-    m->actuator[m->actuators++].body = body;
-}
-
 /* ---- the biped ------------------------------------------------------------------------------- */
 
 enum { LEG_LENGTH, TRUNK_LENGTH, FOOT_MASS, TRUNK_MASS, HIP_MASS, BIPED_PARAMETERS };
@@ -89,20 +59,6 @@ static void biped_set(const double *robot, stance_mechanism_numbers *n)
     n->point[0].lowest = robot[STANCE_ROBOT_FALL_HEIGHT] * leg;
     n->point[1].at[1] = trunk;
     n->point[1].lowest = 0;
-}
-
-static void biped_make(stance_mechanism *m)
-{
-    add_body(m, "trunk", STANCE_FREE, -1);
-    add_body(m, "hip", STANCE_FIXED, TRUNK);
-    add_body(m, "leg1", STANCE_HINGE, TRUNK);
-    add_body(m, "leg2", STANCE_HINGE, TRUNK);
-    add_contact(m, "foot1", LEG1);
-    add_contact(m, "foot2", LEG2);
-    add_actuator(m, "hip1", LEG1);
-    add_actuator(m, "hip2", LEG2);
-    add_point(m, "hip", TRUNK, true, false);
-    add_point(m, "trunk", TRUNK, true, false);
 }
 
 /* The paper's balance controller at its equilibrium, torques within 10 N m. */
@@ -147,13 +103,6 @@ static const stance_workload biped_workloads[] = {{"flight", &balanced, flight},
 
 enum { RAIL, SLIDER };
 
-static void slider_make(stance_mechanism *m, const char *name, const char *contact)
-{
-    add_body(m, "rail", STANCE_SLIDE, -1);
-    add_body(m, name, STANCE_SLIDE, RAIL);
-    add_contact(m, contact, SLIDER);
-}
-
 enum { BALL_MASS, RADIUS, BALL_PARAMETERS };
 
 static const stance_quantity ball_parameters[BALL_PARAMETERS] = {
@@ -173,11 +122,6 @@ static void ball_set(const double *robot, stance_mechanism_numbers *n)
     n->body[SLIDER].axis[1] = 1;
     n->body[SLIDER].mass = robot[BALL_MASS];
     n->element[0].radius = robot[RADIUS];
-}
-
-static void ball_make(stance_mechanism *m)
-{
-    slider_make(m, "ball", "bottom");
 }
 
 enum { BLOCK_MASS, PULL, PULL_FREQUENCY, BLOCK_PARAMETERS };
@@ -213,12 +157,6 @@ static void block_set(const double *robot, stance_mechanism_numbers *n)
 static const double block_outline[][2] = {{0, 0},      {0.1, 0},  {0.1, 0.1},
                                           {-0.1, 0.1}, {-0.1, 0}, {0, 0}};
 
-static void block_make(stance_mechanism *m)
-{
-    slider_make(m, "block", "base");
-    add_point(m, "pull", SLIDER, false, true);
-}
-
 /* ---- the rod --------------------------------------------------------------------------------- */
 
 enum { LENGTH, ROD_MASS, INERTIA_RATIO, ROD_PARAMETERS };
@@ -247,40 +185,82 @@ static void rod_set(const double *robot, stance_mechanism_numbers *n)
         n->element[end].at[0] = (end ? 0.5 : -0.5) * length;
 }
 
-static void rod_make(stance_mechanism *m)
-{
-    add_body(m, "rod", STANCE_FREE, -1);
-    add_contact(m, "end1", 0);
-    add_contact(m, "end2", 0);
-}
-
 /* ---- all of them ----------------------------------------------------------------------------- */
 
 #define PARAMETERS(scene)                                                                          \
     .parameters = sizeof scene##_parameters / sizeof *scene##_parameters,                          \
     .parameter = scene##_parameters, .coordinate = scene##_coordinates, .set = scene##_set
 
-static const struct {
+/* A scene, and its structure: lists that end where there is no name. */
+static const struct scene {
     stance_carried carried;
-    void (*make)(stance_mechanism *m);
+    struct {
+        const char *name;
+        stance_joint joint;
+        int parent;
+    } body[5];
+    struct {
+        const char *name;
+        int body;
+    } contact[3], actuator[3];
+    struct {
+        const char *name;
+        int body;
+        bool falls, swings;
+    } point[3];
 } scenes[] = {
     {{.name = "biped",
       .text = "planar biped: trunk, hip and two legs with point feet, torques at the hip",
       .numbered = true,
       .workload = biped_workloads,
       PARAMETERS(biped)},
-     biped_make},
-    {{.name = "ball", .text = "ball that does not spin", PARAMETERS(ball)}, ball_make},
+     .body = {{"trunk", STANCE_FREE, -1},
+              {"hip", STANCE_FIXED, TRUNK},
+              {"leg1", STANCE_HINGE, TRUNK},
+              {"leg2", STANCE_HINGE, TRUNK}},
+     .contact = {{"foot1", LEG1}, {"foot2", LEG2}},
+     .actuator = {{"hip1", LEG1}, {"hip2", LEG2}},
+     .point = {{"hip", TRUNK, .falls = true}, {"trunk", TRUNK, .falls = true}}},
+    {{.name = "ball", .text = "ball that does not spin", PARAMETERS(ball)},
+     .body = {{"rail", STANCE_SLIDE, -1}, {"ball", STANCE_SLIDE, RAIL}},
+     .contact = {{"bottom", SLIDER}}},
     {{.name = "block",
       .text = "block that does not turn, on an inclined plane, pulled along it",
       .along_slope = true,
       .outline = block_outline,
       .corners = sizeof block_outline / sizeof *block_outline,
       PARAMETERS(block)},
-     block_make},
+     .body = {{"rail", STANCE_SLIDE, -1}, {"block", STANCE_SLIDE, RAIL}},
+     .contact = {{"base", SLIDER}},
+     .point = {{"pull", SLIDER, .swings = true}}},
     {{.name = "rod", .text = "rigid rod, both ends of which may touch the ground", PARAMETERS(rod)},
-     rod_make},
+     .body = {{"rod", STANCE_FREE, -1}},
+     .contact = {{"end1", 0}, {"end2", 0}}},
 };
+
+static void make_structure(const struct scene *of, stance_mechanism *m)
+{
+    for (int k = 0; of->body[k].name; k = ++m->bodies) {
+        snprintf(m->body[k].name, STANCE_NAME, "%s", of->body[k].name);
+        m->body[k].joint = of->body[k].joint;
+        m->body[k].parent = of->body[k].parent;
+    }
+    for (int k = 0; of->contact[k].name; k = ++m->elements) {
+        snprintf(m->element[k].name, STANCE_NAME, "%s", of->contact[k].name);
+        m->element[k].body = of->contact[k].body;
+    }
+    for (int k = 0; of->actuator[k].name; k = ++m->actuators) {
+        snprintf(m->actuator[k].name, STANCE_NAME, "%s", of->actuator[k].name);
+        m->actuator[k].body = of->actuator[k].body;
+    }
+    for (int k = 0; of->point[k].name; k = ++m->points) {
+        snprintf(m->point[k].name, STANCE_NAME, "%s", of->point[k].name);
+        m->point[k].body = of->point[k].body;
+        m->point[k].falls = of->point[k].falls;
+        m->point[k].swings = of->point[k].swings;
+        m->point[k].pushed = of->point[k].swings ? STANCE_FORCE : STANCE_NO_PUSH;
+    }
+}
 
 /* The one at a place, with its default numbers. */
 static stance_mechanism mechanism_at(int place)
@@ -294,7 +274,7 @@ static stance_mechanism mechanism_at(int place)
         robot[i] = carried->parameter[i].fallback;
         m.number[i] = -1;
     }
-    scenes[place].make(&m);
+    make_structure(&scenes[place], &m);
     carried->set(robot, &m.value);
     return m;
 }

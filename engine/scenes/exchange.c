@@ -66,10 +66,10 @@ static bool pair(const stance_mechanism *m, int a, int b, struct pairs *pairs)
 static void write_legs(const stance_mechanism *m, const struct pairs *pairs, const bool *first,
                        stance_exchange *exchange)
 {
-    for (int e = 0, c = 0; e < m->elements; e++)
-        for (int end = 0; end < (m->element[e].sole ? 2 : 1); end++, c++)
-            if (pairs->body[m->element[e].body] != m->element[e].body)
-                exchange->leg[!first[m->element[e].body]] |= 1u << c;
+    stance_contact_place at;
+    for (int c = 0; stance_mechanism_contact(m, c, &at) && at.element >= 0; c++)
+        if (pairs->body[at.body] != at.body)
+            exchange->leg[!first[at.body]] |= 1u << c;
 }
 
 /* Legs that hang from one body: coordinates and torques take each other's place. */

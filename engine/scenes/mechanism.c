@@ -35,6 +35,24 @@ bool stance_mechanism_stops(const stance_mechanism *m, int b, int side)
            isfinite(m->value.body[b].limits[side]);
 }
 
+bool stance_mechanism_contact(const stance_mechanism *m, int c, stance_contact_place *place)
+{
+    for (int e = 0; e < m->elements; e++) {
+        const int ends = m->element[e].sole ? 2 : 1;
+        *place = (stance_contact_place){e, m->element[e].body, c};
+        if (c < ends)
+            return true;
+        c -= ends;
+    }
+    for (int b = 0; b < m->bodies; b++)
+        for (int side = 0; side < 2; side++) {
+            *place = (stance_contact_place){-1, b, side};
+            if (stance_mechanism_stops(m, b, side) && c-- == 0)
+                return true;
+        }
+    return false;
+}
+
 int stance_mechanism_coordinate(const stance_mechanism *m, int b)
 {
     int i = m->body[0].joint == STANCE_FREE ? 2 : 0;
@@ -244,27 +262,20 @@ static void add_coordinates(struct described *d)
         d->posture[d->scene.postures++] = i;
 }
 
-static void add_contact(struct described *d, const char *name, const char *end, int grip)
-{
-    const int c = d->scene.contacts++;
-    snprintf(d->contact[c], LABEL, "%s%s", name, end);
-    d->contact_name[c] = d->contact[c];
-    d->grip[c] = grip;
-}
-
 static void add_contacts(struct described *d)
 {
+    static const char *const ends[2][2] = {{"_heel", "_toe"}, {"_low", "_high"}};
     const stance_mechanism *const m = &d->m;
-    for (int e = 0; e < m->elements; e++) {
-        const int first = d->scene.contacts;
-        add_contact(d, m->element[e].name, m->element[e].sole ? "_heel" : "", first);
-        if (m->element[e].sole)
-            add_contact(d, m->element[e].name, "_toe", first);
+    stance_contact_place at;
+    for (int c = 0; stance_mechanism_contact(m, c, &at); c++) {
+        const bool stop = at.element < 0;
+        snprintf(d->contact[c], LABEL, "%s%s",
+                 stop ? m->body[at.body].name : m->element[at.element].name,
+                 stop || m->element[at.element].sole ? ends[stop][at.end] : "");
+        d->contact_name[c] = d->contact[c];
+        d->grip[c] = stop ? -1 : c - at.end;
+        d->scene.contacts++;
     }
-    for (int b = 0; b < m->bodies; b++)
-        for (int side = 0; side < 2; side++)
-            if (stance_mechanism_stops(m, b, side))
-                add_contact(d, m->body[b].name, side ? "_high" : "_low", -1);
 }
 
 /* Points, then bodies, as the tables of the tree have them. */
@@ -282,11 +293,10 @@ static void add_causes(struct described *d)
 stance_error stance_mechanism_scene(const stance_mechanism *m, stance_scene **scene,
                                     stance_message *message)
 {
+    stance_contact_place place;
     int contacts = 0;
-    for (int e = 0; e < m->elements; e++)
-        contacts += m->element[e].sole ? 2 : 1;
-    for (int b = 0; b < m->bodies; b++)
-        contacts += stance_mechanism_stops(m, b, 0) + stance_mechanism_stops(m, b, 1);
+    while (stance_mechanism_contact(m, contacts, &place))
+        contacts++;
     if (contacts > STANCE_MAX_CONTACTS)
         return stance_refuse(message, STANCE_BAD_ARGUMENT,
                              "%d contacts, counting both ends of soles and stops: at most %d fit",

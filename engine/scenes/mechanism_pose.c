@@ -144,37 +144,25 @@ static void touch_ground(const stance_pose *pose, int body, const double local[2
     }
 }
 
-static void touch_stop(const stance_pose *pose, int body, int side, stance_touch *touch)
-{
-    const double q = pose->position[pose->own[body]], *limits = pose->number.body[body].limits;
-    *touch = (stance_touch){.body = body,
-                            .stop = true,
-                            .gap = side ? limits[1] - q : q - limits[0],
-                            .point = {pose->origin[body][0], pose->origin[body][1]}};
-    touch->row[0][pose->own[body]] = side ? -1 : 1;
-}
-
 bool stance_pose_contact(const stance_pose *pose, int index, stance_touch *touch)
 {
-    const stance_mechanism *const m = pose->m;
-    for (int e = 0; e < m->elements; e++) {
-        const stance_element_numbers *const n = &pose->number.element[e];
-        if (index == 0 || (index == 1 && m->element[e].sole)) {
-            touch_ground(pose, m->element[e].body, index ? n->to : n->at, n->radius, touch);
-            touch->rough = m->element[e].rough ? n->friction_factor : 1;
-            return true;
-        }
-        index -= m->element[e].sole ? 2 : 1;
+    stance_contact_place at;
+    if (!stance_mechanism_contact(pose->m, index, &at))
+        return false;
+    if (at.element >= 0) {
+        const stance_element_numbers *const n = &pose->number.element[at.element];
+        touch_ground(pose, at.body, at.end ? n->to : n->at, n->radius, touch);
+        touch->rough = pose->m->element[at.element].rough ? n->friction_factor : 1;
+        return true;
     }
-    for (int b = 0; b < m->bodies; b++) {
-        for (int side = 0; side < 2; side++) {
-            if (stance_mechanism_stops(m, b, side) && index-- == 0) {
-                touch_stop(pose, b, side, touch);
-                return true;
-            }
-        }
-    }
-    return false;
+    const int own = pose->own[at.body];
+    const double q = pose->position[own], *limits = pose->number.body[at.body].limits;
+    *touch = (stance_touch){.body = at.body,
+                            .stop = true,
+                            .gap = at.end ? limits[1] - q : q - limits[0],
+                            .point = {pose->origin[at.body][0], pose->origin[at.body][1]}};
+    touch->row[0][own] = at.end ? -1 : 1;
+    return true;
 }
 
 void stance_pose_inertia(const stance_pose *pose, double *A)

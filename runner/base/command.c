@@ -421,19 +421,17 @@ bool option_alarm(const char *text, void *ignored)
     return true;
 }
 
-static bool read_number(const struct option *o, const char *text, double *number)
+/* A number of an option, whole or not, within its range; *whole is the first, *number both. */
+static bool read_number(const struct option *o, const char *text, uint64_t *whole, double *number)
 {
     char *end;
-    *number = strtod(text, &end);
-    return end != text && !*end && errno == 0 && *number >= o->low && *number <= o->high;
-}
-
-static bool read_whole(const struct option *o, const char *text, uint64_t *number)
-{
-    char *end;
-    *number = strtoull(text, &end, 10);
-    return text[0] >= '0' && text[0] <= '9' && !*end && errno == 0 && *number < OPTION_NONE &&
-           (double)*number >= o->low && (o->high <= 0 || (double)*number <= o->high);
+    const bool is_whole = o->kind == OPTION_WHOLE;
+    errno = 0;
+    *whole = is_whole ? strtoull(text, &end, 10) : 0;
+    *number = is_whole ? (double)*whole : strtod(text, &end);
+    return end != text && !*end && errno == 0 && *number >= o->low &&
+           (!is_whole || (text[0] >= '0' && text[0] <= '9' && *whole < OPTION_NONE)) &&
+           (*number <= o->high || (is_whole && o->high <= 0));
 }
 
 /* Of an option, or an operand, into its member; false with a line on standard error. */
@@ -444,12 +442,12 @@ static bool read_value(const struct command *command, const struct option *o, co
     const size_t known = words_of(o, words),
                  word = known ? command_word(command, o->name, text, words, known) : 0;
     struct option_texts *const texts = member;
+    const int chosen = known > 0 ? (int)word : (int)o->low;
     uint64_t whole;
     double number;
     bool good = true;
     if (known > 0 && word == known)
         return false;
-    errno = 0;
     if (o->read)
         good = o->read(text, member);
     else if (o->kind == OPTION_FLAG)
@@ -458,13 +456,10 @@ static bool read_value(const struct command *command, const struct option *o, co
         *(const char **)member = text;
     else if (o->kind == OPTION_TEXTS)
         texts->text[texts->count++] = text;
-    else if (o->kind == OPTION_WORD) {
-        const int chosen = known > 0 ? (int)word : (int)o->low;
+    else if (o->kind == OPTION_WORD)
         memcpy(member, &chosen, sizeof chosen);
-    } else if (o->kind == OPTION_WHOLE && (good = read_whole(o, text, &whole)))
-        *(uint64_t *)member = whole;
-    else if (o->kind == OPTION_NUMBER && (good = read_number(o, text, &number)))
-        *(double *)member = number;
+    else if ((good = read_number(o, text, &whole, &number)))
+        memcpy(member, o->kind == OPTION_WHOLE ? (void *)&whole : (void *)&number, sizeof number);
     if (good)
         return true;
     fprintf(stderr, "stance %s: %s takes ", command->name, o->name);

@@ -189,7 +189,7 @@ static void put_keys(const struct say_key *key, bool inner, FILE *out)
         if (!key->text)
             continue;
         if (!key->name) {
-            fprintf(out, key->text[0] ? "  %s\n" : "", key->text);
+            fprintf(out, "%s%s%s", key->text[0] ? "  " : "", key->text, key->text[0] ? "\n" : "");
             say_keys(key->of, out);
             continue;
         }
@@ -199,7 +199,7 @@ static void put_keys(const struct say_key *key, bool inner, FILE *out)
             put_keys(key->of, true, out);
             fprintf(out, "}%s%s%s", inner ? "" : "]", key->text[0] ? "; " : "", key->text);
         } else {
-            fprintf(out, consists ? ": %s" : key->text[0] ? " (%s)" : "", key->text);
+            fprintf(out, consists ? ": %s" : key->text[0] ? " (%s)" : "%s", key->text);
         }
         before = key->of ? line : ", ";
     }

@@ -26,7 +26,8 @@
 
 /* A key of what programs get, for -h, which lists these where `struct command` names them. */
 struct say_key {
-    const char *name;         /* NULL: `text` says in a line of its own what has the keys `of` */
+    const char *name;         /* NULL in a whole list: `text` says in a line of its own what has
+                               * the keys `of` */
     const char *text;         /* "what it is", "[low, high]" of what it consists; "": its name says
                                * it; NULL: it is not told, as columns of CSV alone */
     const struct say_key *of; /* it is a list of objects with these keys, within such a list one

@@ -26,8 +26,7 @@ struct optimise {
     struct run run;         /* whose scenario is the first candidate */
     struct scenario *asked; /* as it was read, on rank 0 */
     char best[1100];
-    struct search_file origin; /* of a search that is gone on with, on rank 0 */
-    bool resumes;
+    struct search_file origin; /* of a search that is gone on with, on rank 0; else all 0 */
     struct search search;
     double before; /* s that earlier parts of the search took */
     double save_at;
@@ -134,7 +133,6 @@ static bool look_into_file(struct optimise *o)
                         "it, -o names another file",
                         run->file);
     run_warn_of_revision(run, run->file, o->origin.revision);
-    o->resumes = true;
     return true;
 }
 
@@ -226,7 +224,7 @@ static void stage_make(struct run *run)
     const char *const text = run->parallel.rank == 0 ? o->asked->text : "";
     const bool good = parallel_share(&run->parallel) || no_memory(&run->message);
     if (!good || !search_make(&o->search, run->scenario, text, &run->parallel,
-                              o->resumes ? &o->origin : NULL, &run->message)) {
+                              o->origin.scenario ? &o->origin : NULL, &run->message)) {
         run_fail_io(run);
         return;
     }

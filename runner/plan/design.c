@@ -37,6 +37,29 @@ static stance_plant plant_of(const struct design_report *r)
     return (stance_plant){r->states, r->inputs, r->A, r->B};
 }
 
+/* loop[n][n] = A - B K; with interval > 0 of the model sampled so, torques held in between. */
+static stance_error close_loop(const stance_plant *plant, const double *K, double interval,
+                               double *loop)
+{
+    const int n = plant->states, m = plant->inputs;
+    const double *const A = plant->A, *const B = plant->B;
+    double Ad[DESIGN_STATES * DESIGN_STATES];
+    double Bd[DESIGN_STATES * DESIGN_INPUTS];
+    if (interval > 0) {
+        const stance_error error = stance_discretise(plant, interval, Ad, Bd);
+        const stance_plant held = {n, m, Ad, Bd};
+        return error == STANCE_OK ? close_loop(&held, K, 0, loop) : error;
+    }
+    for (int i = 0; i < n; i++) {
+        for (int j = 0; j < n; j++) {
+            loop[i * n + j] = A[i * n + j];
+            for (int k = 0; k < m; k++)
+                loop[i * n + j] -= B[i * m + k] * K[k * n + j];
+        }
+    }
+    return STANCE_OK;
+}
+
 static bool open_loop(struct design_report *r, stance_message *message)
 {
     const stance_scene *scene = r->scenario->scene;
@@ -379,7 +402,7 @@ static bool sublevel(struct design_report *r, stance_message *message)
         weight[i] = 1 / (tolerance * tolerance);
     }
     const stance_plant plant = plant_of(r);
-    stance_error error = resolve_loop(&plant, r->K, r->sampled ? values->sample_time : 0, loop);
+    stance_error error = close_loop(&plant, r->K, r->sampled ? values->sample_time : 0, loop);
     if (error == STANCE_OK &&
         stance_lyapunov(n, loop, r->sampled > 0, weight, set->P, message) != STANCE_OK) {
         set->exists = false; /* on the border of stability */
@@ -414,13 +437,13 @@ static bool loop(struct design_report *r, const struct resolved_design *known,
         return true;
     if (!gains(r, known, message))
         return false;
-    stance_error error = resolve_loop(&plant, r->K, 0, matrix);
+    stance_error error = close_loop(&plant, r->K, 0, matrix);
     if (error == STANCE_OK)
         error = stance_eigenvalues(n, matrix, r->closed_re, r->closed_im);
     if (error == STANCE_OK && r->bends) {
         double beyond[DESIGN_INPUTS * DESIGN_STATES];
         design_beyond(r, beyond);
-        error = resolve_loop(&plant, beyond, 0, matrix);
+        error = close_loop(&plant, beyond, 0, matrix);
         if (error == STANCE_OK)
             error = stance_eigenvalues(n, matrix, r->beyond_re, r->beyond_im);
     }

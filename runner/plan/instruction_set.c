@@ -21,20 +21,24 @@ const char *instruction_set(void)
 
 void instruction_set_names(char text[INSTRUCTION_SETS_SIZE])
 {
-    size_t used = 0;
     text[0] = '\0';
-    for (int rank = 0; stance_isa(rank) && used < INSTRUCTION_SETS_SIZE; rank++) {
-        used += (size_t)snprintf(text + used, INSTRUCTION_SETS_SIZE - used, "%s%s",
-                                 rank ? ", " : "", stance_isa(rank));
-    }
+    for (int rank = 0; stance_isa(rank); rank++)
+        add_text(text, INSTRUCTION_SETS_SIZE, "%s%s", rank ? ", " : "", stance_isa(rank));
+}
+
+bool instruction_set_runs(const char *isa)
+{
+    int rank = 0;
+    while (stance_isa(rank) && strcmp(isa, stance_isa(rank)) != 0)
+        rank++;
+    return stance_isa(rank) != NULL;
 }
 
 bool instruction_set_check(stance_message *message)
 {
     char names[INSTRUCTION_SETS_SIZE];
-    for (int rank = 0; stance_isa(rank); rank++)
-        if (strcmp(instruction_set(), stance_isa(rank)) == 0)
-            return true;
+    if (instruction_set_runs(instruction_set()))
+        return true;
     instruction_set_names(names);
     return complain(message, "STANCE_ISA is '%.40s'; instruction sets of this machine: %s",
                     instruction_set_asked(), names);

@@ -13,6 +13,9 @@ const char *instruction_set_asked(void);
 /* The name of the one in use, as stance_kernel.isa. */
 const char *instruction_set(void);
 
+/* Whether this machine runs one. */
+bool instruction_set_runs(const char *isa);
+
 /* Whether STANCE_ISA, where set, names one that this machine runs; else `message` says so. */
 bool instruction_set_check(stance_message *message);
 /* The same for a command that computes: prints "stance COMMAND: " and the message. */

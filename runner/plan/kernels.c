@@ -3,6 +3,8 @@
 
 #include "engine/tree.h"
 
+#include "runner/base/message.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -16,14 +18,6 @@ static bool listed(const char *word, const char *const *list, size_t count)
 {
     for (size_t i = 0; i < count; i++)
         if (strcmp(word, list[i]) == 0)
-            return true;
-    return false;
-}
-
-static bool runs_here(const char *isa)
-{
-    for (int rank = 0; stance_isa(rank); rank++)
-        if (strcmp(isa, stance_isa(rank)) == 0)
             return true;
     return false;
 }
@@ -45,7 +39,6 @@ static bool uses_method(const struct plan *plan, int method)
 
 void kernels_instruction_sets(const struct plan *plan, char text[INSTRUCTION_SETS_SIZE])
 {
-    size_t used = 0;
     const char *last = "";
     text[0] = '\0';
     for (int m = 0; stance_methods()[m]; m++) {
@@ -53,11 +46,10 @@ void kernels_instruction_sets(const struct plan *plan, char text[INSTRUCTION_SET
             uses_method(plan, m)
                 ? instruction_set_kernel(plan->scenario->scene, stance_methods()[m])
                 : NULL;
-        if (!kernel || strcmp(kernel->isa, last) == 0 || used >= INSTRUCTION_SETS_SIZE)
+        if (!kernel || strcmp(kernel->isa, last) == 0)
             continue;
         last = kernel->isa;
-        used += (size_t)snprintf(text + used, INSTRUCTION_SETS_SIZE - used, "%s%s",
-                                 used ? ", " : "", last);
+        add_text(text, INSTRUCTION_SETS_SIZE, "%s%s", text[0] ? ", " : "", last);
     }
 }
 
@@ -77,8 +69,9 @@ static size_t list_methods(const struct plan *plan, const struct kernels_choice 
         for (size_t i = 0; used && i < isas && count < OBJECTS_MOST; i++) {
             wanted[count++] = (struct objects_wanted){
                 method, isa[i],
-                runs_here(isa[i]) ? stance_kernel_find(plan->scenario->scene, method, isa[i])
-                                  : NULL};
+                instruction_set_runs(isa[i])
+                    ? stance_kernel_find(plan->scenario->scene, method, isa[i])
+                    : NULL};
         }
     }
     return count;
@@ -243,31 +236,23 @@ void kernels_change(struct kernels *kernels)
 
 /* ---- what run would do ---------------------------------------------------------------------- */
 
-/* About how long a compiler takes, s, and what compiled kernels take of the time of those that are
- * built in: by acrobot, cart-pole, rolling disc, compass, hopper, RABBIT, flat feet and walker2d on
- * one machine, by midpoint and capturing. */
-static double compiling_takes(const stance_scene *scene)
-{
-    return 3 + 0.25 * scene->coordinates * scene->coordinates + 1.3 * scene->contacts;
-}
-
-static double compiled_share(const stance_scene *scene)
-{
-    return 0.03 + 0.01 * (scene->coordinates + scene->contacts);
-}
-
 struct kernels_outlook kernels_look(struct kernels *kernels, const struct plan *plan)
 {
     const struct parallel alone = parallel_alone();
     const struct kernels_choice choice = {.quiet = true, .looks = true};
+    const stance_scene *const scene = plan->scenario->scene;
+    const int n = scene->coordinates;
     struct kernels_outlook outlook = {0, 1, true};
     stance_message ignored;
     const enum exit_code code = kernels_take(kernels, plan, &choice, &alone, &ignored);
     outlook.brief = kernels->brief;
     for (size_t i = 0; code == EXIT_DONE && i < kernels->count; i++)
         if (kernels->object[i].origin == OBJECT_MISSING) {
-            outlook.compiling += compiling_takes(plan->scenario->scene);
-            outlook.share = compiled_share(plan->scenario->scene);
+            /* About how long a compiler takes, s, and what compiled kernels take of the time of
+             * those that are built in: by acrobot, cart-pole, rolling disc, compass, hopper,
+             * RABBIT, flat feet and walker2d on one machine, by midpoint and capturing. */
+            outlook.compiling += 3 + 0.25 * n * n + 1.3 * scene->contacts;
+            outlook.share = 0.03 + 0.01 * (n + scene->contacts);
         }
     return outlook;
 }

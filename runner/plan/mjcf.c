@@ -28,21 +28,11 @@ static FILE *line(const struct model *o)
 
 static void text(FILE *out, const char *of)
 {
-    for (; *of; of++) {
-        switch (*of) {
-        case '&':
-            fputs("&amp;", out);
-            break;
-        case '<':
-            fputs("&lt;", out);
-            break;
-        case '\'':
-            fputs("&apos;", out);
-            break;
-        default:
+    for (; *of; of++)
+        if (*of == '&' || *of == '<' || *of == '\'')
+            fputs(*of == '&' ? "&amp;" : *of == '<' ? "&lt;" : "&apos;", out);
+        else
             fputc(*of, out);
-        }
-    }
 }
 
 static void in_plane(FILE *out, const char *key, const double at[2])
@@ -138,13 +128,11 @@ static void sphere(struct model *o, int contact, int e, const double at[2])
 /* Contacts and points of a body. Both ends of a sole hold its friction here. */
 static void places(struct model *o, int b)
 {
-    for (int e = 0, contact = 0; e < o->m->elements; contact += o->m->element[e++].sole ? 2 : 1) {
-        const stance_element_numbers *const n = &o->number.element[e];
-        if (o->m->element[e].body != b)
-            continue;
-        sphere(o, contact, e, n->at);
-        if (o->m->element[e].sole)
-            sphere(o, contact + 1, e, n->to);
+    stance_contact_place place;
+    for (int c = 0; stance_mechanism_contact(o->m, c, &place) && place.element >= 0; c++) {
+        const stance_element_numbers *const n = &o->number.element[place.element];
+        if (place.body == b)
+            sphere(o, c, place.element, place.end ? n->to : n->at);
     }
     for (int p = 0; p < o->m->points; p++) {
         if (o->m->point[p].body != b)
@@ -217,23 +205,15 @@ static void keyframe(struct model *o)
 }
 
 static const char head[] =
-    "<!-- SI units; the plane is x, z, with x forward and z up. Bodies and joints are those of the "
-    "scenario:\n"
-    "     a body's frame begins at the joint to its parent, and qpos and qvel are its coordinates "
-    "and "
-    "their\n"
-    "     rates, by name. Hinges turn x towards z (about -y). A body that is fixed has no joint; "
-    "the\n"
-    "     inertia that counts is about y. Points, discs and both ends of a sole are spheres, "
-    "larger by "
-    "a\n"
-    "     skin of %g m than they are, and the plane lies as much lower. A slope tilts the plane, "
-    "not\n"
-    "     gravity. Named points are sites.\n"
-    "     Not here: control laws (ctrl of the keyframe are the torques at rest), pushes, "
-    "restitution, "
-    "what\n"
-    "     counts as a fall. Contacts and stops are soft in MuJoCo, in stance they are exact. -->\n";
+    "<!-- SI units; the plane is x, z, with x forward and z up. Bodies and joints are those of "
+    "the scenario:\n     a body's frame begins at the joint to its parent, and qpos and qvel are "
+    "its coordinates and their\n     rates, by name. Hinges turn x towards z (about -y). A body "
+    "that is fixed has no joint; the\n     inertia that counts is about y. Points, discs and both "
+    "ends of a sole are spheres, larger by a\n     skin of %g m than they are, and the plane lies "
+    "as much lower. A slope tilts the plane, not\n     gravity. Named points are sites.\n     Not "
+    "here: control laws (ctrl of the keyframe are the torques at rest), pushes, restitution, "
+    "what\n     counts as a fall. Contacts and stops are soft in MuJoCo, in stance they are exact. "
+    "-->\n";
 
 void mjcf_write(FILE *out, const stance_scene *scene, const stance_case *c, const char *title)
 {

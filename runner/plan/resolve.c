@@ -175,27 +175,6 @@ bool resolve_gains(const stance_scene *scene, const struct scenario_values *valu
     return error == STANCE_OK;
 }
 
-stance_error resolve_loop(const stance_plant *plant, const double *K, double interval, double *loop)
-{
-    const int n = plant->states, m = plant->inputs;
-    const double *const A = plant->A, *const B = plant->B;
-    double Ad[4 * STANCE_MAX_POSTURE * STANCE_MAX_POSTURE];
-    double Bd[2 * STANCE_MAX_POSTURE * STANCE_MAX_ACTUATORS];
-    if (interval > 0) {
-        const stance_error error = stance_discretise(plant, interval, Ad, Bd);
-        const stance_plant held = {n, m, Ad, Bd};
-        return error == STANCE_OK ? resolve_loop(&held, K, 0, loop) : error;
-    }
-    for (int i = 0; i < n; i++) {
-        for (int j = 0; j < n; j++) {
-            loop[i * n + j] = A[i * n + j];
-            for (int k = 0; k < m; k++)
-                loop[i * n + j] -= B[i * m + k] * K[k * n + j];
-        }
-    }
-    return STANCE_OK;
-}
-
 static bool design_state_feedback(const stance_scene *scene, const struct scenario_values *values,
                                   struct resolved_design *design, stance_message *message)
 {
@@ -350,22 +329,18 @@ static bool beyond_stop(const stance_scene *scene, const struct scenario_values 
 {
     const stance_mechanism *const m = scene->mechanism;
     stance_mechanism_numbers number;
-    int body = 0, side = 0, i = 0;
-    for (int before = c; before >= 0 && scene->grip[before] < 0; before--)
-        side++; /* which of all stops, from 1 */
-    for (int k = 0; side > 0; k++) {
-        body = k / 2;
-        side -= stance_mechanism_stops(m, body, k % 2);
-        i = k % 2;
-    }
-    side = i;
-    i = stance_mechanism_coordinate(m, body);
+    int before = 0, end = 0; /* stops before it; ends of joints, with a stop or without */
+    while (before < c && scene->grip[c - before - 1] < 0)
+        before++;
+    while (!stance_mechanism_stops(m, end / 2, end % 2) || before-- > 0)
+        end++;
+    const int i = stance_mechanism_coordinate(m, end / 2);
     stance_mechanism_expand(m, out->robot, &number);
     const char *const unit = scene->coordinate[i].unit, *const name = scene->coordinate[i].name;
     return complain(message, "initial.%s.%s: %s would start at %.6g %s, %s limit of %.6g %s",
                     values->state_given ? "state" : "offset", name, name, out->position[i], unit,
-                    side ? "above its upper" : "below its lower", number.body[body].limits[side],
-                    unit);
+                    end % 2 ? "above its upper" : "below its lower",
+                    number.body[end / 2].limits[end % 2], unit);
 }
 
 static bool check_start(const stance_scene *scene, const struct scenario_values *values,

@@ -68,10 +68,6 @@ bool resolve_gains(const stance_scene *scene, const struct scenario_values *valu
                    const stance_equilibrium *equilibrium, const stance_plant *plant, double *K,
                    stance_robustness *how, stance_message *message);
 
-/* loop[n][n] = A - B K; with interval > 0 of the model sampled so, torques held in between. */
-stance_error resolve_loop(const stance_plant *plant, const double *K, double interval,
-                          double *loop);
-
 /* Where a case starts, whether it may or not: position and velocity[coordinates]. */
 void resolve_start(const stance_scene *scene, const struct scenario_values *values,
                    const struct resolved_design *design, double *position, double *velocity);

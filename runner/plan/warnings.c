@@ -172,13 +172,13 @@ static void look_at_impacts(const stance_case *c, const stance_method *method, s
              c->restitution, method->name);
 }
 
-static void look_at(const struct plan *plan, uint64_t row, struct troubles *t)
+/* `c`: for a case, as in all that follow. */
+static void look_at(const struct plan *plan, uint64_t row, stance_case *c, struct troubles *t)
 {
     const stance_scene *const scene = plan->scenario->scene;
     const struct resolved_design design = plan_design_at(plan, plan_design(plan, t->index));
     struct scenario *const at = malloc(sizeof *at);
     struct design_report *const r = malloc(sizeof *r);
-    stance_case *const c = malloc(sizeof *c);
     stance_message ignored;
     int method;
     if (at && r) {
@@ -187,36 +187,32 @@ static void look_at(const struct plan *plan, uint64_t row, struct troubles *t)
         if (scenario_law(&at->base)->designed && design_loop(r, at, &design, &ignored))
             look_at_loop(r, t);
     }
-    if (c && plan_resolve(plan, row, c, &method)) {
+    if (plan_resolve(plan, row, c, &method)) {
         look_at_ground(scene, c, t);
         look_at_impacts(c, stance_methods()[method], t);
     }
     free(at);
     free(r);
-    free(c);
 }
 
 /* Initial angles of the first and the last case that are more than a turn. */
-static bool look_at_angles(const struct plan *plan, const char *who)
+static bool look_at_angles(const struct plan *plan, stance_case *c, const char *who)
 {
     const stance_scene *const scene = plan->scenario->scene;
-    stance_case *const c = malloc(sizeof *c);
-    bool said = c == NULL;
-    for (int end = 0; end < 2 && !said; end++) {
+    for (int end = 0; end < 2; end++) {
         int method;
         if (!plan_resolve(plan, end ? plan->rows - 1 : 0, c, &method))
             continue;
-        for (int i = 0; i < scene->coordinates && !said; i++) {
-            said = strcmp(scene->coordinate[i].unit, "rad") == 0 && fabs(c->position[i]) > 2 * M_PI;
-            if (said)
-                warn(who,
-                     "%s begins at %g rad, more than a turn: is that %g degrees? angles are in "
-                     "radians",
-                     scene->coordinate[i].name, c->position[i], c->position[i]);
+        for (int i = 0; i < scene->coordinates; i++) {
+            if (strcmp(scene->coordinate[i].unit, "rad") != 0 || fabs(c->position[i]) <= 2 * M_PI)
+                continue;
+            warn(who,
+                 "%s begins at %g rad, more than a turn: is that %g degrees? angles are in radians",
+                 scene->coordinate[i].name, c->position[i], c->position[i]);
+            return true;
         }
     }
-    free(c);
-    return said;
+    return false;
 }
 
 /* Of a sample of parameters shares are wanted, to which the equilibrium is a start as any other. */
@@ -332,33 +328,32 @@ static bool carried(const struct plan *plan, const stance_case *c, double more)
 }
 
 /* A first start at rest whose centre of mass is exactly above the edge of what it stands on. */
-static void look_at_edge(const struct plan *plan, const char *who)
+static void look_at_edge(const struct plan *plan, stance_case *c, const char *who)
 {
     const stance_scene *const scene = plan->scenario->scene;
     const double trifle = 1e-6; /* rad */
-    stance_case *const c = malloc(sizeof *c);
     int method;
     bool rests =
-        c && scene->mechanism->body[0].joint == STANCE_FREE && plan_resolve(plan, 0, c, &method);
+        scene->mechanism->body[0].joint == STANCE_FREE && plan_resolve(plan, 0, c, &method);
     for (int i = 0; rests && i < scene->coordinates; i++)
         rests = c->velocity[i] == 0;
     if (rests && carried(plan, c, trifle) != carried(plan, c, -trifle))
         warn(who, "the robot begins with its centre of mass above the very edge of what it stands "
                   "on: what becomes of it is decided by rounding");
-    free(c);
 }
 
 bool warnings_print(const struct plan *plan, const char *who)
 {
     const uint64_t tried = plan->rows < TRIED ? plan->rows : TRIED;
+    stance_case *const c = malloc(sizeof *c);
     struct troubles t = {.index = 0};
     bool any = false;
-    for (uint64_t k = 0; k < tried; k++) {
+    for (uint64_t k = 0; c && k < tried; k++) {
         const uint64_t row =
             tried < 2 ? 0 : (uint64_t)((double)(plan->rows - 1) * (double)k / (double)(tried - 1));
         t.index = plan_case(plan, row);
         if (plan->design_status[plan_design(plan, t.index)] == STANCE_DONE)
-            look_at(plan, row, &t);
+            look_at(plan, row, c, &t);
     }
     for (int k = 0; k < TROUBLES; k++) {
         char some[120] = "";
@@ -372,12 +367,15 @@ bool warnings_print(const struct plan *plan, const char *who)
         warn(who, "%s%s", t.what[k], some);
     }
     look_at_inertia(plan->scenario, who);
-    look_at_edge(plan, who);
+    if (c)
+        look_at_edge(plan, c, who);
     if (!plan->single) {
         look_at_counts(plan->scenario, who);
         look_at_lines(plan->scenario, who);
     }
-    return look_at_angles(plan, who) || any;
+    any |= c && look_at_angles(plan, c, who);
+    free(c);
+    return any;
 }
 
 /* ---- ranges ------------------------------------------------------------------------------- */
@@ -437,25 +435,23 @@ static uint64_t lattice_case(const struct scenario *s, uint64_t k, uint64_t *cas
 }
 
 /* A lone case that is over where it begins: taken one step, not more. */
-static void look_at_beginning(const struct plan *plan, const char *who)
+static void look_at_beginning(const struct plan *plan, stance_case *c, const char *who)
 {
     const stance_scene *const scene = plan->scenario->scene;
     const char *word[STANCE_MAX_WORDS];
-    stance_case *const c = malloc(sizeof *c);
     stance_result result;
     int method;
-    if (c && plan_resolve(plan, 0, c, &method)) {
-        const stance_kernel *kernel = instruction_set_kernel(scene, stance_methods()[method]);
-        const int words = stance_answer_words(scene, STANCE_ANSWER_fall_cause, word);
-        c->steps = c->steps < 1 ? c->steps : 1;
-        if (kernel)
-            kernel->run(c, &result, 1);
-        if (kernel && result.status == STANCE_DONE && result.outcome == STANCE_FELL &&
-            result.steps == 0)
-            warn(who, "the robot has fallen where it begins, by its %s",
-                 result.fall_cause < words ? word[result.fall_cause] : "posture");
-    }
-    free(c);
+    if (!plan_resolve(plan, 0, c, &method))
+        return;
+    const stance_kernel *const kernel = instruction_set_kernel(scene, stance_methods()[method]);
+    const int words = stance_answer_words(scene, STANCE_ANSWER_fall_cause, word);
+    c->steps = c->steps < 1 ? c->steps : 1;
+    if (kernel)
+        kernel->run(c, &result, 1);
+    if (kernel && result.status == STANCE_DONE && result.outcome == STANCE_FELL &&
+        result.steps == 0)
+        warn(who, "the robot has fallen where it begins, by its %s",
+             result.fall_cause < words ? word[result.fall_cause] : "posture");
 }
 
 void warnings_try(const struct plan *plan, const char *who)
@@ -467,8 +463,8 @@ void warnings_try(const struct plan *plan, const char *who)
     uint64_t outcome[STANCE_OUTCOME_COUNT] = {0}, count, ended = 0;
     lattice_case(s, 0, &count);
     bool whole = c && s->axes > 0;
-    if (s->axes == 0)
-        look_at_beginning(plan, who);
+    if (c && s->axes == 0)
+        look_at_beginning(plan, c, who);
     for (uint64_t k = 0; k < count && whole; k++) {
         int method;
         uint64_t all;

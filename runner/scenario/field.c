@@ -118,36 +118,32 @@ bool field_admits(struct problems *problems, const struct scenario_field *field,
 static bool no_number(struct problems *problems, const struct scenario_field *field,
                       const char *name, const char *wanted, const struct tree_node *node)
 {
-    char what[2 * SHOWN_SIZE], mend[MEND_SIZE];
+    char what[2 * SHOWN_SIZE], mend[MEND_SIZE], hint[MEND_SIZE + 160] = "";
     const bool quantity = field->unit[0] && strcmp(field->unit, "1") != 0;
     double value;
     bool finite = true;
 
     if (node->kind != TREE_SCALAR)
         return field_mismatch(problems, name, wanted, node);
+    const bool known = !node->quoted && mend_number(node->text, field->unit, mend),
+               number = number_parse(node->text, &value, &finite);
+    const char *const letters = node->text + strspn(node->text, "+-");
     found(what, sizeof what, node);
-    const bool known = !node->quoted && mend_number(node->text, field->unit, mend);
-    if (node->quoted && number_parse(node->text, &value, &finite)) {
-        problem_add(problems, node->mark, "%s: expected %s, found %s; remove the quotes", name,
-                    wanted, what);
-    } else if (!node->quoted && (!number_parse(node->text, &value, &finite) && !finite)) {
-        problem_add(problems, node->mark, "%s: %s is too large for a number", name, what);
-    } else if (!node->quoted && strspn(node->text, "+-") <= 1 &&
-               (!strcasecmp(node->text + strspn(node->text, "+-"), ".inf") ||
-                !strcasecmp(node->text, ".nan"))) {
-        problem_add(problems, node->mark, "%s: expected %s, found %s; it must be finite%s", name,
-                    wanted, what, field->type == FIELD_NUMBER && field->words ? ", or none" : "");
-    } else if (has_unit(node->text)) {
-        problem_add(problems, node->mark, "%s: expected %s, found %s (numbers only; %s %s%s)%s%s",
-                    name, wanted, what, schema_last_name(name), quantity ? "is in " : "has no unit",
-                    quantity ? field->unit : "", known ? "; write " : "", known ? mend : "");
-    } else if (known) {
-        problem_add(problems, node->mark, "%s: expected %s, found %s; write %s", name, wanted, what,
-                    mend);
-    } else {
-        return field_mismatch(problems, name, wanted, node);
-    }
-    return false;
+    if (!node->quoted && !number && !finite)
+        return problem_add(problems, node->mark, "%s: %s is too large for a number", name, what);
+    if (node->quoted && number)
+        add_text(hint, sizeof hint, "; remove the quotes");
+    else if (!node->quoted && letters <= node->text + 1 &&
+             (!strcasecmp(letters, ".inf") || !strcasecmp(node->text, ".nan")))
+        add_text(hint, sizeof hint, "; it must be finite%s",
+                 field->type == FIELD_NUMBER && field->words ? ", or none" : "");
+    else if (has_unit(node->text))
+        add_text(hint, sizeof hint, " (numbers only; %s %s%s)", schema_last_name(name),
+                 quantity ? "is in " : "has no unit", quantity ? field->unit : "");
+    if (known)
+        add_text(hint, sizeof hint, "; write %s", mend);
+    return problem_add(problems, node->mark, "%s: expected %s, found %s%s", name, wanted, what,
+                       hint);
 }
 
 /* ---- values ---------------------------------------------------------------------------------- */

@@ -606,13 +606,9 @@ uint32_t mechanism_contacts(const stance_scene *scene, uint32_t elements)
 {
     const stance_mechanism *const m = scene->mechanism;
     uint32_t contacts = 0;
-    int c = 0;
-    for (int e = 0; e < m->elements; e++) {
-        const int ends = m->element[e].sole ? 2 : 1;
-        if (elements >> e & 1)
-            contacts |= ((UINT32_C(1) << ends) - 1) << c;
-        c += ends;
-    }
+    stance_contact_place at;
+    for (int c = 0; stance_mechanism_contact(m, c, &at) && at.element >= 0; c++)
+        contacts |= (elements >> at.element & 1) << c;
     return contacts;
 }
 

@@ -39,24 +39,6 @@ static bool body_fault(const stance_mechanism *m, const stance_mechanism_numbers
     return false;
 }
 
-static bool sole_fault(const stance_mechanism *m, const stance_mechanism_numbers *number, int e,
-                       struct fault *f)
-{
-    const stance_element_numbers *const sole = &number->element[e];
-    return m->element[e].sole && sole->at[0] == sole->to[0] && sole->at[1] == sole->to[1] &&
-           FAULT(f, "robot.contacts", m->element[e].name, ".to",
-                 "stands where from does: a sole has a length");
-}
-
-static bool push_fault(const stance_mechanism *m, const stance_mechanism_numbers *number, int p,
-                       struct fault *f)
-{
-    const stance_point_numbers *const point = &number->point[p];
-    return m->point[p].pushed == STANCE_FORCE && point->to < point->from &&
-           FAULT(f, "robot.points", m->point[p].name, ".to", "%.6g s is before from, %.6g s",
-                 point->to, point->from);
-}
-
 /* ---- the ground ------------------------------------------------------------------------------ */
 
 /* The one before of those that are always there, or of those by footfall; -1: none. */
@@ -215,12 +197,18 @@ static bool find_fault(const struct reader *r, const double *robot, struct fault
     for (int b = 0; b < m->bodies; b++)
         if (body_fault(m, &number, b, f))
             return true;
-    for (int e = 0; e < m->elements; e++)
-        if (sole_fault(m, &number, e, f))
-            return true;
-    for (int p = 0; p < m->points; p++)
-        if (push_fault(m, &number, p, f))
-            return true;
+    for (int e = 0; e < m->elements; e++) {
+        const stance_element_numbers *const sole = &number.element[e];
+        if (m->element[e].sole && sole->at[0] == sole->to[0] && sole->at[1] == sole->to[1])
+            return FAULT(f, "robot.contacts", m->element[e].name, ".to",
+                         "stands where from does: a sole has a length");
+    }
+    for (int p = 0; p < m->points; p++) {
+        const stance_point_numbers *const point = &number.point[p];
+        if (m->point[p].pushed == STANCE_FORCE && point->to < point->from)
+            return FAULT(f, "robot.points", m->point[p].name, ".to",
+                         "%.6g s is before from, %.6g s", point->to, point->from);
+    }
     for (int i = 0; i < m->plates && r->problems.count == 0; i++) /* else one may be missing */
         if (plate_fault(m, &number, i, f))
             return true;

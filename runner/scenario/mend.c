@@ -24,61 +24,34 @@ static size_t name_length(const char *text)
 
 const char *mend_word(const char *word, const char *const *known, size_t count)
 {
-    static const char *const others[][2] = {
-        {"mu", "friction"},
-        {"friction", "friction_factor"},
-        {"dt", "step"},
-        {"steps", "count"},
-        {"step", "count"},
-        {"points", "count"},
-        {"num", "count"},
-        {"n", "count"},
-        {"min", "from"},
-        {"max", "to"},
-        {"start", "from"},
-        {"end", "to"},
-        {"com", "centre"},
-        {"center", "centre"},
-        {"revolute", "hinge"},
-        {"prismatic", "slide"},
-        {"joint", "body"},
-        {"duration", "time"},
-        {"e", "restitution"},
-        {"g", "gravity"},
-        {"pd", "hold"},
-        {"logarithmic", "log"},
-        {"monte-carlo", "random"},
-        {"latin", "lhs"},
-        {"lqr", "state-feedback"},
-        {"place", "state-feedback"},
-        {"left", "foot1"},
-        {"right", "foot2"},
-        {"height", "z"},
-        {"length", "leg_length"},
-        {"mass", "hip_mass"},
-        {"every", "all"},
-        {"bullet", "ball"},
-        {"robot", "biped"},
-        {"rate_limit", "torque_rate"},
-        {"slew_rate", "torque_rate"},
-        {"latency", "delay"},
-        {"dead_time", "delay"},
-        {"time_constant", "lag"},
-    };
+    /* What is called so elsewhere, and what it is here. */
+    static const char others[] =
+        " mu=friction friction=friction_factor dt=step steps=count step=count "
+        "points=count num=count n=count min=from max=to start=from end=to com=centre "
+        "center=centre revolute=hinge prismatic=slide joint=body duration=time "
+        "e=restitution g=gravity pd=hold logarithmic=log monte-carlo=random "
+        "latin=lhs lqr=state-feedback place=state-feedback left=foot1 right=foot2 "
+        "height=z length=leg_length mass=hip_mass every=all bullet=ball robot=biped "
+        "rate_limit=torque_rate slew_rate=torque_rate latency=delay dead_time=delay "
+        "time_constant=lag ";
     const char *const dash = strchr(word, '-');
     const size_t length = strlen(word);
-    char turned[64] = "";
+    char turned[64] = "", called[80];
 
     if (dash && length < sizeof turned) /* theta-x: x-theta */
         snprintf(turned, sizeof turned, "%s-%.*s", dash + 1, (int)(dash - word), word);
     else if (length > 4 && length < sizeof turned && strcmp(word + length - 4, "_dot") == 0)
         snprintf(turned, sizeof turned, "v%.*s", (int)length - 4, word);
+    snprintf(called, sizeof called, " %.60s=", word);
     for (size_t k = 0; k < count; k++) {
         if (strcmp(turned, known[k]) == 0)
             return known[k];
-        for (size_t i = 0; i < sizeof others / sizeof others[0]; i++)
-            if (strcmp(word, others[i][0]) == 0 && strcmp(known[k], others[i][1]) == 0)
+        const size_t own = strlen(known[k]);
+        for (const char *at = others; (at = strstr(at, called));) {
+            at += strlen(called);
+            if (strncmp(at, known[k], own) == 0 && at[own] == ' ')
                 return known[k];
+        }
     }
     return nearest_word(word, known, count);
 }

@@ -156,6 +156,12 @@ static void new_line(struct writer *w, int indent)
     w->column = indent;
 }
 
+/* What is no more than a letter in any text; line ends and tabs are not. */
+static bool is_letter(uint32_t c)
+{
+    return c >= 0x20 && printable(c) && c != 0x85 && c != 0x2028 && c != 0x2029;
+}
+
 /* Whether a plain scalar reads back as itself in every context; all numbers do. */
 static bool safe_plain(const char *text)
 {
@@ -183,7 +189,7 @@ static void write_scalar(struct writer *w, const struct tree_node *node)
         n = n ? n : 1;
         if (c == '"' || c == '\\')
             snprintf(escape, sizeof escape, "\\%c", (char)c);
-        else if (c < 0x20 || !printable(c) || c == 0x85 || c == 0xa0 || c == 0x2028 || c == 0x2029)
+        else if (!is_letter(c) || c == 0xa0)
             snprintf(escape, sizeof escape, "\\U%08X", c);
         else
             snprintf(escape, sizeof escape, "%.*s", (int)n, s);
@@ -218,11 +224,6 @@ static void write_flow(struct writer *w, const struct tree_node *node, int inden
     put(w, node->kind == TREE_LIST ? "]" : "}");
 }
 
-static bool holds_maps(const struct tree_node *node)
-{
-    return node->kind == TREE_LIST && node->count > 0 && node->item[0]->kind == TREE_MAP;
-}
-
 /* Whether a text of several lines reads back as itself as a block. */
 static bool suits_block(const struct tree_node *node)
 {
@@ -232,8 +233,7 @@ static bool suits_block(const struct tree_node *node)
     while (left > 0) {
         uint32_t c = 0;
         const size_t n = utf8_letter(s, left, &c);
-        if (n == 0 || (c != '\n' && c != '\t' &&
-                       (c < 0x20 || !printable(c) || c == 0x85 || c == 0x2028 || c == 0x2029)))
+        if (n == 0 || (c != '\n' && c != '\t' && !is_letter(c)))
             return false;
         s += n;
         left -= n;
@@ -268,7 +268,7 @@ static void write_map(struct writer *w, const struct tree_node *map, int indent)
         if (item->kind == TREE_MAP && item->count > 0) {
             new_line(w, indent + 2);
             write_map(w, item, indent + 2);
-        } else if (holds_maps(item)) {
+        } else if (item->kind == TREE_LIST && item->count > 0 && item->item[0]->kind == TREE_MAP) {
             for (size_t k = 0; k < item->count; k++) {
                 new_line(w, indent + 2);
                 put(w, "- ");

@@ -206,12 +206,6 @@ static bool read_text(struct parse *parse, const char **text)
 
 static bool read_node(struct parse *parse, int depth, struct tree_node **out);
 
-static bool read_scalar(struct parse *parse, struct tree_node *node)
-{
-    node->quoted = parse->event.data.scalar.style != YAML_PLAIN_SCALAR_STYLE;
-    return read_text(parse, &node->text);
-}
-
 static bool read_list(struct parse *parse, int depth, struct tree_node *node)
 {
     for (;;) {
@@ -288,37 +282,38 @@ static bool read_map(struct parse *parse, int depth, struct tree_node *node)
 /* The node that begins with the present event; leaves its last event in place. */
 static bool read_node(struct parse *parse, int depth, struct tree_node **out)
 {
-    const yaml_event_t *event = &parse->event;
-    struct mark mark = event_mark(parse);
-    size_t anchor;
-    bool good;
+    const yaml_event_t *const event = &parse->event;
+    const bool scalar = event->type == YAML_SCALAR_EVENT,
+               list = event->type == YAML_SEQUENCE_START_EVENT;
+    const struct mark mark = event_mark(parse);
+    size_t index;
 
     if (depth > TREE_MAX_DEPTH)
         return too_deep(parse->problems, mark);
     if (event->type == YAML_ALIAS_EVENT)
         return read_alias(parse, depth, out);
-    enum tree_kind kind = event->type == YAML_SCALAR_EVENT           ? TREE_SCALAR
-                          : event->type == YAML_SEQUENCE_START_EVENT ? TREE_LIST
-                                                                     : TREE_MAP;
-    struct tree_node *node = tree_new(parse->tree, kind, mark);
+    const yaml_char_t *const anchor = scalar ? event->data.scalar.anchor
+                                      : list ? event->data.sequence_start.anchor
+                                             : event->data.mapping_start.anchor;
+    const yaml_char_t *const tag = scalar ? event->data.scalar.tag
+                                   : list ? event->data.sequence_start.tag
+                                          : event->data.mapping_start.tag;
+    struct tree_node *const node = tree_new(parse->tree,
+                                            scalar ? TREE_SCALAR
+                                            : list ? TREE_LIST
+                                                   : TREE_MAP,
+                                            mark);
+    *out = node;
     if (!node)
         return problem_no_memory(parse->problems);
-    if (kind == TREE_SCALAR) {
-        good = read_properties(parse, event->data.scalar.anchor, event->data.scalar.tag, &anchor) &&
-               read_scalar(parse, node);
-    } else if (kind == TREE_LIST) {
-        good = read_properties(parse, event->data.sequence_start.anchor,
-                               event->data.sequence_start.tag, &anchor) &&
-               read_list(parse, depth, node);
-    } else {
-        good = read_properties(parse, event->data.mapping_start.anchor,
-                               event->data.mapping_start.tag, &anchor) &&
-               read_map(parse, depth, node);
-    }
-    if (good && anchor != SIZE_MAX)
-        parse->anchor[anchor].node = node;
-    *out = node;
-    return good;
+    node->quoted = scalar && event->data.scalar.style != YAML_PLAIN_SCALAR_STYLE;
+    if (!read_properties(parse, anchor, tag, &index) || !(scalar ? read_text(parse, &node->text)
+                                                          : list ? read_list(parse, depth, node)
+                                                                 : read_map(parse, depth, node)))
+        return false;
+    if (index != SIZE_MAX)
+        parse->anchor[index].node = node;
+    return true;
 }
 
 static bool read_document(struct parse *parse, struct tree_node **root)
