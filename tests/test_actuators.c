@@ -24,12 +24,9 @@ static stance_case shaken_case(void)
 /* Torques of all steps: [step][actuator]. */
 static void torques_of(const char *method, stance_case c, double (*torque)[2])
 {
-    stance_trajectory t;
-    stance_result r;
-    t = trajectory_new(STEPS + 1, c.step);
+    stance_trajectory t = trajectory_new(STEPS + 1, c.step);
     c.trajectory = &t;
-    run_cases(kernel_of(method, NULL), &c, &r, 1);
-    assert_int_equal(r.status, STANCE_DONE);
+    run_done(method, &c);
     for (int k = 0; k < STEPS; k++) /* a row holds those of the step that ends there */
         memcpy(torque[k], t.torque + 2 * (k + 1), sizeof *torque);
     trajectory_free(&t);
@@ -106,12 +103,11 @@ struct plant {
 };
 static struct plant plant_of(const stance_case *c)
 {
-    const stance_scene *const scene = stance_scene_find("biped");
     const stance_equilibrium equilibrium = equilibrium_at(c);
     struct plant p = {.n = 6};
     double A[36], B[12], K[12];
     get_gain(c, K);
-    assert_int_equal(scene->linearise(scene, c->robot, &equilibrium, A, B), STANCE_OK);
+    assert_int_equal(biped()->linearise(biped(), c->robot, &equilibrium, A, B), STANCE_OK);
     if (c->lag > 0) {
         p.n = 8;
         stance_lagged(PLANT(6, 2, A, B), K, c->lag, p.A, p.B, p.K);
@@ -139,17 +135,14 @@ TEST(late_loops_are_lost_where_theory_says)
             stance_critical_sample_time(PLANT(p.n, 2, p.A, p.B), SAMPLING(p.K, 0, c.delay), 1, &T),
             STANCE_OK);
         for (int side = 0; side < 2; side++) {
-            stance_result r;
             c.sample_every = 16;
             c.step = T * (side ? 1.03 : 0.97) / (double)c.sample_every;
             c.steps = 16000;
             c.settle = false;
             c.torque_limit = INFINITY;
-            run_cases(kernel_of("midpoint", NULL), &c, &r, 1);
-            size[side] = fabs(r.position[2] - c.near.target[0]);
+            size[side] = fabs(run_one("midpoint", &c).position[2] - c.near.target[0]);
             c.settle = true;
-            run_cases(kernel_of("midpoint", NULL), &c, &r, 1);
-            outcome[side] = r.outcome;
+            outcome[side] = run_one("midpoint", &c).outcome;
         }
         print_message("# delay %d, lag %g s: T* = %.5f s; 1e-6 rad became %.1e below, %.1e above\n",
                       of[k].delay, of[k].lag, T, size[0], size[1]);
@@ -169,8 +162,6 @@ TEST(noise_wanders_as_theory_says)
         {0, 0, 1e-5, 0, 0}, {0, 0, 0, 1e-4, 0}, {0, 0, 0, 0, 1e-3}, {2, 0.01, 1e-5, 1e-4, 1e-3}};
     for (size_t k = 0; k < sizeof of / sizeof *of; k++) {
         stance_case c = balance_case(0, 0);
-        stance_trajectory t;
-        stance_result r;
         c.delay = of[k].delay, c.lag = of[k].lag;
         c.angle_noise = of[k].angle, c.rate_noise = of[k].rate, c.noise = of[k].torque;
         c.sample_every = 4, c.step = 2.5e-3, c.steps = (int64_t)ROWS * c.sample_every;
@@ -184,10 +175,9 @@ TEST(noise_wanders_as_theory_says)
                                                SAMPLING(p.K, T, (int)c.delay), measured,
                                                c.noise * c.noise / 3, rms),
                          STANCE_OK);
-        t = trajectory_new(ROWS, T);
+        stance_trajectory t = trajectory_new(ROWS, T);
         c.trajectory = &t;
-        run_cases(kernel_of("midpoint", NULL), &c, &r, 1);
-        assert_int_equal(r.status, STANCE_DONE);
+        run_done("midpoint", &c);
         for (int64_t row = 1000; row < ROWS; row++)
             for (int i = 0; i < 3; i++) {
                 const double x = t.position[5 * row + 2 + i] - c.near.target[i];
@@ -212,12 +202,10 @@ TEST(lags_converge)
     double end[4][3];
     for (int k = 0; k < 4; k++) {
         stance_case c = balance_case(-0.04, 0);
-        stance_result r;
         c.settle = false;
         c.lag = 0.02, c.torque_rate = 60, c.delay = 1;
         c.step = 4e-3 / (1 << k), c.sample_every = 5 << k, c.steps = 50 << k;
-        run_cases(kernel_of("midpoint", NULL), &c, &r, 1);
-        assert_int_equal(r.status, STANCE_DONE);
+        const stance_result r = run_done("midpoint", &c);
         memcpy(end[k], &r.position[2], sizeof end[k]);
     }
     for (int i = 0; i < 3; i++) {

@@ -35,25 +35,23 @@ static void count(double theta, uint32_t contacts, int outcome[5])
     }
 }
 
-TEST(test_1_recovers)
+TEST(section_3_2)
 {
-    int outcome[5] = {0};
-    count(-0.04, 1, outcome);
-    assert_int_equal(outcome[STANCE_STABILISED], 2 * SEEDS);
-}
-TEST(test_2_falls)
-{
-    int outcome[5] = {0};
-    count(0.029, 1, outcome);
-    assert_int_equal(outcome[STANCE_FELL], 2 * SEEDS);
-}
-TEST(test_1_scuffs_with_both_feet)
-{
-    int outcome[5] = {0};
-    count(-0.04, 3, outcome);
-    print_message("# both feet: %d stabilised, %d fell, %d rested\n", outcome[STANCE_STABILISED],
-                  outcome[STANCE_FELL], outcome[STANCE_RESTED]);
-    assert_int_equal(outcome[STANCE_STABILISED], 0);
+    static const struct {
+        const char *what;
+        double theta;
+        uint32_t contacts;
+        int outcome, seeds; /* so many of both methods end so */
+    } tests[] = {{"test 1 recovers", -0.04, 1, STANCE_STABILISED, 2 * SEEDS},
+                 {"test 2 falls", 0.029, 1, STANCE_FELL, 2 * SEEDS},
+                 {"test 1 scuffs with both feet", -0.04, 3, STANCE_STABILISED, 0}};
+    for (int k = 0; k < 3; k++) {
+        int outcome[5] = {0};
+        count(tests[k].theta, tests[k].contacts, outcome);
+        print_message("# %s: %d stabilised, %d fell, %d rested\n", tests[k].what,
+                      outcome[STANCE_STABILISED], outcome[STANCE_FELL], outcome[STANCE_RESTED]);
+        assert_int_equal(outcome[tests[k].outcome], tests[k].seeds);
+    }
 }
 
 /* ---- the domain ---- */
@@ -199,10 +197,7 @@ static double simulated_limit(const char *method, double step)
     double low = 0.12, high = 0.15;
     while (high - low > 1e-5) {
         const double middle = (low + high) / 2;
-        if (grows(method, middle, step))
-            high = middle;
-        else
-            low = middle;
+        *(grows(method, middle, step) ? &high : &low) = middle;
     }
     return low;
 }

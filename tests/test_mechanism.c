@@ -75,6 +75,9 @@ static void biped_moves(const stance_scene *s)
     stance_robot_fallback(biped(), own);
     for (int i = 0; i < 1000; i++) {
         double q[5], v[5], gap[2][2], point[2][2], speed[2][2], A[2][25], q2[5], v2[5];
+        for (int k = 0; k < ROBOT_COUNT && s == biped();
+             k++) /* its numbers are the closed form's */
+            robot[k] = own[k] = biped()->robot[k].fallback * uniform(&seed, 0.5, 1.2);
         for (int k = 0; k < 5; k++) {
             q[k] = q2[k] = uniform(&seed, -3, 3);
             v[k] = v2[k] = uniform(&seed, -10, 10);

@@ -7,6 +7,16 @@
 
 /* ---- smooth motions ---------------------------------------------------------------------------*/
 
+/* A robot comes to where its own equations bring it, from where it is, in T; and is freed. */
+static void follows(const char *what, struct robot *r, motion *f, double T)
+{
+    double x[MOST];
+    start(r, x);
+    integrate(f, 2 * r->scene->coordinates, 0, T, NULL, x);
+    arrives(what, r, T / 100, T, x, 0);
+    stance_scene_free(r->scene);
+}
+
 /* (I + m c^2 + J) q'' = -m g (cx cos q - cz sin q) - k (q - rest) - d q' */
 static void pendulum_rate(double t, const double *x, double *rate)
 {
@@ -20,12 +30,8 @@ TEST(pendulum)
     struct robot r = robot_of("body arm hinge - 1.3 0.2 0.1 -0.4 0.3 1 stiffness 2 damping 0.3 "
                               "rest 0.5 armature 0.1\n",
                               0.2);
-    double x[MOST];
     r.c.position[0] = 2, r.c.velocity[0] = -1;
-    start(&r, x);
-    integrate(pendulum_rate, 2, 0, 1.6, NULL, x);
-    arrives("pendulum", &r, 0.016, 1.6, x, 0);
-    stance_scene_free(r.scene);
+    follows("pendulum", &r, pendulum_rate, 1.6);
 }
 
 /* A cart of mass M with a rotor J on a rail that rises by b, a pole (m, I, centre l up) on it,
@@ -52,20 +58,20 @@ TEST(cart_pole)
                               "body pole hinge cart 0.3 0.02 0 0.5 0 0\n"
                               "actuator motor cart 1000\n",
                               -0.3);
-    double x[MOST];
     r.c.position[0] = 0.4, r.c.position[1] = 0.3, r.c.velocity[1] = -0.5;
-    start(&r, x);
     for (int i = 0; i < 4; i++)
         r.c.near.gain[0][i] = -cart_gain[i];
-    integrate(cart_pole_rate, 4, 0, 1.6, NULL, x);
-    arrives("cart-pole", &r, 0.016, 1.6, x, 0);
-    stance_scene_free(r.scene);
+    follows("cart-pole", &r, cart_pole_rate, 1.6);
 }
 
 /* Two arms that hang off their axes, q the absolute angles, springs, dampers, a rotor between them:
  * C = d.R(q2 - q1) k2, C' its derivative,
  *   (I1 + m1 k1^2 + m2 d^2 + J) q1'' + (C - J) q2'' + C' q2'^2 = t1 - t2 + gravity, and likewise.
  */
+#define TWO_ARMS                                                                                   \
+    "body upper hinge - 2 0.1 0.1 -0.2 1 2 stiffness 3 damping 0.2 rest 0.4\n"                     \
+    "body lower hinge upper 1 0.05 -0.1 -0.3 0.05 -0.5 stiffness 5 damping 0.1 rest -0.3 "         \
+    "armature 0.02\n"
 static const double arm1[2] = {0.1, -0.2}, elbow[2] = {0.05, -0.5}, arm2[2] = {-0.1, -0.3};
 static double two_arms_drive[2];
 static void two_arms_rate(double t, const double *x, double *rate)
@@ -88,35 +94,19 @@ static void two_arms_rate(double t, const double *x, double *rate)
     rate[2] = (A22 * f1 - A12 * f2) / det;
     rate[3] = (A11 * f2 - A12 * f1) / det - rate[2];
 }
-static void two_arms_arrive(const char *what, const char *motors)
-{
-    char text[512];
-    snprintf(text, sizeof text,
-             "body upper hinge - 2 0.1 0.1 -0.2 1 2 stiffness 3 damping 0.2 rest 0.4\n"
-             "body lower hinge upper 1 0.05 -0.1 -0.3 0.05 -0.5 stiffness 5 damping 0.1 rest -0.3 "
-             "armature 0.02\n%s",
-             motors);
-    struct robot r = robot_of(text, 0.1);
-    double x[MOST];
-    r.c.position[0] = 1, r.c.position[1] = -2, r.c.velocity[1] = 3;
-    r.c.near.feedforward[0] = 10, r.c.near.feedforward[1] = -10;
-    r.c.torque_limit = 2;
-    start(&r, x);
-    integrate(two_arms_rate, 4, 0, 0.8, NULL, x);
-    arrives(what, &r, 0.008, 0.8, x, 0);
-    stance_scene_free(r.scene);
-}
+/* Free, and with motors that give what they have, one by its own limit, one by that of all. */
 TEST(two_arms)
 {
-    two_arms_drive[0] = two_arms_drive[1] = 0;
-    two_arms_arrive("two arms", "");
-}
-/* Motors that give what they have, one by its own limit, one by that of all. */
-TEST(two_arms_limited)
-{
-    two_arms_drive[0] = 0.7, two_arms_drive[1] = -2;
-    two_arms_arrive("two arms at their limits",
-                    "actuator shoulder upper 0.7\nactuator elbow lower 5\n");
+    for (int limited = 0; limited < 2; limited++) {
+        struct robot r = robot_of(
+            limited ? TWO_ARMS "actuator shoulder upper 0.7\nactuator elbow lower 5\n" : TWO_ARMS,
+            0.1);
+        two_arms_drive[0] = limited ? 0.7 : 0, two_arms_drive[1] = limited ? -2 : 0;
+        r.c.position[0] = 1, r.c.position[1] = -2, r.c.velocity[1] = 3;
+        r.c.near.feedforward[0] = 10, r.c.near.feedforward[1] = -10;
+        r.c.torque_limit = 2;
+        follows(limited ? "two arms at their limits" : "two arms", &r, two_arms_rate, 0.8);
+    }
 }
 
 /* Seven bodies in flight: momentum as gravity gives it, energy. */
@@ -622,34 +612,26 @@ TEST(push_inside_steps)
 
 /* A blow to a pendulum: I q' changes by the blow's moment; and to a disc that lies on the ground,
  * which sticks or slips as the friction of the blow itself decides. */
+static struct robot struck_pendulum(const char *text, double when, double *x)
+{
+    struct robot r = robot_of(text, 0);
+    r.c.position[0] = 0.4;
+    start(&r, x);
+    integrate(stopped_rate, 2, 0, when, NULL, x);
+    const double px = 0.1 * cos(x[0]) + 0.8 * sin(x[0]), pz = 0.1 * sin(x[0]) - 0.8 * cos(x[0]);
+    x[1] += (px * 0.3 - pz * 0.7) / 0.35;
+    integrate(stopped_rate, 2, when, 1.2, NULL, x);
+    return r;
+}
+#define STRUCK "body arm hinge - 1 0.1 0 -0.5 0 0\nnamed hand arm 0.1 -0.8\nimpulse 0.7 0.3 "
 TEST(blow_to_pendulum)
 {
-    struct robot r = robot_of("body arm hinge - 1 0.1 0 -0.5 0 0\n"
-                              "named hand arm 0.1 -0.8\nimpulse 0.7 0.3 0.4\n",
-                              0);
     double x[MOST];
-    r.c.position[0] = 0.4;
-    start(&r, x);
-    integrate(stopped_rate, 2, 0, 0.4, NULL, x);
-    const double px = 0.1 * cos(x[0]) + 0.8 * sin(x[0]), pz = 0.1 * sin(x[0]) - 0.8 * cos(x[0]);
-    x[1] += (px * 0.3 - pz * 0.7) / 0.35;
-    integrate(stopped_rate, 2, 0.4, 1.2, NULL, x);
+    struct robot r = struck_pendulum(STRUCK "0.4\n", 0.4, x);
     arrives("blow to a pendulum", &r, 0.008, 1.2, x, 0);
     stance_scene_free(r.scene);
-}
-/* Inside a step: methods whose steps may be of any length have it at its instant. */
-TEST(blow_inside_steps)
-{
-    struct robot r = robot_of("body arm hinge - 1 0.1 0 -0.5 0 0\n"
-                              "named hand arm 0.1 -0.8\nimpulse 0.7 0.3 0.4013\n",
-                              0);
-    double x[MOST];
-    r.c.position[0] = 0.4;
-    start(&r, x);
-    integrate(stopped_rate, 2, 0, 0.4013, NULL, x);
-    const double px = 0.1 * cos(x[0]) + 0.8 * sin(x[0]), pz = 0.1 * sin(x[0]) - 0.8 * cos(x[0]);
-    x[1] += (px * 0.3 - pz * 0.7) / 0.35;
-    integrate(stopped_rate, 2, 0.4013, 1.2, NULL, x);
+    /* Inside a step: methods whose steps may be of any length have it at its instant. */
+    r = struck_pendulum(STRUCK "0.4013\n", 0.4013, x);
     for (const stance_method *const *m = stance_methods(); *m; m++) {
         const stance_result end = run(&r, *m, 0.002, 1.2);
         const double error = off(&r, &end, x);

@@ -5,16 +5,6 @@
 
 enum { SIDE = 48 };
 
-static stance_result run_one(const char *method, const stance_case *c)
-{
-    stance_result r;
-    run_cases(kernel_of(method, NULL), c, &r, 1);
-    if (r.status != STANCE_DONE)
-        print_message("# %s: failure %d after %.3f s\n", method, r.failure, r.end_time);
-    assert_int_equal(r.status, STANCE_DONE);
-    return r;
-}
-
 /* Outcomes of a map of starts around the equilibrium; those that come to rest must not fall later.
  */
 static void map(const char *method, stance_case base, double tilt, double rate, int outcome[5])
@@ -83,7 +73,7 @@ static void unstable_loops_stabilise_nothing(void **state)
             const double critical = critical_time(&c, late);
             c.sample_every = (int64_t)lround((k ? 1.2 : 0.8) * critical / c.step);
             c.delay = late;
-            const stance_result r = run_one("implicit", &c);
+            const stance_result r = run_done("implicit", &c);
             print_message("# T = %.0f ms, delay %d: outcome %d\n", (double)c.sample_every, late,
                           r.outcome);
             assert_true((r.outcome == STANCE_STABILISED) == (k == 0));
@@ -113,14 +103,14 @@ static void stiff_legs_rest(void **state)
     for (int m = 0; m < 5; m++) {
         stance_case stiff = straddle(100, 0);
         stiff.tolerance = 1e-8;
-        const stance_result held = run_one(methods[m], &stiff);
+        const stance_result held = run_done(methods[m], &stiff);
         assert_int_equal(held.outcome, STANCE_RESTED);
         assert_true(held.end_time < 1);
         if (m > 2) /* these chatter */
             continue;
         stance_case weak = straddle(0, 1e-3);
         weak.tolerance = 1e-6;
-        const stance_result falls = run_one(methods[m], &weak);
+        const stance_result falls = run_done(methods[m], &weak);
         print_message("# %s: stiff %d after %.3f s, weak %d after %.3f s\n", methods[m],
                       held.outcome, held.end_time, falls.outcome, falls.end_time);
         assert_int_equal(falls.outcome, STANCE_FELL);

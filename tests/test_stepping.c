@@ -45,28 +45,23 @@ static struct extremes run_random(const char *method, double h, double restituti
     return e;
 }
 
-static void contact_laws(const char *method)
+TEST(contact_laws)
 {
     static const double steps[] = {1e-4, 5e-4, 1e-3, 2e-3, 5e-3, 1e-2, 2e-2};
-    for (size_t k = 0; k < sizeof steps / sizeof *steps; k++) {
-        const struct extremes e = run_random(method, steps[k], 0, STANCE_IMPACTS_LIMITED, 10000);
+    enum { STEPS = sizeof steps / sizeof *steps };
+    for (int k = 0; k < 2 * STEPS; k++) {
+        const char *const method = k < STEPS ? "implicit" : "midpoint";
+        const double h = steps[k % STEPS];
+        const struct extremes e = run_random(method, h, 0, STANCE_IMPACTS_LIMITED, 10000);
         print_message("# %s h=%g: penetration %.1e, cone %.1e, impact energy %.1e, projection "
                       "%.2g J, ambiguous %d, subdivided %d of 10000\n",
-                      method, steps[k], e.penetration, e.cone, e.impact_energy,
-                      e.energy_of_projection, e.ambiguous, e.subdivided);
+                      method, h, e.penetration, e.cone, e.impact_energy, e.energy_of_projection,
+                      e.ambiguous, e.subdivided);
         assert_true(e.penetration <= PENETRATION);
         assert_true(e.cone <= CONE);
         assert_true(e.impact_energy <= 1e-9);
         assert_int_equal(e.failed, 0);
     }
-}
-TEST(contact_laws_implicit)
-{
-    contact_laws("implicit");
-}
-TEST(contact_laws_midpoint)
-{
-    contact_laws("midpoint");
 }
 
 /* Newton's restitution with Coulomb friction can create energy (Kane); limited, or by Moreau's law,
@@ -99,7 +94,6 @@ TEST(restitution_creates_energy_by_newton_alone)
  * own kinematics, the cone and complementarity from the recorded forces. */
 TEST(trajectories_obey_the_laws)
 {
-    const stance_scene *const scene = stance_scene_find("biped");
     const stance_kernel *const kernel = kernel_of("implicit", NULL);
     uint64_t seed = 3;
     enum { ROWS = 251 };
@@ -113,7 +107,7 @@ TEST(trajectories_obey_the_laws)
         const int last = (int)lround(r.end_time / 1e-3);
         for (int row = 1; row <= last; row++) {
             double gap[2];
-            scene->gaps(scene, c.robot, t.position + row * 5, gap);
+            biped()->gaps(biped(), c.robot, t.position + row * 5, gap);
             for (int k = 0; k < 2; k++) {
                 const double n = t.force[(row * 2 + k) * 2], s = t.force[(row * 2 + k) * 2 + 1];
                 assert_true(gap[k] >= -PENETRATION);
@@ -152,9 +146,7 @@ TEST(impacts_against_reference)
         c.step = 1e-9;
         c.steps = 1;
         c.robot[STANCE_ROBOT_FALL_HEIGHT] = -1e9;
-        stance_result r;
-        run_cases(kernel_of("implicit", NULL), &c, &r, 1);
-        assert_int_equal(r.status, STANCE_DONE);
+        const stance_result r = run_done("implicit", &c);
         json_t *best = json_object_get(item, "v_plus");
         double error = 0, scale = 1;
         for (int i = 0; i < 5; i++) {
@@ -181,20 +173,6 @@ TEST(impacts_against_reference)
 
 enum { DROP_ROWS = 1201 };
 
-static stance_case second_drop(double h)
-{
-    static const double robot[5] = {0.5, 0.5, 1, 1, 3}, q[5] = {0, 1.5, -0.5, 0.9, -1};
-    stance_case c = plain_case();
-    memcpy(c.robot, robot, sizeof robot);
-    memcpy(c.position, q, sizeof q);
-    c.velocity[0] = 1;
-    c.friction = 0.3;
-    hold_legs(&c, 200, 20);
-    c.step = h;
-    c.steps = (int64_t)lround(1.2 / h);
-    return c;
-}
-
 struct drop_error {
     double at04, at12, velocity_l1, touch1, touch2;
 };
@@ -206,10 +184,8 @@ static struct drop_error drop_error(const char *method, double h)
     json_t *path = json_object_get(drop, "velocity_1ms");
     stance_case c = second_drop(h);
     stance_trajectory t = trajectory_new(DROP_ROWS, 1e-3);
-    stance_result r;
     c.trajectory = &t;
-    run_cases(kernel_of(method, NULL), &c, &r, 1);
-    assert_int_equal(r.status, STANCE_DONE);
+    run_done(method, &c);
     struct drop_error e = {0, 0, 0, 0, 0};
     json_t *states = json_object_get(drop, "states");
     for (int i = 0; i < 5; i++) {
@@ -231,7 +207,7 @@ static struct drop_error drop_error(const char *method, double h)
     /* Touchdown to a step's accuracy: the first step with a force, recorded at every step. */
     const int64_t rows = c.steps + 1;
     t = trajectory_new(rows, h);
-    run_cases(kernel_of(method, NULL), &c, &r, 1);
+    run_one(method, &c);
     for (int64_t row = rows - 1; row > 0; row--) {
         if (t.force[row * 4] > 0)
             e.touch1 = (double)row * h;
@@ -284,7 +260,6 @@ TEST(second_drop_converges)
  * method at a step 64 times smaller. */
 static double smooth_error(const char *method, bool stance, double h)
 {
-    const stance_scene *const scene = stance_scene_find("biped");
     double reference[5] = {0}, error = 0;
     for (int fine = 1; fine >= 0; fine--) {
         stance_case c = plain_case();
@@ -293,13 +268,11 @@ static double smooth_error(const char *method, bool stance, double h)
         c.friction = 1e3;
         c.contacts = stance ? 1 : 0;
         c.settle = false;
-        scene->stand(scene, c.robot, 1, c.position, c.velocity);
+        biped()->stand(biped(), c.robot, 1, c.position, c.velocity);
         hold_legs(&c, 20, 1);
         c.step = fine ? h / 64 : h;
         c.steps = (int64_t)lround(0.256 / c.step);
-        stance_result r;
-        run_cases(kernel_of(method, NULL), &c, &r, 1);
-        assert_int_equal(r.status, STANCE_DONE);
+        const stance_result r = run_done(method, &c);
         for (int i = 0; i < 5; i++)
             error = fine ? 0 : fmax(error, fabs(r.position[i] - reference[i]));
         memcpy(reference, r.position, sizeof reference);
@@ -338,10 +311,8 @@ TEST(first_drop_stages)
     hold_legs(&c, 500, 50);
     c.steps = 1500;
     stance_trajectory t = trajectory_new(ROWS, 1e-3);
-    stance_result r;
     c.trajectory = &t;
-    run_cases(kernel_of("implicit", NULL), &c, &r, 1);
-    assert_int_equal(r.status, STANCE_DONE);
+    run_done("implicit", &c);
 
     int land = 0, stop = 0, turn = 0, second = 0;
     double foot[2], speed[2];
@@ -392,9 +363,7 @@ TEST(far_roots_are_refused)
     c.velocity[2] = 7.30844240972327, c.velocity[3] = 7.262569281620582;
     c.step = 0.05, c.steps = 40;
     c.robot[STANCE_ROBOT_FALL_HEIGHT] = 0;
-    stance_result r;
-    run_cases(kernel_of("implicit", NULL), &c, &r, 1);
-    assert_int_equal(r.status, STANCE_DONE);
+    const stance_result r = run_done("implicit", &c);
     assert_true(r.energy_gain < 10);
     static const char *const methods[] = {"implicit", "midpoint"};
     for (int m = 0; m < 2; m++) {
@@ -472,8 +441,7 @@ TEST(neighbours_change_nothing)
     }
 }
 
-/* ---- bad days
- * ------------------------------------------------------------------------------------- */
+/* ---- bad days ------------------------------------------------------------------------------- */
 
 TEST(failures_are_reported)
 {
