@@ -1,6 +1,6 @@
 # plot_peers.gp - error against cost, for each method, and each peer (peer[m]: 1 all its settings, 2 its defaults),
 # $errors<series>_<panel>: cost, error, whether it is more than none, cases given up; and what a line joins,
-# $line<series>_<panel>. As plot_accuracy.gp draws them.
+# $line<series>_<panel>. As plot_accuracy.c draws them.
 left = 108
 gap = 108
 legend = 300

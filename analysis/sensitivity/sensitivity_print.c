@@ -89,16 +89,6 @@ static json_t *value_facts(const struct sensitivity_value *v)
                         {"high", as_number(v->high)});
 }
 
-static json_t *sum_facts(const struct sensitivity_value *sum)
-{
-    json_t *const facts = value_facts(sum);
-    table_put(facts, ".known", as_truth(!isnan(sum->estimate)));
-    table_put(facts, ".bounded", as_truth(!isnan(sum->low)));
-    if (sum->estimate < 1)
-        say_add(facts, ".rest", "%.4f", 1 - sum->estimate);
-    return facts;
-}
-
 /* People see pairs whose interval is above zero. */
 static void add_pairs(const struct sensitivity_study *study, const struct sensitivity_table *table,
                       json_t *facts)
@@ -177,8 +167,14 @@ static json_t *table_facts_of(const struct sensitivity_study *study, size_t k)
     table_give(facts, "factors", &factors, shown ? "label first/ total/ mu/ mu_star/ sigma/" : NULL,
                0);
     add_moved(study, table, facts);
-    if (s->measure[SENSITIVITY_FIRST])
-        table_put(facts, "first_sum", as_tree(sum_facts(&s->first_sum)));
+    if (s->measure[SENSITIVITY_FIRST]) {
+        json_t *const sum = value_facts(&s->first_sum);
+        TABLE_PUT(sum, {".known", as_truth(!isnan(s->first_sum.estimate))},
+                  {".bounded", as_truth(!isnan(s->first_sum.low))});
+        if (s->first_sum.estimate < 1)
+            say_add(sum, ".rest", "%.4f", 1 - s->first_sum.estimate);
+        table_put(facts, "first_sum", as_tree(sum));
+    }
     if (s->second)
         add_pairs(study, table, facts);
     return facts;

@@ -1,5 +1,4 @@
-/* tree_dynamics.h - inertia and forces of a tree, and the step's matrix: see tree_lanes.h, which
- * includes this. */
+/* tree_dynamics.h - inertia and forces of a tree, and the step's matrix: part of tree_lanes.h. */
 #ifndef STANCE_SCENES_TREE_DYNAMICS_H
 #define STANCE_SCENES_TREE_DYNAMICS_H
 
@@ -525,8 +524,7 @@ HOT void scene_factor(const scene_body *b, const scene_guess *at, const scene_sl
 {
     const scene_trig *const trig = at->trig;
     const lanes h = at->h, lever = by->lever, *const w = at->w, *const change = at->change;
-    const double rate = by->rate;
-    const lanes twice = 2 * rate * h;
+    const lanes twice = 2 * by->rate * h;
     lanes pivot[TREE_SLOTS(TREE_ANGLES)], along[TREE_SLOTS(TREE_ANGLES)],
         across[TREE_SLOTS(TREE_ANGLES)], bend[TREE_SLOTS(TREE_ANGLES)], pull[2], base[2][2];
     for (int axis = 0; axis < 2; axis++)
@@ -615,7 +613,7 @@ HOT void scene_factor(const scene_body *b, const scene_guess *at, const scene_sl
     TREE_UNROLL
     for (int k = 0; k < tree_springs; k++) {
         const int i = tree_spring[k];
-        const lanes stiff = h * lanes_fma(b->spring[k][0], lever, b->spring[k][1] * rate);
+        const lanes stiff = h * lanes_fma(b->spring[k][0], lever, b->spring[k][1] * by->rate);
         if (i < 0) {
             base[0][0] = base[0][0] + stiff;
             continue;

@@ -27,25 +27,14 @@ static const char *state_unit(const struct design_report *r, int i)
     return i < p ? (slide ? "m" : "rad") : slide ? "m/s" : "rad/s";
 }
 
-static const char *state_units(const struct design_report *r)
+/* The first word where all coordinates turn, the second where all slide, else the third. */
+static const char *units(const stance_scene *scene, const int *coordinate, int count,
+                         const char *const word[3])
 {
     int some = 0;
-    for (int i = 0; i < r->equilibrium.freedoms; i++)
-        some += slides(r->scenario->scene, r->equilibrium.freedom[i]);
-    return some == 0                         ? "rad, rad/s"
-           : some == r->equilibrium.freedoms ? "m, m/s"
-                                             : "rad, m and their rates";
-}
-
-/* What actuators give, forces on what slides. */
-static const char *input_units(const struct design_report *r)
-{
-    int some = 0;
-    for (int i = 0; i < r->inputs; i++)
-        some += slides(r->scenario->scene, r->scenario->scene->actuated[i]);
-    return some == 0           ? "torques (N m)"
-           : some == r->inputs ? "forces (N)"
-                               : "torques (N m) and forces (N)";
+    for (int i = 0; i < count; i++)
+        some += slides(scene, coordinate[i]);
+    return word[some == 0 ? 0 : some == count ? 1 : 2];
 }
 
 /* ---- vectors, matrices and complex numbers ----------------------------------------------------
@@ -318,6 +307,9 @@ static json_t *controller_facts(const struct design_report *r)
 
 json_t *design_facts(const struct design_report *r)
 {
+    static const char *const state_words[] = {"rad, rad/s", "m, m/s", "rad, m and their rates"};
+    static const char *const input_words[] = {"torques (N m)", "forces (N)",
+                                              "torques (N m) and forces (N)"};
     const struct scenario *const s = r->scenario;
     const double slope = r->model[STANCE_ROBOT_SLOPE], gravity = r->model[STANCE_ROBOT_GRAVITY];
     json_t *const states = json_array(), *const inputs = json_array();
@@ -327,7 +319,9 @@ json_t *design_facts(const struct design_report *r)
         "{s:o?, s:o, s:s, s:s, s:o, s:b, s:s, s:s, s:s}", "scenario", json_string(s->file), ".file",
         json_string_nocheck(s->file), "title", s->title, "scene", s->scene->name, ".name",
         json_string_nocheck(s->title[0] ? s->title : s->name), ".swept", s->axes > 0, ".units",
-        state_units(r), ".inputs", input_units(r), ".absent", r->allowed.absent.text);
+        units(s->scene, r->equilibrium.freedom, r->equilibrium.freedoms, state_words), ".inputs",
+        units(s->scene, s->scene->actuated, r->inputs, input_words), ".absent",
+        r->allowed.absent.text);
     int width = 14;
     for (int i = 0; i < s->scene->robot_count; i++) {
         const stance_quantity *const of = &s->scene->robot[i];
