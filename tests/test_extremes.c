@@ -3,7 +3,6 @@
  */
 #include "long.h"
 #include "motions.h"
-#include "tests.h"
 
 static const double steps[] = {0.02, 0.004, 0.001};
 enum { STEPS = sizeof steps / sizeof *steps };

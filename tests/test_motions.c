@@ -3,7 +3,6 @@
  */
 #include "long.h"
 #include "motions.h"
-#include "tests.h"
 
 /* ---- smooth motions ---------------------------------------------------------------------------*/
 
