@@ -38,9 +38,7 @@
 
 static inline const stance_kernel *kernel_of(const char *method, const char *isa)
 {
-    const stance_kernel *k =
-        stance_kernel_find(stance_scene_find("biped"), stance_method_find(method), isa);
-    return k;
+    return stance_kernel_find(biped(), stance_method_find(method), isa);
 }
 
 /* A case of any scene with its default body and all contacts, friction 0.5, that does not fall. */
@@ -171,6 +169,16 @@ static inline void trajectory_free(stance_trajectory *t)
     free(t->torque);
     free(t->force);
     free(t->gap);
+}
+
+static inline double number_in(const json_t *object, const char *key)
+{
+    return json_number_value(json_object_get(object, key));
+}
+static inline void numbers(const json_t *array, double *out, int n)
+{
+    for (int i = 0; i < n; i++)
+        out[i] = json_number_value(json_array_get(array, (size_t)i));
 }
 
 static inline json_t *reference_load(const char *path)

@@ -182,9 +182,8 @@ static bool grows(const char *method, double T, double step)
     c.step = T / per_sample;
     double size[2];
     for (int k = 0; k < 2; k++) {
-        stance_result r;
         c.steps = (int64_t)(per_sample * nearbyint((k ? 40 : 10) / T));
-        run(method, &c, &r, 1);
+        const stance_result r = run_done(method, &c);
         size[k] = 0;
         for (int i = 0; i < 3; i++)
             size[k] += pow(r.position[2 + i] - c.near.target[i], 2) + pow(r.velocity[2 + i] / 4, 2);

@@ -65,12 +65,12 @@ static void compare_design(const json_t *record, const char *name, const double 
     const stance_robustness got = place(PLANT(6, 2, A, B), POLES(re, im), K);
     closed_loop(6, 2, A, B, K, loop);
     assert_eigenvalues(6, loop, re, im, 1e-7, name);
-    const double reference = json_number_value(json_object_get(record, "condition"));
+    const double reference = number_in(record, "condition");
     assert_near(got.condition, reference, 1e-5 * reference, "condition number");
     if (!json_is_true(json_object_get(record, "compare_gain")))
         return;
     assert_matrix(12, K, wanted, 1e-5, name);
-    const double T = json_number_value(json_object_get(record, "critical_sample_time"));
+    const double T = number_in(record, "critical_sample_time");
     assert_near(critical(PLANT(6, 2, A, B), K, 5), T, 1e-6 * T, "critical sample time");
     assert_near(critical(PLANT(6, 2, A, B), wanted, 5), T, 1e-9 * T, "... of the reference's gain");
 }
@@ -369,72 +369,52 @@ TEST(repeated_and_reordered)
     assert_matrix(12, other, K, 1e-7, "poles in another order");
 }
 
+#define NO_CONJUGATE "the pole -2+1i has no conjugate -2-1i among the poles"
+#define TOO_OFTEN(inputs)                                                                          \
+    ", but the number of independent inputs, " inputs ", is the most that one pole can be "        \
+    "repeated"
+#define UNREACHED "the pair (A, B) is not controllable: no input reaches the mode with eigenvalue 2"
 TEST(placement_messages)
 {
     /* Two chains of integrators, lengths 2 and 1, an input each; and a mode out of reach. */
     const double A[9] = {0, 1, 0, 0, 0, 0, 0, 0, 0}, B[6] = {0, 0, 1, 0, 0, 1};
-    const double stuck[4] = {1, 0, 0, 2}, push[2] = {1, 0}, nothing[2] = {0, 0};
+    const double endless[9] = {INFINITY}, stuck[4] = {1, 0, 0, 2}, push[2] = {1, 0},
+                 nothing[2] = {0, 0};
+    const stance_plant chains = {3, 2, A, B}, reached = {2, 1, stuck, push},
+                       idle = {2, 1, stuck, nothing}, empty = {0, 1, A, B},
+                       not_finite = {3, 2, endless, B};
     const struct {
-        stance_plant plant;
-        double re[3], im[3];
+        const stance_plant *plant;
         stance_error error;
+        double re[3], im[3];
         const char *text;
     } wrong[] = {
-        {{3, 2, A, B},
-         {-1, -2, -3},
-         {0, 1, 0},
+        {&chains, STANCE_BAD_POLES, {-1, -2, -3}, {0, 1, 0}, NO_CONJUGATE},
+        {&chains, STANCE_BAD_POLES, {-1, -2, -2}, {0, 1, 1}, NO_CONJUGATE},
+        {&chains,
          STANCE_BAD_POLES,
-         "the pole -2+1i has no conjugate -2-1i among the poles"},
-        {{3, 2, A, B},
-         {-1, -2, -2},
-         {0, 1, 1},
-         STANCE_BAD_POLES,
-         "the pole -2+1i has no conjugate -2-1i among the poles"},
-        {{3, 2, A, B},
          {-1, -1, -1},
-         {0, 0, 0},
-         STANCE_BAD_POLES,
-         "the pole -1 is wanted 3 times, but the number of independent inputs, 2, is the most that "
-         "one pole can be repeated"},
-        {{2, 1, stuck, push},
-         {-1, -1},
-         {0, 0},
-         STANCE_BAD_POLES,
-         "the pole -1 is wanted 2 times, but the number of independent inputs, 1, is the most that "
-         "one pole can be repeated"},
-        {{2, 1, stuck, push},
-         {-1, -2},
-         {0, 0},
+         {0},
+         "the pole -1 is wanted 3 times" TOO_OFTEN("2")},
+        {&chains, STANCE_BAD_POLES, {-1, -2, NAN}, {0}, "3 poles are needed, all of them finite"},
+        {&reached, STANCE_BAD_POLES, {-1, -1}, {0}, "the pole -1 is wanted 2 times" TOO_OFTEN("1")},
+        {&reached, STANCE_UNCONTROLLABLE, {-1, -2}, {0}, UNREACHED},
+        {&idle,
          STANCE_UNCONTROLLABLE,
-         "the pair (A, B) is not controllable: no input reaches the mode with eigenvalue 2"},
-        {{2, 1, stuck, nothing},
          {-1, -2},
-         {0, 0},
-         STANCE_UNCONTROLLABLE,
+         {0},
          "the inputs have no effect: the matrix B is zero"},
-        {{3, 2, A, B},
-         {-1, -2, NAN},
-         {0, 0, 0},
-         STANCE_BAD_POLES,
-         "3 poles are needed, all of them finite"},
-        {{0, 1, A, B}, {0}, {0}, STANCE_BAD_ARGUMENT, "a design needs 1 to 32 states and inputs"},
+        {&empty, STANCE_BAD_ARGUMENT, {0}, {0}, "a design needs 1 to 32 states and inputs"},
+        {&not_finite, STANCE_BAD_ARGUMENT, {-1, -2, -3}, {0}, "A and B must be finite"},
     };
     for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
         double K[6];
         stance_message message = {""};
-        assert_int_equal(stance_place(STANCE_ROBUST, &wrong[i].plant, 0,
+        assert_int_equal(stance_place(STANCE_ROBUST, wrong[i].plant, 0,
                                       POLES(wrong[i].re, wrong[i].im), K, NULL, &message),
                          wrong[i].error);
         assert_text(message.text, wrong[i].text);
     }
-    const double endless[9] = {INFINITY};
-    const double re[3] = {-1, -2, -3}, im[3] = {0};
-    double K[6];
-    stance_message message = {""};
-    assert_int_equal(
-        stance_place(STANCE_ROBUST, PLANT(3, 2, endless, B), 0, POLES(re, im), K, NULL, &message),
-        STANCE_BAD_ARGUMENT);
-    assert_text(message.text, "A and B must be finite");
 }
 
 /* Rosenbrock: chains of lengths 3 and 1 cannot have two double poles with full eigenvectors. */

@@ -22,11 +22,12 @@ TEST(drop_against_reference)
         json_object_foreach(json_object_get(second, "states"), at, row)
         {
             const long k = lround(atof(at) / 0.1);
+            double q[5], v[5];
+            numbers(json_object_get(row, "q"), q, 5);
+            numbers(json_object_get(row, "v"), v, 5);
             for (int i = 0; i < 5; i++) {
-                const json_t *wanted = json_array_get(json_object_get(row, "q"), (size_t)i);
-                const json_t *rate = json_array_get(json_object_get(row, "v"), (size_t)i);
-                position = fmax(position, fabs(t.position[k * 5 + i] - json_number_value(wanted)));
-                velocity = fmax(velocity, fabs(t.velocity[k * 5 + i] - json_number_value(rate)));
+                position = fmax(position, fabs(t.position[k * 5 + i] - q[i]));
+                velocity = fmax(velocity, fabs(t.velocity[k * 5 + i] - v[i]));
             }
         }
         print_message("# h = %g: position off %.1e, velocity off %.1e, energy gained %.1e J\n",

@@ -20,16 +20,6 @@ static const struct demand demands[] = {
 };
 enum { DEMANDS = sizeof demands / sizeof *demands };
 
-static double number(const json_t *object, const char *key)
-{
-    return json_number_value(json_object_get(object, key));
-}
-static void numbers(const json_t *array, double *out, int n)
-{
-    for (int i = 0; i < n; i++)
-        out[i] = json_number_value(json_array_get(array, (size_t)i));
-}
-
 /* A case of an entry of known.json that ends at time t, exactly. */
 static stance_case known_case(const stance_scene *scene, const json_t *entry,
                               const struct demand *demand, double t)
@@ -42,9 +32,9 @@ static stance_case known_case(const stance_scene *scene, const json_t *entry,
         if (value)
             c.robot[i] = json_number_value(value);
     }
-    c.robot[STANCE_ROBOT_SLOPE] = number(robot, "slope");
-    c.friction = number(entry, "friction");
-    c.restitution = number(entry, "restitution");
+    c.robot[STANCE_ROBOT_SLOPE] = number_in(robot, "slope");
+    c.friction = number_in(entry, "friction");
+    c.restitution = number_in(entry, "restitution");
     const json_t *contacts = json_object_get(entry, "contacts");
     for (int i = 0; i < scene->contacts; i++) {
         bool touches = !contacts;
@@ -60,11 +50,11 @@ static stance_case known_case(const stance_scene *scene, const json_t *entry,
         double target[2];
         numbers(json_object_get(entry, "target"), target, 2);
         for (int i = 0; i < 2; i++) {
-            c.near.gain[i][1 + i] = number(entry, "kp");
-            c.near.gain[i][4 + i] = number(entry, "kd");
+            c.near.gain[i][1 + i] = number_in(entry, "kp");
+            c.near.gain[i][4 + i] = number_in(entry, "kd");
             c.near.target[1 + i] = target[i];
         }
-        const double sample = number(entry, "sample_time");
+        const double sample = number_in(entry, "sample_time");
         if (sample > 0) {
             c.step = sample / ceil(sample / demand->step - 1e-9);
             c.sample_every = (int64_t)lround(sample / c.step);
@@ -91,7 +81,7 @@ static bool is_zeno(const json_t *entry)
  * little in every bounce, which test `endless_bounces` bounds. */
 static bool is_endless(const stance_scene *scene, const json_t *entry)
 {
-    return strcmp(scene->name, "ball") == 0 && number(entry, "restitution") == 1;
+    return strcmp(scene->name, "ball") == 0 && number_in(entry, "restitution") == 1;
 }
 
 /* Largest errors over the instants of an entry; false where the method gave up. */
@@ -293,8 +283,8 @@ TEST(jams)
                 continue;
             double after[3];
             stance_case c = case_of_scene("rod", 1e-8, 1e-8);
-            c.robot[2] = number(jam, "inertia_ratio");
-            c.friction = number(jam, "friction");
+            c.robot[2] = number_in(jam, "inertia_ratio");
+            c.friction = number_in(jam, "friction");
             c.contacts = 1;
             numbers(json_object_get(jam, "position"), c.position, 3);
             numbers(json_object_get(jam, "velocity"), c.velocity, 3);

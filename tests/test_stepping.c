@@ -131,28 +131,23 @@ TEST(impacts_against_reference)
     json_array_foreach(problems, index, item)
     {
         stance_case c = plain_case();
-        c.friction = json_number_value(json_object_get(item, "mu"));
-        c.restitution = json_number_value(json_object_get(item, "e"));
+        c.friction = number_in(item, "mu");
+        c.restitution = number_in(item, "e");
         c.impacts = STANCE_IMPACTS_NEWTON;
-        for (int i = 0; i < 5; i++) {
-            c.position[i] =
-                json_number_value(json_array_get(json_object_get(item, "q"), (size_t)i));
-            c.velocity[i] =
-                json_number_value(json_array_get(json_object_get(item, "v"), (size_t)i));
-        }
-        double gap[2];
+        numbers(json_object_get(item, "q"), c.position, 5);
+        numbers(json_object_get(item, "v"), c.velocity, 5);
+        double gap[2], best[5];
         biped()->gaps(biped(), c.robot, c.position, gap);
         assert_true(fmin(gap[0], gap[1]) > -1e-12);
         c.step = 1e-9;
         c.steps = 1;
         c.robot[STANCE_ROBOT_FALL_HEIGHT] = -1e9;
         const stance_result r = run_done("implicit", &c);
-        json_t *best = json_object_get(item, "v_plus");
+        numbers(json_object_get(item, "v_plus"), best, 5);
         double error = 0, scale = 1;
         for (int i = 0; i < 5; i++) {
-            const double v = json_number_value(json_array_get(best, (size_t)i));
-            error = fmax(error, fabs(r.velocity[i] - v));
-            scale = fmax(scale, fabs(v));
+            error = fmax(error, fabs(r.velocity[i] - best[i]));
+            scale = fmax(scale, fabs(best[i]));
         }
         if (error > 1e-6 * scale)
             print_message("# problem %zu: off by %g\n", index, error);
@@ -188,19 +183,17 @@ static struct drop_error drop_error(const char *method, double h)
     run_done(method, &c);
     struct drop_error e = {0, 0, 0, 0, 0};
     json_t *states = json_object_get(drop, "states");
+    double q4[5], q12[5], v[5];
+    numbers(json_object_get(json_object_get(states, "0.4"), "q"), q4, 5);
+    numbers(json_object_get(json_object_get(states, "1.2"), "q"), q12, 5);
     for (int i = 0; i < 5; i++) {
-        json_t *q4 = json_object_get(json_object_get(states, "0.4"), "q");
-        json_t *q12 = json_object_get(json_object_get(states, "1.2"), "q");
-        e.at04 = fmax(e.at04, fabs(t.position[400 * 5 + i] -
-                                   json_number_value(json_array_get(q4, (size_t)i))));
-        e.at12 = fmax(e.at12, fabs(t.position[1200 * 5 + i] -
-                                   json_number_value(json_array_get(q12, (size_t)i))));
-        if (h <= 1e-3)
-            for (int row = 0; row < DROP_ROWS; row++) {
-                json_t *v = json_array_get(path, (size_t)row);
-                e.velocity_l1 += 1e-3 * fabs(t.velocity[row * 5 + i] -
-                                             json_number_value(json_array_get(v, (size_t)i)));
-            }
+        e.at04 = fmax(e.at04, fabs(t.position[400 * 5 + i] - q4[i]));
+        e.at12 = fmax(e.at12, fabs(t.position[1200 * 5 + i] - q12[i]));
+    }
+    for (int row = 0; row < DROP_ROWS && h <= 1e-3; row++) {
+        numbers(json_array_get(path, (size_t)row), v, 5);
+        for (int i = 0; i < 5; i++)
+            e.velocity_l1 += 1e-3 * fabs(t.velocity[row * 5 + i] - v[i]);
     }
     trajectory_free(&t);
 
