@@ -227,10 +227,12 @@ static void inertia(const stance_scene *scene, const double *robot, const double
 
 /* ---- equilibrium ----------------------------------------------------------------------------- */
 
-/* The foot that these contacts are; -1: they are not one foot. */
+/* On one foot alone, with one of the three angles unknown: what is asked of it here. */
+
+/* The foot that these contacts are. */
 static int foot_of(uint32_t supports)
 {
-    return supports == 1 ? 0 : supports == 2 ? 1 : -1;
+    return supports == 2;
 }
 
 static double weight_of(const double *robot)
@@ -250,7 +252,7 @@ static void balance(const double *robot, int support, double weight[POSTURES])
 
 /* phi of leg `unknown` from theta and the other leg. */
 static stance_error solve_leg(const double *weight, const stance_equilibrium_choice *choice,
-                              double posture[POSTURES], int unknown, stance_message *message)
+                              double posture[POSTURES], int unknown)
 {
     const int known = 3 - unknown;
     const double sine =
@@ -258,7 +260,7 @@ static stance_error solve_leg(const double *weight, const stance_equilibrium_cho
         weight[unknown];
     /* A sine of 1 that rounding has made larger is one still. */
     if (!(fabs(sine) <= 1 + 1e-14))
-        return (void)message, STANCE_NO_EQUILIBRIUM;
+        return STANCE_NO_EQUILIBRIUM;
     const double upper = angle_of(fmax(-1, fmin(1, sine)), sqrt(fmax(0, (1 - sine) * (1 + sine))));
     posture[unknown] = ((choice->branch == 1) ? M_PI - upper : upper) - posture[0];
     return STANCE_OK;
@@ -266,7 +268,7 @@ static stance_error solve_leg(const double *weight, const stance_equilibrium_cho
 
 /* theta from both leg angles: a sin theta + b cos theta = 0 has the two opposite solutions. */
 static stance_error solve_trunk(const double *weight, const stance_equilibrium_choice *choice,
-                                double posture[POSTURES], stance_message *message)
+                                double posture[POSTURES])
 {
     const int s = 1 + foot_of(choice->supports);
     const double a =
@@ -275,7 +277,7 @@ static stance_error solve_trunk(const double *weight, const stance_equilibrium_c
     const double size = fabs(weight[0]) + fabs(weight[1]) + fabs(weight[2]);
 
     if (fmax(fabs(a), fabs(b)) <= 1e-14 * size)
-        return (void)message, STANCE_NO_EQUILIBRIUM;
+        return STANCE_NO_EQUILIBRIUM;
     posture[0] = angle_of(-b, a);
     if ((cosine_of(posture[0] + posture[s]) < 0) != (choice->branch == 1))
         posture[0] += posture[0] > 0 ? -M_PI : M_PI;
@@ -286,28 +288,17 @@ static stance_error equilibrium(const stance_scene *scene, const double *robot,
                                 const stance_equilibrium_choice *choice, stance_equilibrium *result,
                                 stance_message *message)
 {
-    int given = 0, unknown = -1;
+    (void)message;
+    int unknown = 0;
     double posture[POSTURES], weight[POSTURES], velocity[COORDINATES] = {0};
 
     const int support = foot_of(choice->supports);
-    if (support < 0)
-        return (void)message, STANCE_BAD_ARGUMENT;
-    if (choice->branch < 0 || choice->branch > 1)
-        return (void)message, STANCE_BAD_ARGUMENT;
-    for (int i = 0; i < POSTURES; i++) {
-        posture[i] = choice->posture[i];
-        if (isnan(posture[i]))
-            unknown = i;
-        else if (!isfinite(posture[i]) || fabs(posture[i]) > 1e3)
-            return (void)message, STANCE_BAD_ARGUMENT;
-        else
-            given++;
-    }
-    if (given != 2)
-        return (void)message, STANCE_BAD_ARGUMENT;
+    memcpy(posture, choice->posture, sizeof posture);
+    while (!isnan(posture[unknown]))
+        unknown++;
     balance(robot, support, weight);
-    const stance_error error = unknown == 0 ? solve_trunk(weight, choice, posture, message)
-                                            : solve_leg(weight, choice, posture, unknown, message);
+    const stance_error error = unknown == 0 ? solve_trunk(weight, choice, posture)
+                                            : solve_leg(weight, choice, posture, unknown);
     if (error != STANCE_OK)
         return error;
     *result = (stance_equilibrium){.supports = choice->supports,
@@ -375,8 +366,6 @@ static stance_error linearise(const stance_scene *scene, const double *robot,
     (void)scene;
     enum { STATES = 2 * POSTURES };
     const int support = foot_of(equilibrium->supports);
-    if (support < 0)
-        return STANCE_BAD_ARGUMENT;
     const pinned p = pin(robot, equilibrium);
     double column[POSTURES];
 
@@ -427,9 +416,7 @@ static stance_error contact_force(const stance_scene *scene, const double *robot
 {
     enum { STATES = 2 * POSTURES };
     double A[STATES * STATES], B[STATES * TORQUES], jacobian[2][POSTURES];
-    const stance_error error = linearise(scene, robot, equilibrium, A, B);
-    if (error != STANCE_OK)
-        return error;
+    linearise(scene, robot, equilibrium, A, B);
     const int support = foot_of(equilibrium->supports), s = 1 + support, f = 2 - support;
     momentum(robot, equilibrium, jacobian);
     force[0] = weight_of(robot);

@@ -10,6 +10,7 @@
 
 #include "cases.h"
 #include "mechanism_text.h"
+#include "tests.h"
 
 #include "engine/tree.h"
 

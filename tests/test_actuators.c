@@ -2,6 +2,7 @@
  * integration in small steps; the loop with all of it against the eigenvalues of its linear theory;
  * how noise makes it wander; limits by joint; convergence; what is said to rest. */
 #include "support.h"
+#include "tests.h"
 
 enum { STEPS = 400, EVERY = 4 };
 
@@ -23,12 +24,9 @@ static stance_case shaken_case(void)
 /* Torques of all steps: [step][actuator]. */
 static void torques_of(const char *method, stance_case c, double (*torque)[2])
 {
-    stance_trajectory t;
-    stance_result r;
-    t = trajectory_new(STEPS + 1, c.step);
+    stance_trajectory t = trajectory_new(STEPS + 1, c.step);
     c.trajectory = &t;
-    run_cases(kernel_of(method, NULL), &c, &r, 1);
-    assert_int_equal(r.status, STANCE_DONE);
+    run_done(method, &c);
     for (int k = 0; k < STEPS; k++) /* a row holds those of the step that ends there */
         memcpy(torque[k], t.torque + 2 * (k + 1), sizeof *torque);
     trajectory_free(&t);
@@ -51,9 +49,8 @@ static double follow(double command, double lag, double rate, double h, double *
     return sum / PARTS;
 }
 
-static void torques_follow(void **state)
+TEST(torques_follow)
 {
-    (void)state;
     static const struct {
         int delay;
         double lag, rate;
@@ -84,9 +81,8 @@ static void torques_follow(void **state)
         }
 }
 
-static void limits_by_joint(void **state)
+TEST(limits_by_joint)
 {
-    (void)state;
     static double torque[STEPS][2];
     stance_case c = shaken_case();
     double most[2] = {0};
@@ -107,12 +103,11 @@ struct plant {
 };
 static struct plant plant_of(const stance_case *c)
 {
-    const stance_scene *const scene = stance_scene_find("biped");
     const stance_equilibrium equilibrium = equilibrium_at(c);
     struct plant p = {.n = 6};
     double A[36], B[12], K[12];
     get_gain(c, K);
-    assert_int_equal(scene->linearise(scene, c->robot, &equilibrium, A, B), STANCE_OK);
+    assert_int_equal(biped()->linearise(biped(), c->robot, &equilibrium, A, B), STANCE_OK);
     if (c->lag > 0) {
         p.n = 8;
         stance_lagged(PLANT(6, 2, A, B), K, c->lag, p.A, p.B, p.K);
@@ -124,9 +119,8 @@ static struct plant plant_of(const stance_case *c)
 
 /* Just below the critical sample time of the loop, late and lagging, a small deviation dies out;
  * just above it grows; and only the former is said to be stabilised. */
-static void late_loops_are_lost_where_theory_says(void **state)
+TEST(late_loops_are_lost_where_theory_says)
 {
-    (void)state;
     static const struct {
         int delay;
         double lag;
@@ -141,17 +135,14 @@ static void late_loops_are_lost_where_theory_says(void **state)
             stance_critical_sample_time(PLANT(p.n, 2, p.A, p.B), SAMPLING(p.K, 0, c.delay), 1, &T),
             STANCE_OK);
         for (int side = 0; side < 2; side++) {
-            stance_result r;
             c.sample_every = 16;
             c.step = T * (side ? 1.03 : 0.97) / (double)c.sample_every;
             c.steps = 16000;
             c.settle = false;
             c.torque_limit = INFINITY;
-            run_cases(kernel_of("midpoint", NULL), &c, &r, 1);
-            size[side] = fabs(r.position[2] - c.near.target[0]);
+            size[side] = fabs(run_one("midpoint", &c).position[2] - c.near.target[0]);
             c.settle = true;
-            run_cases(kernel_of("midpoint", NULL), &c, &r, 1);
-            outcome[side] = r.outcome;
+            outcome[side] = run_one("midpoint", &c).outcome;
         }
         print_message("# delay %d, lag %g s: T* = %.5f s; 1e-6 rad became %.1e below, %.1e above\n",
                       of[k].delay, of[k].lag, T, size[0], size[1]);
@@ -161,9 +152,8 @@ static void late_loops_are_lost_where_theory_says(void **state)
 }
 
 /* Root mean squares of the states, at the samples of a long run, against the covariance. */
-static void noise_wanders_as_theory_says(void **state)
+TEST(noise_wanders_as_theory_says)
 {
-    (void)state;
     enum { ROWS = 200000 };
     static const struct {
         int delay;
@@ -172,8 +162,6 @@ static void noise_wanders_as_theory_says(void **state)
         {0, 0, 1e-5, 0, 0}, {0, 0, 0, 1e-4, 0}, {0, 0, 0, 0, 1e-3}, {2, 0.01, 1e-5, 1e-4, 1e-3}};
     for (size_t k = 0; k < sizeof of / sizeof *of; k++) {
         stance_case c = balance_case(0, 0);
-        stance_trajectory t;
-        stance_result r;
         c.delay = of[k].delay, c.lag = of[k].lag;
         c.angle_noise = of[k].angle, c.rate_noise = of[k].rate, c.noise = of[k].torque;
         c.sample_every = 4, c.step = 2.5e-3, c.steps = (int64_t)ROWS * c.sample_every;
@@ -187,10 +175,9 @@ static void noise_wanders_as_theory_says(void **state)
                                                SAMPLING(p.K, T, (int)c.delay), measured,
                                                c.noise * c.noise / 3, rms),
                          STANCE_OK);
-        t = trajectory_new(ROWS, T);
+        stance_trajectory t = trajectory_new(ROWS, T);
         c.trajectory = &t;
-        run_cases(kernel_of("midpoint", NULL), &c, &r, 1);
-        assert_int_equal(r.status, STANCE_DONE);
+        run_done("midpoint", &c);
         for (int64_t row = 1000; row < ROWS; row++)
             for (int i = 0; i < 3; i++) {
                 const double x = t.position[5 * row + 2 + i] - c.near.target[i];
@@ -210,18 +197,15 @@ static void noise_wanders_as_theory_says(void **state)
 
 /* The plant with a lag is that of a time-varying torque: steps half as long, a quarter the error.
  */
-static void lags_converge(void **state)
+TEST(lags_converge)
 {
-    (void)state;
     double end[4][3];
     for (int k = 0; k < 4; k++) {
         stance_case c = balance_case(-0.04, 0);
-        stance_result r;
         c.settle = false;
         c.lag = 0.02, c.torque_rate = 60, c.delay = 1;
         c.step = 4e-3 / (1 << k), c.sample_every = 5 << k, c.steps = 50 << k;
-        run_cases(kernel_of("midpoint", NULL), &c, &r, 1);
-        assert_int_equal(r.status, STANCE_DONE);
+        const stance_result r = run_done("midpoint", &c);
         memcpy(end[k], &r.position[2], sizeof end[k]);
     }
     for (int i = 0; i < 3; i++) {
@@ -230,16 +214,4 @@ static void lags_converge(void **state)
         print_message("# angle %d: ratios of differences %.2f, %.2f\n", i, first, second);
         assert_true(first > 3 && first < 5 && second > 3.5 && second < 4.5);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(torques_follow),
-        cmocka_unit_test(limits_by_joint),
-        cmocka_unit_test(late_loops_are_lost_where_theory_says),
-        cmocka_unit_test(noise_wanders_as_theory_says),
-        cmocka_unit_test(lags_converge),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,6 +1,7 @@
 /* test_analysis.c - statistics, reading of results, summary, comparison and pictures, against files
  * that make_sample_results.py makes from formulas. */
 #include "support.h"
+#include "tests.h"
 
 #include "analysis/draw/gnuplot.h"
 #include "analysis/draw/plot.h"
@@ -47,6 +48,8 @@ static int remove_samples(void **state)
     snprintf(command, sizeof command, "rm -rf %s", scratch);
     return system(command);
 }
+
+static CMFixtureFunction before_tests = make_samples, after_tests = remove_samples;
 
 static void read_back(const char *path, char *text, size_t size)
 {
@@ -138,12 +141,11 @@ static double level(double theta, double rate, double scale)
 /* ---- statistics --------------------------------------------------------------------------- */
 
 /* The ends of Wilson's interval solve (k/n - p)^2 = z^2 p (1 - p) / n. */
-static void test_wilson(void **state)
+TEST(test_wilson)
 {
     static const uint64_t counts[][2] = {{1, 10}, {5, 10}, {9, 10}, {30, 1000}, {65535, 65536}};
     static const double z = 1.959963984540054;
     double end[2];
-    (void)state;
     for (size_t i = 0; i < sizeof counts / sizeof counts[0]; i++) {
         double n = (double)counts[i][1], share = (double)counts[i][0] / n;
         statistics_wilson_of(z, share, n, &end[0], &end[1]);
@@ -160,12 +162,11 @@ static void test_wilson(void **state)
     assert_near(statistics_deviations(0.95), z, 1e-14);
 }
 
-static void test_quantiles(void **state)
+TEST(test_quantiles)
 {
     double values[] = {5, NAN, 1, 4, 2, 3, NAN}, none[] = {NAN, NAN};
     double infinite[] = {1, 2, INFINITY};
     struct statistics_numbers numbers;
-    (void)state;
     statistics_summarise(values, 7, &numbers);
     assert_int_equal(numbers.n, 5);
     assert_true(numbers.low == 1 && numbers.median == 3 && numbers.high == 5 && numbers.sum == 15);
@@ -179,13 +180,12 @@ static void test_quantiles(void **state)
 
 /* ---- reading ------------------------------------------------------------------------------ */
 
-static void test_reading(void **state)
+TEST(test_reading)
 {
     struct results r;
     stance_message message;
     double *settle, *missing;
     size_t point[SCENARIO_MAX_AXES], stabilised = 0;
-    (void)state;
     open_sample(&r, "basin");
     assert_int_equal(r.axes, 2);
     assert_int_equal(r.cases, 41 * 31);
@@ -213,13 +213,12 @@ static void test_reading(void **state)
     results_close(&r);
 }
 
-static void test_pending_and_failed(void **state)
+TEST(test_pending_and_failed)
 {
     struct results r;
     struct statistics_counts counts;
     stance_message message;
     double *end;
-    (void)state;
     open_sample(&r, "partial");
     statistics_count(&r, -1, 0, &counts);
     assert_int_equal(counts.kind[RESULTS_PENDING], 18);
@@ -234,14 +233,13 @@ static void test_pending_and_failed(void **state)
     results_close(&r);
 }
 
-static void test_trajectory(void **state)
+TEST(test_trajectory)
 {
     struct results r;
     struct results_trajectory t;
     stance_message message;
     uint64_t *list;
     size_t count;
-    (void)state;
     open_sample(&r, "only");
     assert_true(r.single);
     assert_int_equal(r.index, 17);
@@ -261,14 +259,13 @@ static void test_trajectory(void **state)
 }
 
 /* Six digits, and more only where neighbours are nearer than that; letters whole or '?'. */
-static void test_texts(void **state)
+TEST(test_texts)
 {
     double values[] = {-0.026086956521739119, 1, 1.0000001, 1.0000002, 2e9};
     struct results_axis axis = {.unit = "rad", .count = 5, .value = values};
     static const char *const wanted[] = {"-0.026087 rad", "1 rad", "1.0000001 rad", "1.0000002 rad",
                                          "2e+09 rad"};
     char text[64] = "\xc3\xa9\tb\xff\xe2\x82";
-    (void)state;
     results_clean(text);
     assert_string_equal(text, "\xc3\xa9 b???");
     for (size_t i = 0; i < 5; i++) {
@@ -283,12 +280,11 @@ static void test_texts(void **state)
 /* ---- extents and shares ------------------------------------------------------------------- */
 
 /* The ellipse crosses the axes at 0.05 rad and 0.4 rad/s: the extent ends within half a cell. */
-static void test_extents(void **state)
+TEST(test_extents)
 {
     const size_t origin[SCENARIO_MAX_AXES] = {0};
     struct statistics_extent extent;
     struct results r;
-    (void)state;
     open_sample(&r, "basin");
     assert_true(statistics_extent(&r, 0, origin, &extent) && extent.any);
     assert_near(extent.low, -0.05, 0.5 * 0.005 + 1e-12);
@@ -347,10 +343,9 @@ static double number_at(const json_t *root, const char *a, const char *b, const 
     return json_number_value(at);
 }
 
-static void test_parameter(void **state)
+TEST(test_parameter)
 {
     static const double scales[] = {100, 3, 2, 1, 1};
-    (void)state;
     json_t *const root = summary_of("friction");
     const json_t *const parameters = json_object_get(root, "parameters"),
                         *const parameter = json_array_get(parameters, 0),
@@ -379,9 +374,8 @@ static void test_parameter(void **state)
 
 /* ---- the commands ------------------------------------------------------------------------- */
 
-static void test_summary_text(void **state)
+TEST(test_summary_text)
 {
-    (void)state;
     SAYS(summary, EXIT_DONE, "partial", NULL, NULL, "Half done\n", "Outcomes of the 40 cases done",
          "not computed yet", "newton: ", "contact: ", "torque_limit 10 N m");
     assert_string_equal(errors, "");
@@ -395,11 +389,10 @@ static void test_summary_text(void **state)
     SAYS(summary, EXIT_DONE, "unlucky", NULL, NULL, "?                         ?\n");
 }
 
-static void test_summary_json(void **state)
+TEST(test_summary_json)
 {
     static const char *const names[] = {"friction", "line",   "methods", "one",  "nothing",
                                         "sparse",   "single", "bare",    "title"};
-    (void)state;
     json_t *root = summary_of("basin");
     assert_true(number_at(root, "cases", "total", NULL) == 1271);
     double stabilised = number_at(root, "outcomes", "stabilised", "count");
@@ -430,9 +423,8 @@ static void test_summary_json(void **state)
 }
 
 /* Without a controller the share is that of cases at rest, and what the scene lacks is not told. */
-static void test_summary_of_a_plain_scene(void **state)
+TEST(test_summary_of_a_plain_scene)
 {
-    (void)state;
     SAYS(summary, EXIT_DONE, "ball", NULL, NULL, "Rested against ground.restitution",
          "!Stabilised against", "!fall_height", "tolerance 1e-08 m, rad",
          "initial: the initial state or the controller does not exist",
@@ -455,9 +447,8 @@ static void test_summary_of_a_plain_scene(void **state)
     SAYS(summary, EXIT_DONE, "basin", NULL, NULL, "!residual", "!events");
 }
 
-static void test_compare(void **state)
+TEST(test_compare)
 {
-    (void)state;
     SAYS(compare, EXIT_DONE, "basin", sample("basin"), NULL, "identical\n");
     /* One number in its last bits; host and timing do not count. */
     SAYS(compare, EXIT_CASES_FAILED, "basin", sample("changed"), NULL,
@@ -497,9 +488,8 @@ static void expect_bad(const char *path)
     assert_one_line(errors);
 }
 
-static void test_foreign_files(void **state)
+TEST(test_foreign_files)
 {
-    (void)state;
     expect_bad(sample("foreign"));
     expect_bad(sample("no_such_file"));
     expect_bad("tests/test_analysis.c");
@@ -533,12 +523,11 @@ static void save(const char *path, const char *bytes, size_t size)
 }
 
 /* Cut short or with bytes changed: a summary or one line, never a crash. */
-static void test_damaged_files(void **state)
+TEST(test_damaged_files)
 {
     char *bytes, *copy, path[400];
     size_t size = load(sample("partial"), &bytes);
     uint64_t random = 1;
-    (void)state;
     copy = malloc(size);
     assert_non_null(copy);
     snprintf(path, sizeof path, "%s", sample("damaged"));
@@ -584,13 +573,12 @@ static void expect_plot(const char *name, const char *directory)
         fail_msg("%s: %s", name, errors);
 }
 
-static void test_pictures(void **state)
+TEST(test_pictures)
 {
     static const char *const maps[] = {"basin", "partial", "friction", "methods", "one", "title"};
     static const char *const curves[] = {"friction", "methods", "line"};
     static const char *const cases[] = {"coordinates", "forces", "torques", "gaps", "strip"};
     char directory[400], name[64];
-    (void)state;
     snprintf(directory, sizeof directory, "%s/it's a \"place\"", scratch);
     for (size_t i = 0; i < sizeof maps / sizeof maps[0]; i++) {
         expect_plot(maps[i], directory);
@@ -616,10 +604,9 @@ static void test_pictures(void **state)
 }
 
 /* A title reaches the picture as it is; nothing in it is run. */
-static void test_title(void **state)
+TEST(test_title)
 {
     char path[400], *bytes;
-    (void)state;
     expect_plot("title", scratch);
     snprintf(path, sizeof path, "%s/title-map.svg", scratch);
     load(path, &bytes);
@@ -629,10 +616,9 @@ static void test_title(void **state)
     assert_int_not_equal(access("pwned", F_OK), 0);
 }
 
-static void test_text(void **state)
+TEST(test_text)
 {
     char text[200], path[400];
-    (void)state;
     snprintf(path, sizeof path, "%s/text", scratch);
     FILE *file = fopen(path, "w");
     assert_non_null(file);
@@ -643,11 +629,10 @@ static void test_text(void **state)
 }
 
 /* The data that are kept: every cell has the kind and the time of its case, at its place. */
-static void test_cells(void **state)
+TEST(test_cells)
 {
     char path[480], kept[400], *bytes;
     struct results r;
-    (void)state;
     snprintf(kept, sizeof kept, "%s/kept", scratch);
     mkdir(kept, 0700);
     setenv("STANCE_SCRIPTS", kept, 1);
@@ -685,10 +670,9 @@ static void test_cells(void **state)
     free(bytes);
 }
 
-static void test_plot_errors(void **state)
+TEST(test_plot_errors)
 {
     char old[4000];
-    (void)state;
     snprintf(old, sizeof old, "%s", getenv("PATH"));
     setenv("PATH", "/nowhere", 1);
     int code = run_command(&command_plot, sample("basin"), "-o", scratch, NULL);
@@ -713,12 +697,11 @@ static struct results_axis axis_of(double *values, size_t n)
     return (struct results_axis){.name = "ground.friction", .count = n, .value = values};
 }
 
-static void test_scales(void **state)
+TEST(test_scales)
 {
     double even[] = {0.3, 0.2, 0.1}, decades[] = {0.01, 0.1, 1, 10}, odd[] = {1, 2, 4, 5},
            one[] = {7};
     struct plot_axis along;
-    (void)state;
     struct results_axis axis = axis_of(even, 3);
     plot_axis_make(&along, &axis);
     assert_int_equal(along.scale, PLOT_LINEAR);
@@ -738,21 +721,4 @@ static void test_scales(void **state)
     axis = axis_of(one, 1);
     plot_axis_make(&along, &axis);
     assert_int_equal(along.scale, PLOT_LIST);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_wilson),        cmocka_unit_test(test_quantiles),
-        cmocka_unit_test(test_reading),       cmocka_unit_test(test_pending_and_failed),
-        cmocka_unit_test(test_trajectory),    cmocka_unit_test(test_texts),
-        cmocka_unit_test(test_extents),       cmocka_unit_test(test_parameter),
-        cmocka_unit_test(test_summary_text),  cmocka_unit_test(test_summary_json),
-        cmocka_unit_test(test_compare),       cmocka_unit_test(test_summary_of_a_plain_scene),
-        cmocka_unit_test(test_foreign_files), cmocka_unit_test(test_damaged_files),
-        cmocka_unit_test(test_pictures),      cmocka_unit_test(test_title),
-        cmocka_unit_test(test_text),          cmocka_unit_test(test_cells),
-        cmocka_unit_test(test_plot_errors),   cmocka_unit_test(test_scales),
-    };
-    return cmocka_run_group_tests(tests, make_samples, remove_samples);
 }

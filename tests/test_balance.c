@@ -3,6 +3,7 @@
  * sample time found by simulation. */
 #include "long.h"
 #include "support.h"
+#include "tests.h"
 
 static void run(const char *method, const stance_case *cases, stance_result *results, size_t n)
 {
@@ -34,35 +35,29 @@ static void count(double theta, uint32_t contacts, int outcome[5])
     }
 }
 
-static void test_1_recovers(void **state)
+TEST(section_3_2)
 {
-    (void)state;
-    int outcome[5] = {0};
-    count(-0.04, 1, outcome);
-    assert_int_equal(outcome[STANCE_STABILISED], 2 * SEEDS);
-}
-static void test_2_falls(void **state)
-{
-    (void)state;
-    int outcome[5] = {0};
-    count(0.029, 1, outcome);
-    assert_int_equal(outcome[STANCE_FELL], 2 * SEEDS);
-}
-static void test_1_scuffs_with_both_feet(void **state)
-{
-    (void)state;
-    int outcome[5] = {0};
-    count(-0.04, 3, outcome);
-    print_message("# both feet: %d stabilised, %d fell, %d rested\n", outcome[STANCE_STABILISED],
-                  outcome[STANCE_FELL], outcome[STANCE_RESTED]);
-    assert_int_equal(outcome[STANCE_STABILISED], 0);
+    static const struct {
+        const char *what;
+        double theta;
+        uint32_t contacts;
+        int outcome, seeds; /* so many of both methods end so */
+    } tests[] = {{"test 1 recovers", -0.04, 1, STANCE_STABILISED, 2 * SEEDS},
+                 {"test 2 falls", 0.029, 1, STANCE_FELL, 2 * SEEDS},
+                 {"test 1 scuffs with both feet", -0.04, 3, STANCE_STABILISED, 0}};
+    for (int k = 0; k < 3; k++) {
+        int outcome[5] = {0};
+        count(tests[k].theta, tests[k].contacts, outcome);
+        print_message("# %s: %d stabilised, %d fell, %d rested\n", tests[k].what,
+                      outcome[STANCE_STABILISED], outcome[STANCE_FELL], outcome[STANCE_RESTED]);
+        assert_int_equal(outcome[tests[k].outcome], tests[k].seeds);
+    }
 }
 
 /* ---- the domain ---- */
 
-static void interval_at_rest(void **state)
+TEST(interval_at_rest)
 {
-    (void)state;
     enum { N = 721 };
     stance_case *c = calloc(N, sizeof *c);
     stance_result *r = calloc(N, sizeof *r);
@@ -92,9 +87,8 @@ static int descending(const void *a, const void *b)
     return (x < y) - (x > y);
 }
 
-static void friction_used_in_the_domain(void **state)
+TEST(friction_used_in_the_domain)
 {
-    (void)state;
     enum { MOST = 96 };
     const int N = long_tests() ? MOST : MOST / 2;
     stance_case *c = calloc((size_t)(N * N), sizeof *c);
@@ -123,9 +117,8 @@ static void friction_used_in_the_domain(void **state)
 
 /* Against the pinned robot with three coordinates, integrated by another program: equal labels
  * everywhere but within one cell of the boundary. */
-static void domain_against_pinned_robot(void **state)
+TEST(domain_against_pinned_robot)
 {
-    (void)state;
     enum { N = 64 };
     json_t *root = reference_load("tests/reference/pinned_basin.json");
     json_t *rows = json_object_get(root, "labels");
@@ -189,9 +182,8 @@ static bool grows(const char *method, double T, double step)
     c.step = T / per_sample;
     double size[2];
     for (int k = 0; k < 2; k++) {
-        stance_result r;
         c.steps = (int64_t)(per_sample * nearbyint((k ? 40 : 10) / T));
-        run(method, &c, &r, 1);
+        const stance_result r = run_done(method, &c);
         size[k] = 0;
         for (int i = 0; i < 3; i++)
             size[k] += pow(r.position[2 + i] - c.near.target[i], 2) + pow(r.velocity[2 + i] / 4, 2);
@@ -204,17 +196,13 @@ static double simulated_limit(const char *method, double step)
     double low = 0.12, high = 0.15;
     while (high - low > 1e-5) {
         const double middle = (low + high) / 2;
-        if (grows(method, middle, step))
-            high = middle;
-        else
-            low = middle;
+        *(grows(method, middle, step) ? &high : &low) = middle;
     }
     return low;
 }
 
-static void critical_sample_time_by_simulation(void **state)
+TEST(critical_sample_time_by_simulation)
 {
-    (void)state;
     const double theory = 0.1363;
     static const struct {
         const char *method;
@@ -229,18 +217,4 @@ static void critical_sample_time_by_simulation(void **state)
                       1e3 * expected[i].step, T, 100 * (T / theory - 1));
         assert_true(fabs(T / theory - 1 - expected[i].shift) < expected[i].tolerance);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_1_recovers),
-        cmocka_unit_test(test_2_falls),
-        cmocka_unit_test(test_1_scuffs_with_both_feet),
-        cmocka_unit_test(interval_at_rest),
-        cmocka_unit_test(friction_used_in_the_domain),
-        cmocka_unit_test(domain_against_pinned_robot),
-        cmocka_unit_test(critical_sample_time_by_simulation),
-    };
-    return cmocka_run_group_tests_name("balance", tests, NULL, NULL);
 }

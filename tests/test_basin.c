@@ -1,6 +1,7 @@
 /* test_basin.c - basins against sets whose volume, entropy and dimension are known. */
 #include "long.h"
 #include "support.h"
+#include "tests.h"
 
 #include "analysis/basin/basin_map.h"
 
@@ -125,7 +126,7 @@ static double entropy_of(double p)
 
 /* ---- volume ------------------------------------------------------------------------------- */
 
-static void volumes_are_bounded(void **state)
+TEST(volumes_are_bounded)
 {
     static const struct {
         int axes;
@@ -137,7 +138,6 @@ static void volumes_are_bounded(void **state)
                 {2, 100, line, 0},
                 {3, 41, sphere, 4 * M_PI / 3 * 0.35 * 0.35 * 0.35},
                 {2, 10, everything, 1}};
-    (void)state;
     for (size_t k = 0; k < sizeof sets / sizeof sets[0]; k++) {
         struct drawn d = draw(sets[k].axes, sets[k].n, false, sets[k].colour);
         struct basin_volume v;
@@ -154,11 +154,10 @@ static void volumes_are_bounded(void **state)
 }
 
 /* Two ends somewhere in their cells, evenly: the variance is that of the estimate's error. */
-static void the_likely_error_of_an_interval_is_right(void **state)
+TEST(the_likely_error_of_an_interval_is_right)
 {
     enum { TRIES = 400, N = 21 };
     double squares = 0, expected = 0, place[N];
-    (void)state;
     for (int i = 0; i < N; i++)
         place[i] = i / (N - 1.0);
     for (int t = 0; t < TRIES; t++) {
@@ -280,10 +279,9 @@ static enum results_kind drawn(const double *at)
 
 /* Conservative: in no kind of boundary the likely error at 95 % holds less often than that, and it
  * does not exceed what is certain. */
-static void likely_errors_hold(void **state)
+TEST(likely_errors_hold)
 {
     const bool patient = long_tests();
-    (void)state;
     for (size_t k = 0; k < sizeof shapes / sizeof shapes[0]; k++) {
         const int tries = (patient ? 2000 : 300) / (shapes[k].axes == 3 ? 3 : 1);
         for (size_t n = 17; n <= (shapes[k].axes == 3 ? 17 : 65); n = 2 * n - 1) {
@@ -319,13 +317,12 @@ static void likely_errors_hold(void **state)
     }
 }
 
-static void unknown_cases_widen_the_bound(void **state)
+TEST(unknown_cases_widen_the_bound)
 {
     static const double place[] = {0, 1, 2, 4};
     const uint8_t kind[] = {RESULTS_STABILISED, RESULTS_STABILISED, RESULTS_FAILED, RESULTS_FELL};
     const struct basin_map map = {1, {4}, {place}, 4, kind};
     struct basin_volume v;
-    (void)state;
     assert_true(basin_map_volume(&map, RESULTS_STABILISED, &v));
     assert_near(v.box, 4, 0);
     assert_near(v.low, 1, 0);
@@ -338,9 +335,8 @@ static void unknown_cases_widen_the_bound(void **state)
 /* ---- entropy ------------------------------------------------------------------------------ */
 
 /* A straight edge parallel to an axis leaves m of the 5 columns of its boxes on one side. */
-static void entropy_of_a_half_plane(void **state)
+TEST(entropy_of_a_half_plane)
 {
-    (void)state;
     for (int m = 0; m < 5; m++) {
         double place[30];
         uint8_t kind[900];
@@ -361,12 +357,11 @@ static void entropy_of_a_half_plane(void **state)
     }
 }
 
-static void entropy_of_coins_is_log_2(void **state)
+TEST(entropy_of_coins_is_log_2)
 {
     struct drawn d = draw(2, 500, true, coin);
     struct basin_entropy e = {0};
     double expected = 0;
-    (void)state;
     /* Of 25 coins, exactly: a little below log 2. */
     for (int k = 0; k <= 25; k++)
         expected +=
@@ -385,7 +380,7 @@ static void entropy_of_coins_is_log_2(void **state)
 }
 
 /* Three colours in every box, and failed cases that belong to none. */
-static void entropy_counts_all_outcomes(void **state)
+TEST(entropy_counts_all_outcomes)
 {
     static const uint8_t kind[] = {RESULTS_FELL,       RESULTS_RESTED, RESULTS_FAILED,
                                    RESULTS_STABILISED, RESULTS_FAILED, RESULTS_FAILED,
@@ -393,7 +388,6 @@ static void entropy_counts_all_outcomes(void **state)
     static const double place[] = {0, 1, 2, 3, 4, 5, 6, 7};
     const struct basin_map map = {1, {8}, {place}, 8, kind};
     struct basin_entropy e = {0};
-    (void)state;
     basin_map_entropy(&map, 4, &e);
     assert_int_equal(e.boxes, 2);
     assert_int_equal(e.mixed, 1);
@@ -404,14 +398,13 @@ static void entropy_counts_all_outcomes(void **state)
 
 /* ---- uncertainty exponent ----------------------------------------------------------------- */
 
-static void smooth_boundaries_have_exponent_1(void **state)
+TEST(smooth_boundaries_have_exponent_1)
 {
     static const struct {
         int axes;
         size_t n;
         painter colour;
     } sets[] = {{1, 400, interval}, {2, 256, line}, {2, 256, disc}, {3, 96, sphere}};
-    (void)state;
     for (size_t k = 0; k < sizeof sets / sizeof sets[0]; k++) {
         struct drawn d = draw(sets[k].axes, sets[k].n, true, sets[k].colour);
         assert_near(exponent_of(&d.map).alpha, 1, 0.05);
@@ -419,23 +412,21 @@ static void smooth_boundaries_have_exponent_1(void **state)
     }
 }
 
-static void koch_curve_has_its_exponent(void **state)
+TEST(koch_curve_has_its_exponent)
 {
     struct drawn d = draw(2, 729, true, koch);
     const struct basin_exponent e = exponent_of(&d.map);
-    (void)state;
     print_message("Koch: alpha %.4f +- %.4f, wanted %.4f\n", e.alpha, e.error, 2 - log(4) / log(3));
     assert_near(e.alpha, 2 - log(4) / log(3), 0.03);
     assert_true(e.error > 0 && e.error < 0.05);
     erase(&d);
 }
 
-static void cantor_stripes_have_their_exponent(void **state)
+TEST(cantor_stripes_have_their_exponent)
 {
     const double wanted = 1 - log(2) / log(3);
     struct drawn d = draw(1, 59049, true, cantor);
     struct basin_exponent e = exponent_of(&d.map);
-    (void)state;
     print_message("Cantor: alpha %.4f +- %.4f, wanted %.4f\n", e.alpha, e.error, wanted);
     assert_near(e.alpha, wanted, 0.03);
     erase(&d);
@@ -446,10 +437,9 @@ static void cantor_stripes_have_their_exponent(void **state)
     erase(&d);
 }
 
-static void too_small_or_empty_maps_have_none(void **state)
+TEST(too_small_or_empty_maps_have_none)
 {
     struct drawn small = draw(2, 95, true, line), whole = draw(2, 96, true, everything);
-    (void)state;
     assert_int_equal(basin_map_scales(&small.map), 3);
     assert_int_equal(exponent_of(&small.map).refusal, BASIN_SMALL);
     assert_int_equal(exponent_of(&whole.map).refusal, BASIN_NONE);
@@ -461,13 +451,12 @@ static void too_small_or_empty_maps_have_none(void **state)
 
 /* ---- boundary and distance ---------------------------------------------------------------- */
 
-static void boundary_points_lie_on_the_boundary(void **state)
+TEST(boundary_points_lie_on_the_boundary)
 {
     struct drawn d = draw(2, 101, false, disc);
     struct basin_crossing crossing = {.axis = -1};
     int count = 0;
     double farthest = 0; /* from the circle */
-    (void)state;
     while (basin_next_crossing(&d.map, &crossing)) {
         double at[2];
         for (int a = 0; a < 2; a++)
@@ -483,7 +472,7 @@ static void boundary_points_lie_on_the_boundary(void **state)
     erase(&d);
 }
 
-static void distances_from_the_equilibrium(void **state)
+TEST(distances_from_the_equilibrium)
 {
     /* An ellipse (x / 2)^2 + y^2 < 1 around zero in a box of 8 x 4, one failed case beyond it. */
     enum { NX = 81, NY = 81 };
@@ -492,7 +481,6 @@ static void distances_from_the_equilibrium(void **state)
     const size_t origin[] = {40, 40}, beyond[] = {75, 40};
     const double ranges[] = {8, 4}, equal[] = {1, 1}, long_x[] = {4, 1};
     struct basin_distance distance;
-    (void)state;
     for (int i = 0; i < NX; i++)
         x[i] = -4 + 0.1 * i;
     for (int i = 0; i < NY; i++)
@@ -557,7 +545,7 @@ static enum results_kind two_intervals(const double *at)
     return in(fabs(at[0] - 0.5) < 0.21 || at[0] < 0.2);
 }
 
-static void the_part_about_the_equilibrium(void **state)
+TEST(the_part_about_the_equilibrium)
 {
     static const struct {
         int axes;
@@ -567,7 +555,6 @@ static void the_part_about_the_equilibrium(void **state)
     } sets[] = {{1, 201, two_intervals, 0.42, 0.005},
                 {2, 201, disc_and_island, M_PI * 0.21 * 0.21, 0.001},
                 {3, 41, two_balls, 4 * M_PI / 3 * 0.21 * 0.21 * 0.21, 0.001}};
-    (void)state;
     for (size_t k = 0; k < sizeof sets / sizeof sets[0]; k++) {
         struct drawn d = draw(sets[k].axes, sets[k].n, false, sets[k].colour);
         const size_t half = sets[k].n / 2, origin[] = {half, half, half}, corner[] = {0, 0, 0};
@@ -616,10 +603,9 @@ static enum results_kind ball_and_island(const double *at)
     return in(sqrt(near) < drawn_at[4] || sqrt(far) < 0.05);
 }
 
-static void likely_errors_of_the_part_hold(void **state)
+TEST(likely_errors_of_the_part_hold)
 {
     static const double unit_ball[] = {2, M_PI, 4 * M_PI / 3};
-    (void)state;
     for (int axes = 1; axes <= 3; axes++) {
         const int tries = axes == 3 ? 100 : 1000;
         const size_t n = axes == 3 ? 25 : 49, origin[] = {n / 2, n / 2, n / 2};
@@ -643,26 +629,4 @@ static void likely_errors_of_the_part_hold(void **state)
                       100.0 * held / tries, 100.0 * bounded / tries);
         assert_true(held >= 0.93 * tries && bounded == tries);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(volumes_are_bounded),
-        cmocka_unit_test(the_likely_error_of_an_interval_is_right),
-        cmocka_unit_test(likely_errors_hold),
-        cmocka_unit_test(unknown_cases_widen_the_bound),
-        cmocka_unit_test(entropy_of_a_half_plane),
-        cmocka_unit_test(entropy_of_coins_is_log_2),
-        cmocka_unit_test(entropy_counts_all_outcomes),
-        cmocka_unit_test(smooth_boundaries_have_exponent_1),
-        cmocka_unit_test(koch_curve_has_its_exponent),
-        cmocka_unit_test(cantor_stripes_have_their_exponent),
-        cmocka_unit_test(too_small_or_empty_maps_have_none),
-        cmocka_unit_test(boundary_points_lie_on_the_boundary),
-        cmocka_unit_test(distances_from_the_equilibrium),
-        cmocka_unit_test(the_part_about_the_equilibrium),
-        cmocka_unit_test(likely_errors_of_the_part_hold),
-    };
-    return cmocka_run_group_tests_name("basin", tests, NULL, NULL);
 }

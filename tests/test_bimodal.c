@@ -2,6 +2,7 @@
  * a delay; without a push it is state feedback, to the bit; the same bits in all instruction sets,
  * whatever acts beside it. */
 #include "support.h"
+#include "tests.h"
 
 enum { STEPS = 300, STATES = 6 };
 
@@ -39,9 +40,8 @@ static double command_at(const stance_case *c, const double *q, const double *v,
     return beyond;
 }
 
-static void torques_bend(void **state)
+TEST(torques_bend)
 {
-    (void)state;
     static const char *const methods[] = {"midpoint", "capturing", "event-driven"};
     uint64_t seed = 5;
     int sides[2] = {0}, cut = 0;
@@ -74,9 +74,8 @@ static void torques_bend(void **state)
     assert_true(sides[0] > 1000 && sides[1] > 1000 && cut > 100);
 }
 
-static void without_push_it_is_linear(void **state)
+TEST(without_push_it_is_linear)
 {
-    (void)state;
     enum { N = 64 };
     static stance_case bent[N], linear[N];
     static stance_result got[N], wanted[N];
@@ -94,9 +93,8 @@ static void without_push_it_is_linear(void **state)
 }
 
 /* Noise, a delay or a law that switches beside it takes another way through the loop. */
-static void lanes_agree(void **state)
+TEST(lanes_agree)
 {
-    (void)state;
     enum { N = 96 };
     static const char *const methods[] = {"midpoint", "implicit", "capturing", "lagrange"};
     static stance_case cases[N];
@@ -122,14 +120,4 @@ static void lanes_agree(void **state)
                 assert_memory_equal(&first[i], &other[i], sizeof first[i]);
         }
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(torques_bend),
-        cmocka_unit_test(without_push_it_is_linear),
-        cmocka_unit_test(lanes_agree),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,6 +1,7 @@
 /* test_boundary.c - outlines run between all neighbours that differ, each once, and close to
  * boundaries that are known. */
 #include "support.h"
+#include "tests.h"
 
 #include "analysis/plot/boundary.h"
 
@@ -48,11 +49,10 @@ static size_t check_sides(const uint8_t *inside, size_t nx, size_t ny, struct bo
     return b->lines;
 }
 
-static void lines_run_between_neighbours(void **state)
+TEST(lines_run_between_neighbours)
 {
     uint8_t inside[SIDE * SIDE];
     struct boundary b;
-    (void)state;
     srand(7);
     for (int map = 0; map < 300; map++) {
         const size_t nx = 1 + (size_t)rand() % 12, ny = 1 + (size_t)rand() % 12;
@@ -100,10 +100,9 @@ static double dot(double x, double y)
     return hypot(x - 20, y - 20) - 0.5;
 }
 
-static void lines_are_smooth(void **state)
+TEST(lines_are_smooth)
 {
     static const double slopes[] = {0, 0.03, 0.13, 0.37, 0.5, 0.83};
-    (void)state;
     for (size_t k = 0; k < sizeof slopes / sizeof slopes[0]; k++) {
         slope = slopes[k];
         const double off = worst(half_plane, 1, false);
@@ -117,13 +116,4 @@ static void lines_are_smooth(void **state)
     print_message("# ring: off by %.3f cells\n", two);
     assert_true(two < 0.35);
     assert_true(worst(dot, 1, true) < 0.5);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(lines_run_between_neighbours),
-        cmocka_unit_test(lines_are_smooth),
-    };
-    return cmocka_run_group_tests_name("boundary", tests, NULL, NULL);
 }

@@ -2,6 +2,7 @@
  * slides, it leaves again, and each obeys every law. All methods take the same one, whatever the
  * step and the tolerance, count it, and follow the other on demand. */
 #include "support.h"
+#include "tests.h"
 
 static const struct {
     const char *method;
@@ -34,9 +35,8 @@ static stance_case landing(int way, bool most)
     return c;
 }
 
-static void one_rule_for_all(void **state)
+TEST(one_rule_for_all)
 {
-    (void)state;
     double end[2] = {0, 0};
     for (int most = 0; most < 2; most++)
         for (int k = 0; k < WAYS; k++) {
@@ -53,10 +53,4 @@ static void one_rule_for_all(void **state)
             assert_true(fabs(r.position[3] - end[most]) < (ways[k].step < 1e-3 ? 0.02 : 1e-5));
         }
     assert_true(fabs(end[1] - end[0]) > 0.05);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(one_rule_for_all)};
-    return cmocka_run_group_tests_name("branches", tests, NULL, NULL);
 }

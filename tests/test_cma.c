@@ -1,12 +1,6 @@
 /* Evolution strategy: evaluations needed against those of another program, one generation after the
  * other against the tutorial's equations written down a second time, asked points against their
  * distribution, ranges as images of all numbers. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 #include <float.h>
 #include <lapacke.h>
 #include <math.h>
@@ -15,6 +9,7 @@
 #include <string.h>
 
 #include "cases.h"
+#include "tests.h"
 
 #include "runner/optimise/cma.h"
 
@@ -123,9 +118,8 @@ static double generation(struct cma *s, objective *f)
 
 /* Candidates until one is below 1e-9: means of some seeds beside those of pycma 4.4.0 (7 seeds,
  * CMA_active, same starts; the ellipsoid without active covariance takes it 6000 at n = 10). */
-static void evaluations(void **state)
+TEST(evaluations)
 {
-    (void)state;
     static const struct {
         const char *name;
         objective *f;
@@ -246,9 +240,8 @@ static void plain_tell(struct plain *s, double x[LAMBDA][N])
 }
 
 /* Points of any kind, near and far, so that h is 0 and 1. */
-static void the_equations(void **state)
+TEST(the_equations)
 {
-    (void)state;
     uint64_t random = 5;
     struct plain s = {.step = 0.3};
     struct cma *cma = made(N, LAMBDA, s.m, s.step, 1);
@@ -282,9 +275,8 @@ static void the_equations(void **state)
 
 /* Of a distribution that has adapted: mean, covariance, shares within one and two deviations, all
  * within five standard errors. */
-static void asked_points(void **state)
+TEST(asked_points)
 {
-    (void)state;
     enum { n = 5, count = 30000 };
     const double zero[n] = {0};
     double *x = malloc(sizeof(double[n]) * count), mean[n] = {0}, c[n * n] = {0};
@@ -326,9 +318,8 @@ static void asked_points(void **state)
 
 /* No number twice, and none that goes with another: candidates, coordinates, generations, restarts
  * and seeds. */
-static void independent(void **state)
+TEST(independent)
 {
-    (void)state;
     enum { n = 7, lambda = 200, runs = 12 };
     static double z[runs][lambda * n];
     const double zero[n] = {0};
@@ -371,9 +362,8 @@ static void hash_state(const struct cma *s, uint64_t *h)
 }
 
 /* The same bits twice; from what was told alone; from scores in the same order. */
-static void same_bits(void **state)
+TEST(same_bits)
 {
-    (void)state;
     const int sizes[] = {1, 2, 12, 40};
     for (int t = 0; t < 4; t++) {
         const int n = sizes[t];
@@ -414,9 +404,8 @@ static void same_bits(void **state)
 }
 
 /* Of equal ones the first: as if it were better. */
-static void ties(void **state)
+TEST(ties)
 {
-    (void)state;
     enum { n = 3, lambda = 7 };
     const double zero[n] = {0};
     const int64_t tied[lambda] = {5, -1, 5, 0, 0, -1, 5}, strict[lambda] = {9, 4, 8, 6, 5, 3, 7};
@@ -449,9 +438,8 @@ static double shifted_sphere(int n, const double *x)
 
 /* The first half of the coordinates may not be above 0.5, where the best is: found as fast as
  * without bounds. */
-static void optimum_on_bounds(void **state)
+TEST(optimum_on_bounds)
 {
-    (void)state;
     const int sizes[] = {1, 2, 12, 20};
     for (int t = 0; t < 4; t++) {
         const int n = sizes[t], bound = (n + 1) / 2;
@@ -492,9 +480,8 @@ static double shell(int n, const double *x)
 }
 
 /* A first step far beyond the range, and scores that say nothing for a while. */
-static void narrow_ranges(void **state)
+TEST(narrow_ranges)
 {
-    (void)state;
     enum { n = 5 };
     const double mean[n] = {0, 1, 1, 0, 0.5}, low[n] = {0, 0, 0, 0, 0}, high[n] = {1, 1, 1, 1, 1};
     struct cma *s = made_within(&(struct cma_start){n, 10, mean, low, high, 30, 5, 0});
@@ -510,9 +497,8 @@ static void narrow_ranges(void **state)
 
 /* Every kind of range: within it, without jumps, slopes of at most 1, mirrored at each
  * bound; what goes back and forth is the same, on the side it came from. */
-static void image_of_a_range(void **state)
+TEST(image_of_a_range)
 {
-    (void)state;
     const struct bounds table[] = {
         {-1, 2, 0.1},          {-1, 2, 1.5},       {0, INFINITY, 0.5},
         {-INFINITY, 2, 0.25},  {5, 5.001, 0.0002}, {-INFINITY, INFINITY, 1},
@@ -562,9 +548,8 @@ static double lost_of_512(int n, const double *x)
     return 512 - floor(512 * fmin(1, wide * (0.75 + 0.25 * exp(-x[0] * x[0]))));
 }
 
-static void plateaus(void **state)
+TEST(plateaus)
 {
-    (void)state;
     const int sizes[] = {1, 2, 12, 56};
     for (int t = 0; t < 4; t++) {
         const int n = sizes[t];
@@ -582,9 +567,8 @@ static void plateaus(void **state)
 }
 
 /* Where all scores are equal nothing drives the step: its logarithm goes at random about 0. */
-static void flat(void **state)
+TEST(flat)
 {
-    (void)state;
     enum { n = 6, lambda = 9, seeds = 40 };
     const double zero[n] = {0};
     double sum = 0, squares = 0;
@@ -604,9 +588,8 @@ static void flat(void **state)
 
 /* ---- hostile --------------------------------------------------------------------------------- */
 
-static void refused(void **state)
+TEST(refused)
 {
-    (void)state;
     const double mean[2] = {0, 1}, low[2] = {-1, -1}, high[2] = {1, 1}, nan[2] = {0, NAN};
     const double infinite[2] = {INFINITY, 0}, outside[2] = {0, 1.5}, wrong[2] = {-1, 1};
     const struct cma_start good = {2, 2, mean, low, high, 1, UINT64_MAX, UINT64_MAX};
@@ -630,9 +613,8 @@ static void refused(void **state)
             cma_make(&(struct cma_start){2, 0, ranges[i][0], ranges[i][1], ranges[i][2], 1, 1, 0}));
 }
 
-static void told_nonsense(void **state)
+TEST(told_nonsense)
 {
-    (void)state;
     enum { n = 3, lambda = 7 };
     const double zero[n] = {0}, low[n] = {-1, -INFINITY, -INFINITY},
                  high[n] = {1, INFINITY, INFINITY};
@@ -670,9 +652,8 @@ static void check_finite(const struct cma *s)
 
 /* Long after every reason to stop: no candidate differs from the mean, all are far away in turn,
  * one direction alone counts, the score grows for ever. */
-static void numbers_stay_finite(void **state)
+TEST(numbers_stay_finite)
 {
-    (void)state;
     enum { n = 3, lambda = 7, generations = 4000 };
     const double zero[n] = {0};
     double x[n * lambda];
@@ -716,9 +697,8 @@ static double widest(const struct cma *s)
     return most;
 }
 
-static void stops(void **state)
+TEST(stops)
 {
-    (void)state;
     enum { n = 4 };
     const double ones[n] = {1, 1, 1, 1};
     const struct {
@@ -743,24 +723,4 @@ static void stops(void **state)
     }
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(evaluations),
-        cmocka_unit_test(the_equations),
-        cmocka_unit_test(asked_points),
-        cmocka_unit_test(independent),
-        cmocka_unit_test(same_bits),
-        cmocka_unit_test(ties),
-        cmocka_unit_test(optimum_on_bounds),
-        cmocka_unit_test(narrow_ranges),
-        cmocka_unit_test(image_of_a_range),
-        cmocka_unit_test(plateaus),
-        cmocka_unit_test(flat),
-        cmocka_unit_test(refused),
-        cmocka_unit_test(told_nonsense),
-        cmocka_unit_test(numbers_stay_finite),
-        cmocka_unit_test(stops),
-    };
-    return cmocka_run_group_tests_name("cma", tests, without_bounds, NULL);
-}
+static CMFixtureFunction before_tests = without_bounds;

@@ -2,6 +2,7 @@
  * control.json (other equations, other libraries: see control.py), closed formulas and the figures
  * that were published for the default robot. */
 #include "linear.h"
+#include "tests.h"
 
 #define REFERENCE "tests/reference/control.json"
 
@@ -9,42 +10,69 @@ static const double PAPER_POLES[6] = {-3, -3.3, -3.6, -3.9, -4.2, -4.6};
 static const double DEFAULT_ROBOT[STANCE_MAX_ROBOT] = {
     0.535, 0.535, 1.8, 1.8, 5.4, [STANCE_ROBOT_GRAVITY] = STANCE_GRAVITY};
 
+/* Robust gains K[m][n] for these poles. */
+static stance_robustness place(const stance_plant *plant, const stance_poles *poles, double *K)
+{
+    stance_robustness got;
+    stance_message message = {""};
+    if (stance_place(STANCE_ROBUST, plant, 0, poles, K, &got, &message) != STANCE_OK)
+        fail_msg("%d states, %d inputs: %s", plant->states, plant->inputs, message.text);
+    return got;
+}
+
+static int rank_of(const stance_plant *plant, double *sv)
+{
+    int rank;
+    assert_int_equal(stance_kalman(plant, sv, &rank), STANCE_OK);
+    return rank;
+}
+
+static double critical(const stance_plant *plant, const double *K, double longest)
+{
+    double T;
+    assert_int_equal(stance_critical_sample_time(plant, SAMPLING(K, 0, 0), longest, &T), STANCE_OK);
+    return T;
+}
+
+/* The default robot on foot 1 in the posture of the paper: its equilibrium and what is linear. */
+static stance_equilibrium paper_plant(double A[36], double B[12])
+{
+    const stance_equilibrium e = equilibrium_of(DEFAULT_ROBOT, 0, -0.41, NAN, 0.82, false);
+    assert_int_equal(biped()->linearise(biped(), DEFAULT_ROBOT, &e, A, B), STANCE_OK);
+    return e;
+}
+
 /* Eigenvalues that are multiple (right angle) move by the root of a rounding error. */
 static double eigenvalue_tolerance(const char *name)
 {
     return strcmp(name, "right angle") == 0 ? 1e-3 : 1e-9;
 }
 
+static void poles_of(const json_t *record, const char *key, double re[6], double im[6])
+{
+    double pairs[12];
+    matrix_of(record, key, 6, 2, pairs);
+    for (int i = 0; i < 6; i++)
+        re[i] = pairs[2 * i], im[i] = pairs[2 * i + 1];
+}
+
 static void compare_design(const json_t *record, const char *name, const double *A, const double *B)
 {
-    double poles[12], K[12], wanted[12], loop[36], re[6], im[6], critical;
-    stance_robustness got;
-    stance_message message = {""};
+    double K[12], wanted[12], loop[36], re[6], im[6];
 
-    matrix_of(record, "poles", 6, 2, poles);
+    poles_of(record, "poles", re, im);
     matrix_of(record, "gain", 2, 6, wanted);
-    for (int i = 0; i < 6; i++) {
-        re[i] = poles[2 * i];
-        im[i] = poles[2 * i + 1];
-    }
-    if (stance_place(STANCE_ROBUST, PLANT(6, 2, A, B), 0, POLES(re, im), K, &got, &message) !=
-        STANCE_OK)
-        fail_msg("%s: %s", name, message.text);
+    const stance_robustness got = place(PLANT(6, 2, A, B), POLES(re, im), K);
     closed_loop(6, 2, A, B, K, loop);
     assert_eigenvalues(6, loop, re, im, 1e-7, name);
-    const double reference = json_number_value(json_object_get(record, "condition"));
+    const double reference = number_in(record, "condition");
     assert_near(got.condition, reference, 1e-5 * reference, "condition number");
     if (!json_is_true(json_object_get(record, "compare_gain")))
         return;
     assert_matrix(12, K, wanted, 1e-5, name);
-    assert_int_equal(
-        stance_critical_sample_time(PLANT(6, 2, A, B), SAMPLING(K, 0, 0), 5, &critical), STANCE_OK);
-    const double T = json_number_value(json_object_get(record, "critical_sample_time"));
-    assert_near(critical, T, 1e-6 * T, "critical sample time");
-    assert_int_equal(
-        stance_critical_sample_time(PLANT(6, 2, A, B), SAMPLING(wanted, 0, 0), 5, &critical),
-        STANCE_OK);
-    assert_near(critical, T, 1e-9 * T, "critical sample time of the reference's own gain");
+    const double T = number_in(record, "critical_sample_time");
+    assert_near(critical(PLANT(6, 2, A, B), K, 5), T, 1e-6 * T, "critical sample time");
+    assert_near(critical(PLANT(6, 2, A, B), wanted, 5), T, 1e-9 * T, "... of the reference's gain");
 }
 
 static void compare_case(const json_t *record)
@@ -52,9 +80,7 @@ static void compare_case(const json_t *record)
     const char *name = json_string_value(json_object_get(record, "name"));
     const int support = (int)json_integer_value(json_object_get(record, "support"));
     double robot[STANCE_MAX_ROBOT] = {[STANCE_ROBOT_GRAVITY] = STANCE_GRAVITY}, given[3],
-           position[5], torque[2], wanted_A[36], wanted_B[12], w[12], re[6], im[6], A[36], B[12],
-           sv[6];
-    int rank;
+           position[5], torque[2], wanted_A[36], wanted_B[12], re[6], im[6], A[36], B[12], sv[6];
 
     matrix_of(record, "robot", 5, 1, robot);
     matrix_of(record, "given", 3, 1, given);
@@ -62,7 +88,7 @@ static void compare_case(const json_t *record)
     matrix_of(record, "torque", 2, 1, torque);
     matrix_of(record, "A", 6, 6, wanted_A);
     matrix_of(record, "B", 6, 2, wanted_B);
-    matrix_of(record, "eigenvalues", 6, 2, w);
+    poles_of(record, "eigenvalues", re, im);
     const stance_equilibrium e = equilibrium_of(robot, support, given[0], given[1], given[2],
                                                 json_is_true(json_object_get(record, "lower")));
     assert_int_equal(e.supports, 1u << support);
@@ -73,20 +99,14 @@ static void compare_case(const json_t *record)
     assert_int_equal(biped()->linearise(biped(), robot, &e, A, B), STANCE_OK);
     assert_matrix(36, A, wanted_A, 1e-12, name);
     assert_matrix(12, B, wanted_B, 1e-12, name);
-    for (int i = 0; i < 6; i++) {
-        re[i] = w[2 * i];
-        im[i] = w[2 * i + 1];
-    }
     assert_eigenvalues(6, A, re, im, eigenvalue_tolerance(name), name);
-    assert_int_equal(stance_kalman(PLANT(6, 2, A, B), sv, &rank), STANCE_OK);
-    assert_int_equal(rank, 6);
-    assert_int_equal(rank, json_integer_value(json_object_get(record, "rank")));
+    assert_int_equal(rank_of(PLANT(6, 2, A, B), sv),
+                     json_integer_value(json_object_get(record, "rank")));
     compare_design(record, name, A, B);
 }
 
-static void reference_cases(void **state)
+TEST(reference_cases)
 {
-    (void)state;
     json_t *root = reference_load(REFERENCE);
     const json_t *cases = json_object_get(root, "cases");
     size_t i;
@@ -100,32 +120,26 @@ static void reference_cases(void **state)
 }
 
 /* What is known of the default robot on one foot, to the digits known. */
-static void published_figures(void **state)
+TEST(published_figures)
 {
-    (void)state;
     const double open_re[6] = {-5.616145, 5.616145, -3.601149, 3.601149, 0, 0};
     const double open_im[6] = {0, 0, 0, 0, 4.320429, -4.320429};
     const double gain[12] = {318.97,  308.17,  -43.08, 83.55,  71.79,  -7.38,
                              -277.81, -257.34, 35.56,  -73.42, -61.87, 6.96};
     const double zero[6] = {0};
-    const stance_equilibrium e = equilibrium_of(DEFAULT_ROBOT, 0, -0.41, NAN, 0.82, false);
-    double A[36], B[12], K[12], T, gaps[2];
+    double A[36], B[12], K[12], gaps[2];
 
+    const stance_equilibrium e = paper_plant(A, B);
     assert_near(e.position[3], 0.570127, 5e-7, "q1");
     assert_near(e.torque[0], -7.53135, 5e-6, "torque 1");
     assert_near(e.torque[1], 3.76567, 5e-6, "torque 2");
     biped()->gaps(biped(), DEFAULT_ROBOT, e.position, gaps);
     assert_near(gaps[1], 0.0375, 5e-5, "gap of the free foot");
-    assert_int_equal(biped()->linearise(biped(), DEFAULT_ROBOT, &e, A, B), STANCE_OK);
     assert_eigenvalues(6, A, open_re, open_im, 1e-6, "open loop");
-    assert_int_equal(
-        stance_place(STANCE_ROBUST, PLANT(6, 2, A, B), 0, POLES(PAPER_POLES, zero), K, NULL, NULL),
-        STANCE_OK);
+    place(PLANT(6, 2, A, B), POLES(PAPER_POLES, zero), K);
     for (int i = 0; i < 12; i++)
         assert_near(K[i], gain[i], 0.0051, "gain");
-    assert_int_equal(stance_critical_sample_time(PLANT(6, 2, A, B), SAMPLING(K, 0, 0), 5, &T),
-                     STANCE_OK);
-    assert_near(T, 0.1363, 5e-5, "critical sample time");
+    assert_near(critical(PLANT(6, 2, A, B), K, 5), 0.1363, 5e-5, "critical sample time");
     const stance_equilibrium right = equilibrium_of(DEFAULT_ROBOT, 0, M_PI / 2, NAN, 0, false);
     assert_near(right.position[3], -M_PI / 2, 1e-15, "q1 at right angles");
     assert_near(right.torque[1], 1.8 * 0.535 * STANCE_GRAVITY, 1e-12, "torque at right angles");
@@ -135,10 +149,8 @@ static void published_figures(void **state)
 
 /* Every branch of every unknown balances: no moment about the foot, by the stick figure's own
  * points; and the torques obey the paper's (20) ... (22). */
-static void equilibria_balance(void **state)
+TEST(equilibria_balance)
 {
-    (void)state;
-    const stance_scene *scene = stance_scene_find("biped");
     uint64_t seed = 7;
     int found = 0;
     for (int i = 0; i < 2000; i++) {
@@ -153,10 +165,10 @@ static void equilibria_balance(void **state)
         choice.posture[i / 4 % 3] = NAN;
         stance_equilibrium e;
         double points[STANCE_MAX_POINTS][2];
-        if (scene->equilibrium(scene, robot, &choice, &e, NULL) != STANCE_OK)
+        if (biped()->equilibrium(biped(), robot, &choice, &e, NULL) != STANCE_OK)
             continue;
         found++;
-        assert_int_equal(scene->figure(scene, robot, e.position, points), 7);
+        assert_int_equal(biped()->figure(biped(), robot, e.position, points), 7);
         const double *feet[2] = {points[3], points[5]}, *trunk = points[1], *hip = points[0];
         const double moment =
             robot[2] * (feet[0][0] + feet[1][0]) + robot[3] * trunk[0] + robot[4] * hip[0];
@@ -181,10 +193,8 @@ static void equilibria_balance(void **state)
     assert_true(found > 800);
 }
 
-static void standing_is_exact(void **state)
+TEST(standing_is_exact)
 {
-    (void)state;
-    const stance_scene *scene = stance_scene_find("biped");
     uint64_t seed = 3;
     for (int i = 0; i < 20000; i++) {
         const double robot[STANCE_MAX_ROBOT] = {exp(uniform(&seed, -3, 3)),
@@ -198,9 +208,9 @@ static void standing_is_exact(void **state)
             q[k] = uniform(&seed, -4, 4);
             v[k] = uniform(&seed, -4, 4);
         }
-        scene->stand(scene, robot, 1u << (i % 2), q, v);
-        scene->gaps(scene, robot, q, gap);
-        scene->contact_point(scene, robot, q, v, i % 2, at, speed);
+        biped()->stand(biped(), robot, 1u << (i % 2), q, v);
+        biped()->gaps(biped(), robot, q, gap);
+        biped()->contact_point(biped(), robot, q, v, i % 2, at, speed);
         assert_true(gap[i % 2] >= 0 && gap[i % 2] <= 1e-15 * (robot[0] + robot[1]));
         assert_true(gap[i % 2] == at[1]);
         assert_near(at[0], 0, 1e-15 * (robot[0] + robot[1]), "x of the foot");
@@ -209,45 +219,13 @@ static void standing_is_exact(void **state)
     }
     /* Feet level with the trunk: the height is zero but for rounding. */
     double q[5] = {0, 0, M_PI / 2, 0, 0}, v[5] = {0}, gap[2];
-    scene->stand(scene, DEFAULT_ROBOT, 1, q, v);
-    scene->gaps(scene, DEFAULT_ROBOT, q, gap);
+    biped()->stand(biped(), DEFAULT_ROBOT, 1, q, v);
+    biped()->gaps(biped(), DEFAULT_ROBOT, q, gap);
     assert_true(gap[0] >= 0 && gap[0] < 1e-15);
 }
 
-/* Kinetic energy by differences of the stick figure along the motion, potential by its heights. */
-static void energy_of_point_masses(void **state)
+TEST(equilibrium_messages)
 {
-    (void)state;
-    const stance_scene *scene = stance_scene_find("biped");
-    const double robot[STANCE_MAX_ROBOT] = {0.6, 0.4, 1.1,
-                                            1.7, 3.1, [STANCE_ROBOT_GRAVITY] = STANCE_GRAVITY},
-                 h = 1e-5;
-    const double mass[7] = {3.1, 1.7, 0, 1.1, 0, 1.1, 0}; /* of the figure's points */
-    uint64_t seed = 5;
-    for (int i = 0; i < 200; i++) {
-        double q[5], v[5], before[5], after[5], points[3][STANCE_MAX_POINTS][2], energy = 0;
-        for (int k = 0; k < 5; k++) {
-            q[k] = uniform(&seed, -2, 2);
-            v[k] = uniform(&seed, -2, 2);
-            before[k] = q[k] - h * v[k];
-            after[k] = q[k] + h * v[k];
-        }
-        scene->figure(scene, robot, before, points[0]);
-        scene->figure(scene, robot, q, points[1]);
-        scene->figure(scene, robot, after, points[2]);
-        for (int p = 0; p < 7; p++) {
-            const double vx = (points[2][p][0] - points[0][p][0]) / (2 * h);
-            const double vz = (points[2][p][1] - points[0][p][1]) / (2 * h);
-            energy += mass[p] * ((vx * vx + vz * vz) / 2 + STANCE_GRAVITY * points[1][p][1]);
-        }
-        assert_near(scene->energy(scene, robot, q, v), energy, 1e-7, "energy");
-    }
-}
-
-static void equilibrium_messages(void **state)
-{
-    (void)state;
-    const stance_scene *scene = stance_scene_find("biped");
     const double heavy_trunk[STANCE_MAX_ROBOT] = {
         0.4, 0.6, 1, 9, 1, [STANCE_ROBOT_GRAVITY] = STANCE_GRAVITY};
     const struct {
@@ -289,10 +267,11 @@ static void equilibrium_messages(void **state)
     for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
         stance_equilibrium e;
         stance_message message = {""};
-        assert_int_equal(scene->equilibrium(scene, wrong[i].robot, &wrong[i].choice, &e, &message),
-                         wrong[i].error);
+        assert_int_equal(
+            biped()->equilibrium(biped(), wrong[i].robot, &wrong[i].choice, &e, &message),
+            wrong[i].error);
         assert_text(message.text, wrong[i].text);
-        assert_int_equal(scene->equilibrium(scene, wrong[i].robot, &wrong[i].choice, &e, NULL),
+        assert_int_equal(biped()->equilibrium(biped(), wrong[i].robot, &wrong[i].choice, &e, NULL),
                          wrong[i].error);
     }
     /* Support leg turned round, free leg in line with the trunk: where mt lt = (M - m) l + m l any
@@ -301,24 +280,22 @@ static void equilibrium_messages(void **state)
     const stance_equilibrium_choice any = {1, {NAN, M_PI, 0}, 0};
     stance_equilibrium e;
     stance_message message = {""};
-    assert_int_equal(scene->equilibrium(scene, even, &any, &e, &message), STANCE_OK);
+    assert_int_equal(biped()->equilibrium(biped(), even, &any, &e, &message), STANCE_OK);
     assert_int_equal(e.undetermined, 0);
     const double neutral[STANCE_MAX_ROBOT] = {0.5, 2, 1, 1, 1, [STANCE_ROBOT_GRAVITY] = 9.81};
-    assert_int_equal(scene->equilibrium(scene, neutral, &any, &e, &message), STANCE_OK);
+    assert_int_equal(biped()->equilibrium(biped(), neutral, &any, &e, &message), STANCE_OK);
     assert_int_equal(e.undetermined, 1);
 }
 
 /* ---- placement in general -------------------------------------------------------------------- */
 
 /* Random systems of every shape, with repeated inputs, real poles and pairs. */
-static void places_any_system(void **state)
+TEST(places_any_system)
 {
-    (void)state;
     uint64_t seed = 11;
     for (int round = 0; round < 300; round++) {
         const int n = 1 + round % 8, m = 1 + round / 8 % (n + 1);
         double A[64], B[72], K[72], loop[64], re[8], im[8] = {0};
-        stance_robustness got;
         for (int i = 0; i < n * n; i++)
             A[i] = uniform(&seed, -2, 2);
         for (int i = 0; i < n * m; i++)
@@ -338,10 +315,7 @@ static void places_any_system(void **state)
             im[1] = -1.5;
             im[2] = 1.5;
         }
-        stance_message message = {""};
-        if (stance_place(STANCE_ROBUST, PLANT(n, m, A, B), 0, POLES(re, im), K, &got, &message) !=
-            STANCE_OK)
-            fail_msg("n = %d, m = %d: %s", n, m, message.text);
+        const stance_robustness got = place(PLANT(n, m, A, B), POLES(re, im), K);
         closed_loop(n, m, A, B, K, loop);
         assert_true(got.condition >= 1 - 1e-12);
         assert_eigenvalues(n, loop, re, im, 1e-11 * got.condition * (1 + n), "random system");
@@ -349,9 +323,8 @@ static void places_any_system(void **state)
 }
 
 /* One input leaves no choice: the gain of a companion form can be read off the polynomial. */
-static void single_input(void **state)
+TEST(single_input)
 {
-    (void)state;
     const double A[9] = {0, 1, 0, 0, 0, 1, 2, -3, 4}, B[3] = {0, 0, 2};
     const double re[3] = {-1, -2, -2}, im[3] = {0, 3, -3}; /* (s + 1)(s^2 + 4 s + 13) */
     const double wanted[3] = {(2 + 13) / 2.0, (-3 + 17) / 2.0, (4 + 5) / 2.0};
@@ -362,125 +335,91 @@ static void single_input(void **state)
 }
 
 /* As many inputs as states: the best eigenvectors are orthonormal, also for a repeated pole. */
-static void full_inputs(void **state)
+TEST(full_inputs)
 {
-    (void)state;
     const double A[9] = {1, 2, 3, 4, 5, 6, 7, 8, 10}, B[9] = {1, 0, 1, 0, 2, 0, 0, 1, 1};
     const double re[3] = {-1, -1, -1}, pair_re[3] = {-1, -2, -1}, none[3] = {0},
                  pair_im[3] = {2, 0, -2};
-    double K[9], loop[9];
-    stance_robustness got;
-    assert_int_equal(
-        stance_place(STANCE_ROBUST, PLANT(3, 3, A, B), 0, POLES(re, none), K, &got, NULL),
-        STANCE_OK);
-    assert_near(got.condition, 1, 1e-9, "condition of orthonormal vectors");
-    closed_loop(3, 3, A, B, K, loop);
-    assert_eigenvalues(3, loop, re, none, 1e-12, "triple pole");
-    assert_int_equal(
-        stance_place(STANCE_ROBUST, PLANT(3, 3, A, B), 0, POLES(pair_re, pair_im), K, &got, NULL),
-        STANCE_OK);
-    assert_near(got.condition, 1, 1e-9, "condition of a normal matrix");
-    closed_loop(3, 3, A, B, K, loop);
-    assert_eigenvalues(3, loop, pair_re, pair_im, 1e-12, "pair");
+    const struct {
+        const char *what;
+        const double *re, *im;
+    } poles[] = {{"triple pole", re, none}, {"pair", pair_re, pair_im}};
+    for (int k = 0; k < 2; k++) {
+        double K[9], loop[9];
+        const stance_poles wanted = {poles[k].re, poles[k].im};
+        assert_near(place(PLANT(3, 3, A, B), &wanted, K).condition, 1, 1e-9, poles[k].what);
+        closed_loop(3, 3, A, B, K, loop);
+        assert_eigenvalues(3, loop, wanted.re, wanted.im, 1e-12, poles[k].what);
+    }
 }
 
 /* A double pole on two inputs, and the mirror rule: the stiffer of two equally robust gains, which
  * does not depend on the order of the poles. */
-static void repeated_and_reordered(void **state)
+TEST(repeated_and_reordered)
 {
-    (void)state;
-    const stance_equilibrium e = equilibrium_of(DEFAULT_ROBOT, 0, -0.41, NAN, 0.82, false);
     const double twice[6] = {-3, -3.3, -3, -3.9, -4.2, -4.2}, none[6] = {0};
     const double reversed[6] = {-3.9, -4.6, -3, -4.2, -3.3, -3.6};
     double A[36], B[12], K[12], other[12], loop[36];
-    assert_int_equal(biped()->linearise(biped(), DEFAULT_ROBOT, &e, A, B), STANCE_OK);
-    assert_int_equal(
-        stance_place(STANCE_ROBUST, PLANT(6, 2, A, B), 0, POLES(twice, none), K, NULL, NULL),
-        STANCE_OK);
+    paper_plant(A, B);
+    place(PLANT(6, 2, A, B), POLES(twice, none), K);
     closed_loop(6, 2, A, B, K, loop);
     assert_eigenvalues(6, loop, twice, none, 1e-4, "double poles");
-    assert_int_equal(
-        stance_place(STANCE_ROBUST, PLANT(6, 2, A, B), 0, POLES(PAPER_POLES, none), K, NULL, NULL),
-        STANCE_OK);
-    assert_int_equal(
-        stance_place(STANCE_ROBUST, PLANT(6, 2, A, B), 0, POLES(reversed, none), other, NULL, NULL),
-        STANCE_OK);
+    place(PLANT(6, 2, A, B), POLES(PAPER_POLES, none), K);
+    place(PLANT(6, 2, A, B), POLES(reversed, none), other);
     assert_matrix(12, other, K, 1e-7, "poles in another order");
 }
 
-static void placement_messages(void **state)
+#define NO_CONJUGATE "the pole -2+1i has no conjugate -2-1i among the poles"
+#define TOO_OFTEN(inputs)                                                                          \
+    ", but the number of independent inputs, " inputs ", is the most that one pole can be "        \
+    "repeated"
+#define UNREACHED "the pair (A, B) is not controllable: no input reaches the mode with eigenvalue 2"
+TEST(placement_messages)
 {
-    (void)state;
     /* Two chains of integrators, lengths 2 and 1, an input each; and a mode out of reach. */
     const double A[9] = {0, 1, 0, 0, 0, 0, 0, 0, 0}, B[6] = {0, 0, 1, 0, 0, 1};
-    const double stuck[4] = {1, 0, 0, 2}, push[2] = {1, 0}, nothing[2] = {0, 0};
+    const double endless[9] = {INFINITY}, stuck[4] = {1, 0, 0, 2}, push[2] = {1, 0},
+                 nothing[2] = {0, 0};
+    const stance_plant chains = {3, 2, A, B}, reached = {2, 1, stuck, push},
+                       idle = {2, 1, stuck, nothing}, empty = {0, 1, A, B},
+                       not_finite = {3, 2, endless, B};
     const struct {
-        stance_plant plant;
-        double re[3], im[3];
+        const stance_plant *plant;
         stance_error error;
+        double re[3], im[3];
         const char *text;
     } wrong[] = {
-        {{3, 2, A, B},
-         {-1, -2, -3},
-         {0, 1, 0},
+        {&chains, STANCE_BAD_POLES, {-1, -2, -3}, {0, 1, 0}, NO_CONJUGATE},
+        {&chains, STANCE_BAD_POLES, {-1, -2, -2}, {0, 1, 1}, NO_CONJUGATE},
+        {&chains,
          STANCE_BAD_POLES,
-         "the pole -2+1i has no conjugate -2-1i among the poles"},
-        {{3, 2, A, B},
-         {-1, -2, -2},
-         {0, 1, 1},
-         STANCE_BAD_POLES,
-         "the pole -2+1i has no conjugate -2-1i among the poles"},
-        {{3, 2, A, B},
          {-1, -1, -1},
-         {0, 0, 0},
-         STANCE_BAD_POLES,
-         "the pole -1 is wanted 3 times, but the number of independent inputs, 2, is the most that "
-         "one pole can be repeated"},
-        {{2, 1, stuck, push},
-         {-1, -1},
-         {0, 0},
-         STANCE_BAD_POLES,
-         "the pole -1 is wanted 2 times, but the number of independent inputs, 1, is the most that "
-         "one pole can be repeated"},
-        {{2, 1, stuck, push},
-         {-1, -2},
-         {0, 0},
+         {0},
+         "the pole -1 is wanted 3 times" TOO_OFTEN("2")},
+        {&chains, STANCE_BAD_POLES, {-1, -2, NAN}, {0}, "3 poles are needed, all of them finite"},
+        {&reached, STANCE_BAD_POLES, {-1, -1}, {0}, "the pole -1 is wanted 2 times" TOO_OFTEN("1")},
+        {&reached, STANCE_UNCONTROLLABLE, {-1, -2}, {0}, UNREACHED},
+        {&idle,
          STANCE_UNCONTROLLABLE,
-         "the pair (A, B) is not controllable: no input reaches the mode with eigenvalue 2"},
-        {{2, 1, stuck, nothing},
          {-1, -2},
-         {0, 0},
-         STANCE_UNCONTROLLABLE,
+         {0},
          "the inputs have no effect: the matrix B is zero"},
-        {{3, 2, A, B},
-         {-1, -2, NAN},
-         {0, 0, 0},
-         STANCE_BAD_POLES,
-         "3 poles are needed, all of them finite"},
-        {{0, 1, A, B}, {0}, {0}, STANCE_BAD_ARGUMENT, "a design needs 1 to 32 states and inputs"},
+        {&empty, STANCE_BAD_ARGUMENT, {0}, {0}, "a design needs 1 to 32 states and inputs"},
+        {&not_finite, STANCE_BAD_ARGUMENT, {-1, -2, -3}, {0}, "A and B must be finite"},
     };
     for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
         double K[6];
         stance_message message = {""};
-        assert_int_equal(stance_place(STANCE_ROBUST, &wrong[i].plant, 0,
+        assert_int_equal(stance_place(STANCE_ROBUST, wrong[i].plant, 0,
                                       POLES(wrong[i].re, wrong[i].im), K, NULL, &message),
                          wrong[i].error);
         assert_text(message.text, wrong[i].text);
     }
-    const double endless[9] = {INFINITY};
-    const double re[3] = {-1, -2, -3}, im[3] = {0};
-    double K[6];
-    stance_message message = {""};
-    assert_int_equal(
-        stance_place(STANCE_ROBUST, PLANT(3, 2, endless, B), 0, POLES(re, im), K, NULL, &message),
-        STANCE_BAD_ARGUMENT);
-    assert_text(message.text, "A and B must be finite");
 }
 
 /* Rosenbrock: chains of lengths 3 and 1 cannot have two double poles with full eigenvectors. */
-static void spread_too_thin(void **state)
+TEST(spread_too_thin)
 {
-    (void)state;
     const double A[16] = {0, 1, 0, 0, 0, 0, 1, 0}, B[8] = {0, 0, 0, 0, 1, 0, 0, 1};
     const double re[4] = {-1, -1, -2, -2}, im[4] = {0};
     double K[8];
@@ -493,9 +432,8 @@ static void spread_too_thin(void **state)
 
 /* ---- eigenvalues, rank, sampling ------------------------------------------------------------- */
 
-static void eigenvalues_are_sorted(void **state)
+TEST(eigenvalues_are_sorted)
 {
-    (void)state;
     const double A[25] = {[0] = 3, [6] = -1, [7] = 2, [11] = -2, [12] = -1, [18] = -7, [24] = -1};
     const double wanted_re[5] = {-7, -1, -1, -1, 3}, wanted_im[5] = {0, -2, 0, 2, 0};
     double re[5], im[5];
@@ -510,32 +448,24 @@ static void eigenvalues_are_sorted(void **state)
 }
 
 /* The rank, and here even the singular values, do not depend on the unit of time. */
-static void kalman_rank(void **state)
+TEST(kalman_rank)
 {
-    (void)state;
-    const stance_equilibrium e = equilibrium_of(DEFAULT_ROBOT, 0, -0.41, NAN, 0.82, false);
     const double chain[9] = {0, 1, 0, 0, 0, 1, 0, 0, 0}, last[3] = {0, 0, 1}, first[3] = {1, 0, 0};
     double A[36], B[12], sv[6], slow[6];
-    int rank;
-    assert_int_equal(biped()->linearise(biped(), DEFAULT_ROBOT, &e, A, B), STANCE_OK);
-    assert_int_equal(stance_kalman(PLANT(6, 2, A, B), sv, &rank), STANCE_OK);
-    assert_int_equal(rank, 6);
+    paper_plant(A, B);
+    assert_int_equal(rank_of(PLANT(6, 2, A, B), sv), 6);
     for (int i = 0; i < 36; i++) /* milliseconds */
         A[i] *= i / 6 >= 3 ? 1e-6 : 1;
     for (int i = 0; i < 12; i++)
         B[i] *= 1e-6;
-    assert_int_equal(stance_kalman(PLANT(6, 2, A, B), slow, &rank), STANCE_OK);
-    assert_int_equal(rank, 6);
+    assert_int_equal(rank_of(PLANT(6, 2, A, B), slow), 6);
     assert_matrix(6, slow, sv, 1e-12, "singular values");
-    assert_int_equal(stance_kalman(PLANT(3, 1, chain, last), sv, &rank), STANCE_OK);
-    assert_int_equal(rank, 3);
-    assert_int_equal(stance_kalman(PLANT(3, 1, chain, first), sv, &rank), STANCE_OK);
-    assert_int_equal(rank, 1);
+    assert_int_equal(rank_of(PLANT(3, 1, chain, last), sv), 3);
+    assert_int_equal(rank_of(PLANT(3, 1, chain, first), sv), 1);
 }
 
-static void discretisation(void **state)
+TEST(discretisation)
 {
-    (void)state;
     const double w = 3, T = 0.7, A[9] = {0, 1, 0, -w * w, 0, 0, 0, 0, -0.5}, B[3] = {0, 1, 2};
     const double wanted_A[9] = {cos(w * T), sin(w * T) / w, 0, -w * sin(w * T), cos(w * T), 0, 0,
                                 0,          exp(-0.5 * T)};
@@ -554,52 +484,41 @@ static void discretisation(void **state)
     assert_int_equal(stance_discretise(PLANT(3, 1, A, B), NAN, Ad, Bd), STANCE_BAD_ARGUMENT);
 }
 
-static void critical_sample_times(void **state)
+TEST(critical_sample_times)
 {
-    (void)state;
     double T;
     /* x' = a x + u, u = -k x: the sampled pole exp(a T) (1 - k / a) + k / a passes -1. */
     for (int i = 0; i < 20; i++) {
-        const double a = 0.3 + 0.2 * i, k = a * (1.05 + 0.3 * i);
-        assert_int_equal(stance_critical_sample_time(PLANT(1, 1, &a, (double[]){1}),
-                                                     SAMPLING(&k, 0, 0), 100, &T),
-                         STANCE_OK);
-        assert_near(T, log((k / a + 1) / (k / a - 1)) / a, 1e-12 * T, "scalar");
+        const double a = 0.3 + 0.2 * i, k = a * (1.05 + 0.3 * i), b = 1;
+        const double wanted = log((k / a + 1) / (k / a - 1)) / a;
+        assert_near(critical(PLANT(1, 1, &a, &b), &k, 100), wanted, 1e-12 * wanted, "scalar");
     }
     /* Double integrator: Jury's conditions give the smaller of 2 d / k and 2 / d. */
     const double A[4] = {0, 1, 0, 0}, B[2] = {0, 1};
     for (int i = 0; i < 20; i++) {
-        const double K[2] = {0.5 + 0.7 * i, 4.0 - 0.15 * i};
-        assert_int_equal(stance_critical_sample_time(PLANT(2, 1, A, B), SAMPLING(K, 0, 0), 100, &T),
-                         STANCE_OK);
-        assert_near(T, fmin(2 * K[1] / K[0], 2 / K[1]), 1e-10 * T, "double integrator");
+        const double K[2] = {0.5 + 0.7 * i, 4.0 - 0.15 * i},
+                     wanted = fmin(2 * K[1] / K[0], 2 / K[1]);
+        assert_near(critical(PLANT(2, 1, A, B), K, 100), wanted, 1e-10 * wanted, "two integrators");
     }
     const double bad[2] = {-1, 1}, none[2] = {0}, stable[4] = {-1, 0, 0, -2};
-    assert_int_equal(stance_critical_sample_time(PLANT(2, 1, A, B), SAMPLING(bad, 0, 0), 10, &T),
-                     STANCE_OK);
-    assert_true(T == 0);
-    assert_int_equal(
-        stance_critical_sample_time(PLANT(2, 1, stable, B), SAMPLING(none, 0, 0), 10, &T),
-        STANCE_OK);
-    assert_true(isinf(T) && T > 0);
+    assert_true(critical(PLANT(2, 1, A, B), bad, 10) == 0);
+    assert_true(critical(PLANT(2, 1, stable, B), none, 10) == INFINITY);
     assert_int_equal(stance_critical_sample_time(PLANT(2, 1, A, B), SAMPLING(bad, 0, 0), 0, &T),
                      STANCE_BAD_ARGUMENT);
 }
 
 /* A sampled oscillator under rate feedback becomes unstable and stable again as T passes half
  * turns; it is the first loss that counts. Looked for by brute force. */
-static void first_crossing(void **state)
+TEST(first_crossing)
 {
-    (void)state;
     uint64_t seed = 17;
     int lost = 0;
     for (int i = 0; i < 40; i++) {
         const double w = uniform(&seed, 1, 10), damping = uniform(&seed, 0, 0.4);
         const double A[4] = {0, 1, -w * w, -damping}, B[2] = {0, 1};
         const double K[2] = {0, uniform(&seed, 0.05, 1.5)};
-        double T, first = INFINITY, Ad[4], Bd[2], loop[4], re[2], im[2];
-        assert_int_equal(stance_critical_sample_time(PLANT(2, 1, A, B), SAMPLING(K, 0, 0), 4, &T),
-                         STANCE_OK);
+        double first = INFINITY, Ad[4], Bd[2], loop[4], re[2], im[2];
+        const double T = critical(PLANT(2, 1, A, B), K, 4);
         for (int k = 1; k <= 40000 && isinf(first); k++) {
             assert_int_equal(stance_discretise(PLANT(2, 1, A, B), 1e-4 * k, Ad, Bd), STANCE_OK);
             closed_loop(2, 1, Ad, Bd, K, loop);
@@ -615,28 +534,4 @@ static void first_crossing(void **state)
         }
     }
     assert_true(lost > 10);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(reference_cases),
-        cmocka_unit_test(published_figures),
-        cmocka_unit_test(equilibria_balance),
-        cmocka_unit_test(standing_is_exact),
-        cmocka_unit_test(energy_of_point_masses),
-        cmocka_unit_test(equilibrium_messages),
-        cmocka_unit_test(places_any_system),
-        cmocka_unit_test(single_input),
-        cmocka_unit_test(full_inputs),
-        cmocka_unit_test(repeated_and_reordered),
-        cmocka_unit_test(placement_messages),
-        cmocka_unit_test(spread_too_thin),
-        cmocka_unit_test(eigenvalues_are_sorted),
-        cmocka_unit_test(kalman_rank),
-        cmocka_unit_test(discretisation),
-        cmocka_unit_test(critical_sample_times),
-        cmocka_unit_test(first_crossing),
-    };
-    return cmocka_run_group_tests_name("control", tests, NULL, NULL);
 }

@@ -4,6 +4,7 @@
  */
 #include "runner/base/command.h"
 #include "support.h"
+#include "tests.h"
 
 #include "analysis/critical/critical.h"
 
@@ -61,12 +62,11 @@ static struct critical_line line_of(const double *number, uint32_t points)
     return (struct critical_line){VALUES, value, points, gone, maybe, out};
 }
 
-static void intervals_hold(void **state)
+TEST(intervals_hold)
 {
     enum { PROBLEMS = 200, DRAWS = 100 };
     static const double shares[] = {0.5, 0.6, 0.75, 0.8, 0.9};
     unsigned held = 0, below = 0, above = 0;
-    (void)state;
     for (int problem = 0; problem < PROBLEMS; problem++) {
         const uint32_t points = 36 + (uint32_t)(drawn() * (MOST_POINTS - 36));
         const struct critical_choice choice = {shares[(int)(drawn() * 5)], 0.95};
@@ -99,11 +99,10 @@ static void intervals_hold(void **state)
 }
 
 /* With share 1 what is told of the population, by few points as by many. */
-static void the_least_share_holds(void **state)
+TEST(the_least_share_holds)
 {
     const struct critical_choice choice = {1, 0.95};
     unsigned held = 0;
-    (void)state;
     for (int draw = 0; draw < 4000; draw++) {
         const uint32_t points = 3 + (uint32_t)(drawn() * 100);
         double number[MOST_POINTS];
@@ -119,10 +118,9 @@ static void the_least_share_holds(void **state)
 }
 
 /* Few points say nothing of a share near 1, and that is told. */
-static void few_points_have_open_ends(void **state)
+TEST(few_points_have_open_ends)
 {
     double number[MOST_POINTS];
-    (void)state;
     for (uint32_t points = 2; points <= 80; points++) {
         for (uint32_t p = 0; p < points; p++)
             number[p] = (p + 0.5) / points;
@@ -152,7 +150,7 @@ static struct critical_line word_line(const char *word)
     return (struct critical_line){n, value, 1, gone, maybe, out};
 }
 
-static void brackets_are_exact(void **state)
+TEST(brackets_are_exact)
 {
     static const struct {
         const char *word;
@@ -168,7 +166,6 @@ static void brackets_are_exact(void **state)
         {"ullll", CRITICAL_LOST, NAN, 10, 1, 0},     {"klukl", CRITICAL_LOST, 0, 10, 0, 1},
     };
     const struct critical_choice choice = {0.9, 0.95};
-    (void)state;
     for (size_t k = 0; k < sizeof rows / sizeof rows[0]; k++) {
         const struct critical_line line = word_line(rows[k].word);
         const struct critical_value found = critical_find(&line, &choice);
@@ -184,13 +181,12 @@ static void brackets_are_exact(void **state)
     }
 }
 
-static void islands_lie_between_neighbours(void **state)
+TEST(islands_lie_between_neighbours)
 {
     const struct critical_choice choice = {1, 0.95};
     const struct critical_line line = word_line("kkllkkklkk");
     struct critical_island island;
     size_t at = 2;
-    (void)state;
     assert_true(critical_next_island(&line, &choice, &at, &island));
     assert_true(island.from[0] == 30 && island.from[1] == 40);
     assert_true(island.to[0] == 60 && island.to[1] == 70);
@@ -200,29 +196,15 @@ static void islands_lie_between_neighbours(void **state)
     assert_false(critical_next_island(&line, &choice, &at, &island));
 }
 
-static void ranges_are_read(void **state)
+TEST(ranges_are_read)
 {
     static const char *const bad[] = {"a",     "a=1",     "a=1..1", "a=..2",    "a=1..",
                                       "=1..2", "a=1..2x", "a=x..2", "a=nan..1", "a=0..inf"};
     char path[96];
     double ends[2];
-    (void)state;
     assert_true(option_range("robot.points.p.force[0]=-1e1..2.5", path, ends));
     assert_string_equal(path, "robot.points.p.force[0]");
     assert_true(ends[0] == -10 && ends[1] == 2.5);
     for (size_t k = 0; k < sizeof bad / sizeof bad[0]; k++)
         assert_false(option_range(bad[k], path, ends));
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(intervals_hold),
-        cmocka_unit_test(the_least_share_holds),
-        cmocka_unit_test(few_points_have_open_ends),
-        cmocka_unit_test(brackets_are_exact),
-        cmocka_unit_test(islands_lie_between_neighbours),
-        cmocka_unit_test(ranges_are_read),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,6 +1,7 @@
 /* The decoupling law: every pair of coordinates follows the error dynamics that it promises, in
  * flight and on a foot; singular postures, torque limits, delays, switching; lanes. */
 #include "support.h"
+#include "tests.h"
 
 enum { PAIRS = 10, HORIZON = 20 };
 
@@ -22,7 +23,6 @@ static const double standing[PAIRS][3] = {
 /* Continuous, no torque limit; set-points 5 cm or 0.05 rad away that move. */
 static stance_case pair_case(int pair, const double *posture, bool stands, double ki)
 {
-    const stance_scene *scene = stance_scene_find("biped");
     static const double rates[5] = {0.1, 0.05, 0.1, -0.2, 0.15};
     stance_case c = plain_case();
     int controlled[2];
@@ -37,8 +37,8 @@ static stance_case pair_case(int pair, const double *posture, bool stands, doubl
     memcpy(&c.position[2], posture, 3 * sizeof *posture);
     memcpy(c.velocity, rates, sizeof rates);
     if (stands)
-        scene->stand(scene, c.robot, 1, c.position, c.velocity);
-    assert_true(stance_selection(scene, pair, controlled));
+        biped()->stand(biped(), c.robot, 1, c.position, c.velocity);
+    assert_true(stance_selection(biped(), pair, controlled));
     for (int i = 0; i < 2; i++)
         c.servo[i] = (stance_servo){.coordinate = controlled[i],
                                     .setpoint = c.position[controlled[i]] + (i ? -0.05 : 0.05),
@@ -84,14 +84,12 @@ static double worst_error(const char *method, bool stands, double ki)
         if (isnan(posture[0]))
             continue;
         stance_case c = pair_case(pair, posture, stands, ki);
-        stance_result r;
         c.tolerance = 1e-10;
         if (stands)
             c.steps /= 2;
         if (strcmp(method, "lagrange") == 0)
             c.step = 1e-3, c.steps *= 10;
-        run_cases(kernel_of(method, NULL), &c, &r, 1);
-        assert_int_equal(r.status, STANCE_DONE);
+        const stance_result r = run_done(method, &c);
         assert_int_equal(r.degraded_samples, 0);
         assert_int_equal(r.steps, c.steps);
         assert_true(!stands || r.least_normal_force > 0);
@@ -101,9 +99,8 @@ static double worst_error(const char *method, bool stands, double ki)
     return worst;
 }
 
-static void pairs_follow(void **state)
+TEST(pairs_follow)
 {
-    (void)state;
     static const char *const methods[] = {"event-driven", "capturing", "lagrange"};
     for (int m = 0; m < 3; m++)
         for (int stands = 0; stands < 2; stands++) {
@@ -116,9 +113,8 @@ static void pairs_follow(void **state)
 }
 
 /* Sampled, and once a step with implicit methods, the law converges to the continuous one. */
-static void sampling_converges(void **state)
+TEST(sampling_converges)
 {
-    (void)state;
     static const char *const methods[] = {"capturing", "implicit", "midpoint"};
     for (int m = 0; m < 3; m++) {
         double error[2];
@@ -126,13 +122,11 @@ static void sampling_converges(void **state)
             error[fine] = 0;
             for (int pair = 0; pair < PAIRS; pair++) {
                 stance_case c = pair_case(pair, flight[pair], false, 300);
-                stance_result r;
                 c.step = fine ? 1e-4 : 1e-3;
                 c.steps = lround(0.05 / c.step);
                 c.tolerance = 1e-10;
                 c.sample_every = m == 0;
-                run_cases(kernel_of(methods[m], NULL), &c, &r, 1);
-                assert_int_equal(r.status, STANCE_DONE);
+                const stance_result r = run_done(methods[m], &c);
                 for (int i = 0; i < 2; i++)
                     error[fine] = fmax(fabs(r.position[c.servo[i].coordinate] - promised(&c, i)),
                                        error[fine]);
@@ -149,11 +143,10 @@ static void sampling_converges(void **state)
 static stance_case resting_case(int pair, double friction, const double *velocity)
 {
     static const double posture[3] = {-0.41, 0.570127, 0.82};
-    const stance_scene *scene = stance_scene_find("biped");
     stance_case c = pair_case(pair, posture, true, 0);
     c.friction = friction;
     memcpy(c.velocity, velocity, 5 * sizeof *velocity);
-    scene->stand(scene, c.robot, 1, c.position, c.velocity);
+    biped()->stand(biped(), c.robot, 1, c.position, c.velocity);
     for (int i = 0; i < 2; i++) {
         c.servo[i].setpoint = c.position[c.servo[i].coordinate];
         c.servo[i].ramp = 0;
@@ -166,14 +159,11 @@ static stance_case resting_case(int pair, double friction, const double *velocit
 static void compare_methods(stance_case c, const double tolerance[2], double worst[2],
                             stance_result *truth)
 {
-    stance_result r;
     c.tolerance = 1e-11;
-    run_cases(kernel_of("event-driven", NULL), &c, truth, 1);
-    assert_int_equal(truth->status, STANCE_DONE);
+    *truth = run_done("event-driven", &c);
     for (int t = 0; t < 2; t++) {
         c.tolerance = tolerance[t];
-        run_cases(kernel_of("capturing", NULL), &c, &r, 1);
-        assert_int_equal(r.status, STANCE_DONE);
+        const stance_result r = run_done("capturing", &c);
         for (int i = 0; i < 5; i++) {
             worst[t] = fmax(fabs(r.position[i] - truth->position[i]), worst[t]);
             worst[t] = fmax(fabs(r.velocity[i] - truth->velocity[i]), worst[t]);
@@ -183,9 +173,8 @@ static void compare_methods(stance_case c, const double tolerance[2], double wor
 
 /* Where a foot's slip comes to rest or turns, errors go on shrinking with the tolerance: law and
  * contact mode agree about which slip is none. */
-static void slips_turn(void **state)
+TEST(slips_turn)
 {
-    (void)state;
     static const double tolerance[2] = {1e-6, 1e-9}, bound[2] = {3e-5, 3e-8};
     double worst[2] = {0, 0};
     int turned = 0;
@@ -204,9 +193,8 @@ static void slips_turn(void **state)
 
 /* Near a singular posture torques are thrown from one limit to the other inside a step: errors go
  * on shrinking with the tolerance. */
-static void limits_turn(void **state)
+TEST(limits_turn)
 {
-    (void)state;
     static const double tolerance[2] = {1e-6, 1e-8}, bound[2] = {1e-5, 1e-7};
     double worst[2] = {0, 0};
     for (int k = 0; k < 8; k++) {
@@ -223,42 +211,19 @@ static void limits_turn(void **state)
     assert_true(worst[0] < bound[0] && worst[1] < bound[1]);
 }
 
-/* The inertia matrix against the kinetic energy. */
-static void inertia_is_energy(void **state)
-{
-    (void)state;
-    const stance_scene *scene = stance_scene_find("biped");
-    const stance_case c = plain_case();
-    uint64_t seed = 4;
-    for (int k = 0; k < 100; k++) {
-        double q[5], v[5], A[25], zero[5] = {0}, sum = 0;
-        for (int i = 0; i < 5; i++)
-            q[i] = uniform(&seed, -3, 3), v[i] = uniform(&seed, -3, 3);
-        scene->inertia(scene, c.robot, q, A);
-        for (int i = 0; i < 5; i++)
-            for (int j = 0; j < 5; j++)
-                sum += 0.5 * v[i] * A[5 * i + j] * v[j];
-        const double kinetic =
-            scene->energy(scene, c.robot, q, v) - scene->energy(scene, c.robot, q, zero);
-        assert_true(fabs(sum - kinetic) < 1e-11 * (1 + kinetic));
-    }
-}
-
 /* Driven into a singular posture the law goes on with finite torques and says so; with a limit it
  * stays within it. */
-static void singular_is_survived(void **state)
+TEST(singular_is_survived)
 {
-    (void)state;
     for (int limited = 0; limited < 2; limited++) {
         static const double upright[3] = {0, 0, 0}; /* no torque lifts the trunk here */
         stance_case c = pair_case(0, upright, false, 0);
-        stance_result r;
         c.steps = 100;
         c.sample_every = 1;
         c.tolerance = 1e-8;
         if (limited)
             c.torque_limit = 20;
-        run_cases(kernel_of("capturing", NULL), &c, &r, 1);
+        const stance_result r = run_one("capturing", &c);
         print_message("# x-z from upright, %s: %d of %d samples degraded, torque up to %.3g N m\n",
                       limited ? "20 N m" : "no limit", (int)r.degraded_samples, (int)r.steps,
                       r.peak_torque);
@@ -271,13 +236,11 @@ static void singular_is_survived(void **state)
 
 /* Errors that cannot be driven away do not pile up: not while a torque is at its limit, and not
  * beyond the integral's own. */
-static void integrals_are_bounded(void **state)
+TEST(integrals_are_bounded)
 {
-    (void)state;
     stance_case c = pair_case(9, flight[9], false, 50);
     stance_trajectory t = {.interval = 0.01, .rows = 601};
     double position[601 * 5], velocity[601 * 5], torque[601 * 2], force[601 * 4], gap[601 * 2];
-    stance_result r;
     t.position = position, t.velocity = velocity, t.torque = torque, t.force = force, t.gap = gap;
     c.trajectory = &t;
     c.steps = 600;
@@ -290,7 +253,7 @@ static void integrals_are_bounded(void **state)
         c.servo[i].ramp = 0;
         c.servo[i].setpoint = c.position[3 + i] + (i ? -1 : 1);
     }
-    run_cases(kernel_of("capturing", NULL), &c, &r, 1);
+    const stance_result r = run_one("capturing", &c);
     double beyond = 0;
     for (int k = 0; k < 601; k++)
         beyond = fmax(position[5 * k + 3] - c.servo[0].setpoint, beyond);
@@ -301,16 +264,12 @@ static void integrals_are_bounded(void **state)
 
 /* A one-sample delay: the linear loop with it loses its stability where the spectral radius of
  * [[Ad, Bd], [-K, 0]] reaches 1. */
-static void delay_shortens(void **state)
+TEST(delay_shortens)
 {
-    (void)state;
-    const stance_scene *scene = stance_scene_find("biped");
     stance_case c = balance_case(1e-6, 0);
-    const stance_equilibrium_choice choice = {1, {-0.41, NAN, 0.82}, 0};
-    stance_equilibrium equilibrium;
+    const stance_equilibrium equilibrium = equilibrium_at(&c);
     double A[36], B[12], Ad[36], Bd[12], loop[64], re[8], im[8], low = 1e-3, high = 0.3;
-    assert_int_equal(scene->equilibrium(scene, c.robot, &choice, &equilibrium, NULL), STANCE_OK);
-    assert_int_equal(scene->linearise(scene, c.robot, &equilibrium, A, B), STANCE_OK);
+    assert_int_equal(biped()->linearise(biped(), c.robot, &equilibrium, A, B), STANCE_OK);
     for (int round = 0; round < 50; round++) {
         const double T = 0.5 * (low + high);
         double radius = 0;
@@ -327,10 +286,7 @@ static void delay_shortens(void **state)
         assert_int_equal(stance_eigenvalues(8, loop, re, im), STANCE_OK);
         for (int i = 0; i < 8; i++)
             radius = fmax(hypot(re[i], im[i]), radius);
-        if (radius < 1)
-            low = T;
-        else
-            high = T;
+        *(radius < 1 ? &low : &high) = T;
     }
     c.settle = false;
     c.delay = 1;
@@ -338,12 +294,10 @@ static void delay_shortens(void **state)
     c.tolerance = 1e-10;
     double size[2];
     for (int side = 0; side < 2; side++) {
-        stance_result r;
         c.step = low * (side ? 1.01 : 0.99);
         c.sample_every = 1;
         c.steps = 500;
-        run_cases(kernel_of("capturing", NULL), &c, &r, 1);
-        assert_int_equal(r.status, STANCE_DONE);
+        const stance_result r = run_done("capturing", &c);
         size[side] = fabs(r.position[2] - c.near.target[0]);
     }
     print_message("# with a delay T* = %.6f s; 1e-6 rad became %.1e just below, %.1e just above\n",
@@ -353,9 +307,8 @@ static void delay_shortens(void **state)
 
 /* Inside the ellipsoid a switching law is the linear one, outside it is the other: one sample from
  * either side equals the run with that law alone. */
-static void switching_is_either(void **state)
+TEST(switching_is_either)
 {
-    (void)state;
     for (int far = 0; far < 2; far++) {
         stance_case alone = balance_case(-0.02, 0), c;
         stance_result a, b;
@@ -381,100 +334,63 @@ static void switching_is_either(void **state)
 
 /* A law without gains that acts all the time: a constant torque, here on legs in free fall, where
  * both turn against the trunk with the accelerations of the inertia matrix. */
-static void constant_torque_acts(void **state)
+TEST(constant_torque_acts)
 {
-    (void)state;
     static const char *const methods[] = {"implicit", "midpoint", "capturing", "lagrange",
                                           "event-driven"};
     for (int m = 0; m < 5; m++) {
         stance_case c = plain_case();
-        stance_result r;
         c.contacts = 0;
         c.position[1] = 3;
         c.step = 1e-5;
         c.steps = 10;
         c.tolerance = 1e-10;
         c.near.feedforward[0] = 1, c.near.feedforward[1] = -1;
-        run_cases(kernel_of(methods[m], NULL), &c, &r, 1);
+        const stance_result r = run_done(methods[m], &c);
         /* Opposite torques on legs that hang straight: phi_i'' = +-1 / (m l^2). */
         const double l = c.robot[0], turn = 1 / (c.robot[2] * l * l);
-        assert_int_equal(r.status, STANCE_DONE);
         assert_true(r.peak_torque == 1);
         assert_true(fabs(r.velocity[3] / (turn * 1e-4) - 1) < 1e-3);
         assert_true(fabs(r.velocity[4] / (turn * 1e-4) + 1) < 1e-3);
     }
 }
 
-/* Cases beside one that sums errors do what they do alone. */
-static void neighbours_do_not_matter(void **state)
-{
-    (void)state;
-    static const double walk[3] = {0, -0.1, 1.4};
-    static const double ki[4] = {0, 1, 5, 7};
-    stance_case cases[4];
-    stance_result together[4], alone;
-    for (int i = 0; i < 4; i++) {
-        cases[i] = pair_case(1, walk, false, 0);
-        cases[i].contacts = 3, cases[i].friction = 0.5;
-        cases[i].position[1] = 1.08;
-        memset(cases[i].velocity, 0, sizeof cases[i].velocity);
-        cases[i].servo[0].ki = ki[i];
-        cases[i].torque_limit = 10;
-        cases[i].step = 1e-3, cases[i].steps = 300, cases[i].tolerance = 1e-8;
-    }
-    run_cases(kernel_of("capturing", NULL), cases, together, 4);
-    for (int i = 0; i < 4; i++) {
-        run_cases(kernel_of("capturing", NULL), &cases[i], &alone, 1);
-        assert_memory_equal(&together[i], &alone, sizeof alone);
-    }
-}
-
 /* A state in which no reactions fit the torques that the law wants (found by a program of others):
  * it takes the reactions without torques, and counts it. */
-static void missing_reactions_are_counted(void **state)
+TEST(missing_reactions_are_counted)
 {
-    (void)state;
     static const double q[5] = {0, 1.0318272571437432, -0.23655252531852627, -0.059493821218375875,
                                 -0.28928725863443333};
     static const double v[5] = {-0.5399258832462454, 0.16260795914402282, 0.062380140162429085,
                                 0.9293259499276398, -0.6768644678810902};
     stance_case c = plain_case();
-    stance_result r;
     memcpy(c.position, q, sizeof q);
     memcpy(c.velocity, v, sizeof v);
     c.friction = 0.6840210470230645;
     c.decouples = true;
     c.steps = c.sample_every = 1;
     c.tolerance = 1e-8;
-    c.servo[0] = (stance_servo){0,
-                                -0.027900303337982404,
-                                -0.6985898307250517,
-                                INFINITY,
-                                17.396477629613372,
-                                0,
-                                0.19566017114806267,
-                                INFINITY};
-    c.servo[1] = (stance_servo){2,
-                                -0.16441600848265628,
-                                0.5516669716449893,
-                                INFINITY,
-                                1.9723770124414375,
-                                0,
-                                4.168654800320388,
-                                INFINITY};
-    run_cases(kernel_of("capturing", NULL), &c, &r, 1);
-    assert_int_equal(r.status, STANCE_DONE);
+    static const double servo[2][4] = {
+        {-0.027900303337982404, -0.6985898307250517, 17.396477629613372, 0.19566017114806267},
+        {-0.16441600848265628, 0.5516669716449893, 1.9723770124414375, 4.168654800320388}};
+    for (int i = 0; i < 2; i++)
+        c.servo[i] = (stance_servo){.coordinate = 2 * i,
+                                    .setpoint = servo[i][0],
+                                    .ramp = servo[i][1],
+                                    .duration = INFINITY,
+                                    .kp = servo[i][2],
+                                    .kd = servo[i][3],
+                                    .integral_limit = INFINITY};
+    const stance_result r = run_done("capturing", &c);
     assert_true(fabs(r.peak_torque - 131.63153345) < 1e-7);
     assert_int_equal(r.degraded_samples, 1);
 }
 
 /* An integral that has brought a torque to its limit lets it go again. */
-static void integrals_unwind(void **state)
+TEST(integrals_unwind)
 {
-    (void)state;
     static const double posture[3] = {0, 0.3, -0.3};
     stance_case c = pair_case(9, posture, false, 1000);
-    stance_result r;
     c.position[1] = 100;
     memset(c.velocity, 0, sizeof c.velocity);
     for (int i = 0; i < 2; i++) {
@@ -485,21 +401,21 @@ static void integrals_unwind(void **state)
     c.torque_limit = 2;
     c.tolerance = 1e-8;
     c.steps = 100;
-    run_cases(kernel_of("capturing", NULL), &c, &r, 1);
-    assert_int_equal(r.status, STANCE_DONE);
+    const stance_result r = run_done("capturing", &c);
     assert_true(r.velocity[3] < 0); /* it turns back; a latched torque drives it on */
 }
 
-/* The same bits in every lane of every width, sampled and continuous, falling and standing. */
-static void lanes_agree(void **state)
+/* The same bits alone and in every lane of every width, sampled and continuous, falling and
+ * standing. */
+TEST(lanes_agree)
 {
-    (void)state;
-    enum { N = 120 };
+    enum { WALKS = 4, N = 124 };
     static const char *const methods[] = {"implicit", "capturing", "lagrange"};
+    static const double walk[3] = {0, -0.1, 1.4}, ki[WALKS] = {0, 1, 5, 7};
     stance_case cases[N];
     stance_result first[N], other[N];
     uint64_t seed = 21;
-    for (int i = 0; i < N; i++) {
+    for (int i = WALKS; i < N; i++) {
         const double posture[3] = {uniform(&seed, -1, 1), uniform(&seed, -1, 1),
                                    uniform(&seed, -1, 1)};
         cases[i] = pair_case(i % PAIRS, posture, i % 3 > 0, i % 4 ? 0 : 100);
@@ -511,8 +427,19 @@ static void lanes_agree(void **state)
         cases[i].tolerance = 1e-6;
         cases[i].delay = i % 5 > 0 && i % 2;
     }
+    for (int i = 0; i < WALKS; i++) { /* some sum errors beside one that does not */
+        stance_case *const c = &cases[i];
+        *c = pair_case(1, walk, false, 0);
+        c->contacts = 3, c->friction = 0.5;
+        c->position[1] = 1.08;
+        memset(c->velocity, 0, sizeof c->velocity);
+        c->servo[0].ki = ki[i];
+        c->torque_limit = 10;
+        c->step = 1e-3, c->steps = 300, c->tolerance = 1e-8;
+    }
     for (int m = 0; m < 3; m++) {
-        run_cases(kernel_of(methods[m], "scalar"), cases, first, N);
+        for (int i = 0; i < N; i++)
+            run_cases(kernel_of(methods[m], "scalar"), &cases[i], &first[i], 1);
         for (int rank = 0; stance_isa(rank); rank++) {
             const stance_kernel *const kernel = kernel_of(methods[m], stance_isa(rank));
             run_cases(kernel, cases, other, N);
@@ -520,25 +447,4 @@ static void lanes_agree(void **state)
                 assert_memory_equal(&first[i], &other[i], sizeof first[i]);
         }
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(pairs_follow),
-        cmocka_unit_test(sampling_converges),
-        cmocka_unit_test(slips_turn),
-        cmocka_unit_test(limits_turn),
-        cmocka_unit_test(inertia_is_energy),
-        cmocka_unit_test(singular_is_survived),
-        cmocka_unit_test(integrals_are_bounded),
-        cmocka_unit_test(delay_shortens),
-        cmocka_unit_test(switching_is_either),
-        cmocka_unit_test(lanes_agree),
-        cmocka_unit_test(constant_torque_acts),
-        cmocka_unit_test(neighbours_do_not_matter),
-        cmocka_unit_test(missing_reactions_are_counted),
-        cmocka_unit_test(integrals_unwind),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,6 +1,7 @@
 /* test_descend.c - the nearest point of boundaries whose nearest point is known: ellipsoids of any
  * orientation in two to six dimensions, a polytope, a set with several dips. */
 #include "support.h"
+#include "tests.h"
 
 #include "analysis/basin/basin_descend.h"
 
@@ -134,12 +135,11 @@ static double along(const struct shape *s, const struct descend_end *end, int k)
     return fabs(sum);
 }
 
-static void ellipsoids(void **state)
+TEST(ellipsoids)
 {
     static const double kinds[][MOST] = {
         {1, 1.2, 1.5, 2, 2.5, 3}, {0.5, 1, 2, 4, 6, 8}, {1, 1.05, 5, 5, 5, 5}, {2, 2, 2, 2, 2, 2}};
     uint64_t random = 5;
-    (void)state;
     for (size_t kind = 0; kind < sizeof kinds / sizeof kinds[0]; kind++) {
         for (int n = 2; n <= MOST; n++) {
             double worst = 0, rays_off = 0, asked = 0;
@@ -166,10 +166,9 @@ static void ellipsoids(void **state)
     }
 }
 
-static void faces_of_a_box(void **state)
+TEST(faces_of_a_box)
 {
     uint64_t random = 6;
-    (void)state;
     for (int n = 2; n <= MOST; n++) {
         struct shape s = {.n = n, .half = {1, 1.3, 1.6, 2, 2.5, 3}, .holds = in_box};
         double rays;
@@ -181,10 +180,9 @@ static void faces_of_a_box(void **state)
 }
 
 /* Not all descents end in the deepest dent; the shortest of them does. */
-static void dents(void **state)
+TEST(dents)
 {
     uint64_t random = 7;
-    (void)state;
     for (int n = 2; n <= 4; n++) {
         struct shape s = {.n = n, .holds = in_dented};
         double rays;
@@ -200,11 +198,10 @@ static void dents(void **state)
 
 /* How often a dip is missed by descents from even directions, and how often that was to be expected
  * of one that so many directions lead into. */
-static void dips_that_are_missed(void **state)
+TEST(dips_that_are_missed)
 {
     enum { SEEDS = 1000 };
     uint64_t random = 8;
-    (void)state;
     for (int n = 2; n <= 4; n++) {
         struct shape s = {.n = n, .holds = in_dented};
         bool found[SEEDS];
@@ -264,12 +261,11 @@ static bool everywhere(void *context, size_t count, const double *z, uint8_t *in
     return true;
 }
 
-static void edges(void **state)
+TEST(edges)
 {
     struct shape s = {.n = 1, .half = {0.7}, .axis = {{1}}, .holds = in_ellipsoid};
     const double line[2] = {-1, 1}, r[2] = {0.1, 3}, plane[2] = {0.6, 0.8};
     struct descend_end end;
-    (void)state;
     assert_true(basin_descend(&(struct descend_set){1, 1 << true, ask, &s}, 50, line, r, 2, &end));
     assert_true(fabs(end.high - 0.7) < 1e-4 && end.agree == 2);
     assert_false(
@@ -277,14 +273,4 @@ static void edges(void **state)
     assert_true(
         basin_descend(&(struct descend_set){2, 1 << true, everywhere, NULL}, 1, plane, r, 1, &end));
     assert_false(isfinite(end.high));
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(ellipsoids), cmocka_unit_test(faces_of_a_box),
-        cmocka_unit_test(dents),      cmocka_unit_test(dips_that_are_missed),
-        cmocka_unit_test(edges),
-    };
-    return cmocka_run_group_tests_name("descend", tests, NULL, NULL);
 }

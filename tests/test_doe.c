@@ -1,11 +1,7 @@
 /* Experimental designs: what defines each method, checked on the points alone; Sobol' points
  * against the recurrence of their direction numbers, integrals against exact ones. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
+#include "tests.h"
 
-#include <cmocka.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -44,9 +40,8 @@ static double *points_of(enum doe_method method, uint64_t count, size_t factors,
 
 /* ---- what all have in common ----------------------------------------------------------------- */
 
-static void test_range_and_seeds(void **state)
+TEST(test_range_and_seeds)
 {
-    (void)state;
     for (int method = 0; method < DOE_METHODS; method++) {
         for (size_t k = 1; k <= 7; k += 3) {
             struct doe s = design(method, 300, k, 5);
@@ -66,9 +61,8 @@ static void test_range_and_seeds(void **state)
 }
 
 /* Point i is the same whatever the count, and in whatever order points are asked for. */
-static void test_prefix(void **state)
+TEST(test_prefix)
 {
-    (void)state;
     static const uint64_t counts[] = {1, 2, 3, 64, 100, 129};
     for (int method = 0; method < DOE_METHODS; method++) {
         double *whole = points_of(method, 500, 5, 9);
@@ -88,9 +82,8 @@ static void test_prefix(void **state)
 }
 
 /* Factors are as good as independent: correlations of random points stay within 5 deviations. */
-static void test_uncorrelated(void **state)
+TEST(test_uncorrelated)
 {
-    (void)state;
     enum { N = 4096, K = 6 };
     for (int method = DOE_RANDOM; method <= DOE_SOBOL; method++) {
         double *u = points_of(method, N, K, 3);
@@ -112,9 +105,8 @@ static void test_uncorrelated(void **state)
 
 /* ---- Latin hypercubes ------------------------------------------------------------------------ */
 
-static void test_strata(void **state)
+TEST(test_strata)
 {
-    (void)state;
     static const uint64_t counts[] = {1, 2, 3, 7, 64, 1000, 4099};
     for (size_t c = 0; c < sizeof counts / sizeof counts[0]; c++) {
         const uint64_t n = counts[c];
@@ -135,9 +127,8 @@ static void test_strata(void **state)
 
 /* Over many seeds every order of four strata comes equally often: chi-square on 23 degrees of
  * freedom is above 60 with probability 4e-5. */
-static void test_orders(void **state)
+TEST(test_orders)
 {
-    (void)state;
     enum { SEEDS = 4800 };
     int seen[256] = {0}, orders = 0;
     double chi_square = 0;
@@ -163,9 +154,8 @@ static void test_orders(void **state)
  * primitive polynomials x + 1, x^2 + x + 1, x^3 + x + 1 and the first numbers 1; 1 3; 1 3 1 of Joe
  * and Kuo; all 40 coordinates by a checksum of what SciPy's scipy.stats.qmc.Sobol(40, bits=30) has
  * (version 1.10, its array _sv[:, :25] row by row). */
-static void test_directions(void **state)
+TEST(test_directions)
 {
-    (void)state;
     enum { K = 4 };
     uint64_t m[K][SOBOL_BITS] = {{0}, {1}, {1, 3}, {1, 3, 1}}, direction[SOBOL_BITS];
     for (int k = 0; k < SOBOL_BITS; k++) {
@@ -201,9 +191,8 @@ static void test_directions(void **state)
 
 /* A matrix scramble takes equal parts of a coordinate to equal parts: two points share their first
  * m bits if and only if those of the sequence do, and nothing else of the sequence is left. */
-static void test_scramble(void **state)
+TEST(test_scramble)
 {
-    (void)state;
     enum { BITS = 9, N = 1 << BITS, K = 40, SEEDS = 400 };
     uint64_t direction[SOBOL_BITS];
     double *u = points_of(DOE_SOBOL, N, K, 1);
@@ -238,9 +227,8 @@ static void test_scramble(void **state)
 
 /* Two coordinates: of every 2^m points from a multiple of 2^m on each box of area 2^-m, of whatever
  * shape, holds one. So point 0 is no point too many. */
-static void test_net(void **state)
+TEST(test_net)
 {
-    (void)state;
     double *u = points_of(DOE_SOBOL, 1024, 2, 77);
     for (int m = 1; m <= 8; m++) {
         for (int start = 0; start < 1024; start += 1 << m) {
@@ -281,9 +269,8 @@ static double integration_error(enum doe_method method, uint64_t count)
 
 /* Sixty-four times the points: random points are about 8 times as good, Sobol' points above 30
  * times. Strata take away what is additive. */
-static void test_integration_order(void **state)
+TEST(test_integration_order)
 {
-    (void)state;
     const double random = integration_error(DOE_RANDOM, 128);
     const double random_gain = random / integration_error(DOE_RANDOM, 8192);
     const double sobol = integration_error(DOE_SOBOL, 128);
@@ -296,9 +283,8 @@ static void test_integration_order(void **state)
 
 /* ---- designs for sensitivities --------------------------------------------------------------- */
 
-static void test_saltelli(void **state)
+TEST(test_saltelli)
 {
-    (void)state;
     enum { K = 3, N = 64 * DOE_REPLICATES };
     for (int second = 0; second < 2; second++) {
         struct doe s = {
@@ -329,9 +315,8 @@ static void test_saltelli(void **state)
     assert_int_equal(doe_most_factors(DOE_SALTELLI), 20);
 }
 
-static void test_morris(void **state)
+TEST(test_morris)
 {
-    (void)state;
     enum { K = 5, N = 2000 };
     for (int levels = 2; levels <= 8; levels += 2) {
         struct doe s = {
@@ -376,9 +361,8 @@ static void test_morris(void **state)
 
 /* Directions: on the sphere; moments of the uniform distribution there: E d_i = 0, E d_i d_j = 1/k
  * for i = j else 0, E d_i^4 = 3 / (k (k + 2)). */
-static void test_sphere(void **state)
+TEST(test_sphere)
 {
-    (void)state;
     enum { N = 4096 };
     for (size_t k = 1; k <= 10; k++) {
         double *u = points_of(DOE_SPHERE, N, k, 2);
@@ -409,9 +393,8 @@ static void test_sphere(void **state)
 }
 
 /* Two factors: 2^m angles fall one into each of 2^m equal sectors. */
-static void test_circle(void **state)
+TEST(test_circle)
 {
-    (void)state;
     double *u = points_of(DOE_SPHERE, 64, 2, 21);
     char taken[64] = {0};
     for (int i = 0; i < 64; i++) {
@@ -421,24 +404,4 @@ static void test_circle(void **state)
         taken[sector] = 1;
     }
     free(u);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_range_and_seeds),
-        cmocka_unit_test(test_prefix),
-        cmocka_unit_test(test_uncorrelated),
-        cmocka_unit_test(test_strata),
-        cmocka_unit_test(test_orders),
-        cmocka_unit_test(test_directions),
-        cmocka_unit_test(test_scramble),
-        cmocka_unit_test(test_net),
-        cmocka_unit_test(test_integration_order),
-        cmocka_unit_test(test_saltelli),
-        cmocka_unit_test(test_morris),
-        cmocka_unit_test(test_sphere),
-        cmocka_unit_test(test_circle),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,5 +1,6 @@
 /* sweep.sample: where factors lead, what a case of a sample is, and by what its noise is keyed. */
 #include "reading.h"
+#include "tests.h"
 
 #include <math.h>
 
@@ -36,10 +37,9 @@ static const char every_kind[] =
     "to: [6, 2, 2]}\n";
 
 /* The same points by way of the unit cube. */
-static void test_factors(void **state)
+TEST(test_factors)
 {
     static const char *const names[] = {"midpoint", "implicit", "capturing", "midpoint"};
-    (void)state;
     struct scenario s;
     read_sweep(&s, every_kind);
     struct doe design = s.sample.design;
@@ -77,9 +77,8 @@ static void test_factors(void **state)
 }
 
 /* Bounds are reached by the designs that have points there, and never left. */
-static void test_bounds(void **state)
+TEST(test_bounds)
 {
-    (void)state;
     struct scenario s;
     bool low = false, high = false;
     read_sweep(&s, "sweep: {sample: {method: morris, count: 50, levels: 6, vary: [\n"
@@ -99,9 +98,8 @@ static void test_bounds(void **state)
 
 /* Whole numbers between bounds are equally likely, both bounds included: as many of each as there
  * can be among 2^m Sobol' points and four numbers. */
-static void test_whole_numbers(void **state)
+TEST(test_whole_numbers)
 {
-    (void)state;
     struct scenario s;
     int seen[2] = {0};
     read_sweep(&s, "sweep: {sample: {method: sobol, count: 64, vary: [\n"
@@ -114,9 +112,8 @@ static void test_whole_numbers(void **state)
 
 /* Cases of a larger design are those of the smaller one, noise included; each point that moves the
  * design is a design of its own. */
-static void test_keys(void **state)
+TEST(test_keys)
 {
-    (void)state;
     static const char sweep[] =
         "sweep:\n"
         "  grid: [{path: initial.offset.vtheta, values: [0, 0.1]}]\n"
@@ -152,9 +149,8 @@ static void test_keys(void **state)
 }
 
 /* More designs than are kept in memory: an error, not an attempt. */
-static void test_designs_have_a_limit(void **state)
+TEST(test_designs_have_a_limit)
 {
-    (void)state;
     struct scenario s;
     struct plan plan;
     struct plan_error error;
@@ -166,16 +162,4 @@ static void test_designs_have_a_limit(void **state)
     assert_non_null(strstr(error.message.text, "controller designs"));
     assert_true(error.line == 9 && error.column > 0);
     scenario_free(&s);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_factors),
-        cmocka_unit_test(test_bounds),
-        cmocka_unit_test(test_whole_numbers),
-        cmocka_unit_test(test_keys),
-        cmocka_unit_test(test_designs_have_a_limit),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,72 +1,33 @@
 /* The event-driven reference: independent figures, conserved quantities, closed forms, agreement
  * with the method that never locates an event, and events that are easy to miss. */
 #include "support.h"
+#include "tests.h"
 
 #include <unistd.h>
 
-static stance_result run_with(const char *method, const char *scene, const stance_case *c)
-{
-    stance_result r;
-    run_cases(stance_kernel_find(stance_scene_find(scene), stance_method_find(method), NULL), c, &r,
-              1);
-    return r;
-}
-static stance_result run_case(const char *scene, const stance_case *c)
-{
-    return run_with("event-driven", scene, c);
-}
-
-/* A case of any scene with its default body, all contacts, friction 0.5. */
-static stance_case event_case(const char *name, double step, double time)
-{
-    const stance_scene *scene = stance_scene_find(name);
-    stance_case c = {.friction = 0.5,
-                     .contacts = (1u << scene->contacts) - 1,
-                     .torque_limit = INFINITY,
-                     .step = step,
-                     .steps = (int64_t)lround(time / step),
-                     .tolerance = 1e-12,
-                     .settle_angle = 0.05,
-                     .settle_rate = 0.5,
-                     .settle_hold = 0.5};
-    stance_robot_fallback(scene, c.robot);
-    c.scene = scene;
-    c.robot[STANCE_ROBOT_FALL_HEIGHT] = -1e9;
-    return c;
-}
-
 /* The drop of tests/reference/drop.json: position to 1e-11 wherever it is given in full digits,
  * velocity too, events as many as there. */
-static void drop_against_reference(void **state)
+TEST(drop_against_reference)
 {
-    (void)state;
-    static const double robot[5] = {0.5, 0.5, 1, 1, 3}, q[5] = {0, 1.5, -0.5, 0.9, -1};
     json_t *root = reference_load("tests/reference/drop.json"), *row;
     json_t *second = json_object_get(root, "second");
     const char *at;
     for (double step = 1e-2; step > 5e-4; step /= 10) {
-        stance_case c = plain_case();
+        stance_case c = second_drop(step);
         double position = 0, velocity = 0;
-        memcpy(c.robot, robot, sizeof robot);
-        memcpy(c.position, q, sizeof q);
-        c.velocity[0] = 1;
-        c.friction = 0.3;
-        hold_legs(&c, 200, 20);
-        c.step = step;
-        c.steps = (int64_t)lround(1.2 / step);
         c.tolerance = 1e-12;
         stance_trajectory t = trajectory_new(13, 0.1);
         c.trajectory = &t;
-        const stance_result r = run_case("biped", &c);
-        assert_int_equal(r.status, STANCE_DONE);
+        const stance_result r = run_done("event-driven", &c);
         json_object_foreach(json_object_get(second, "states"), at, row)
         {
             const long k = lround(atof(at) / 0.1);
+            double q[5], v[5];
+            numbers(json_object_get(row, "q"), q, 5);
+            numbers(json_object_get(row, "v"), v, 5);
             for (int i = 0; i < 5; i++) {
-                const json_t *wanted = json_array_get(json_object_get(row, "q"), (size_t)i);
-                const json_t *rate = json_array_get(json_object_get(row, "v"), (size_t)i);
-                position = fmax(position, fabs(t.position[k * 5 + i] - json_number_value(wanted)));
-                velocity = fmax(velocity, fabs(t.velocity[k * 5 + i] - json_number_value(rate)));
+                position = fmax(position, fabs(t.position[k * 5 + i] - q[i]));
+                velocity = fmax(velocity, fabs(t.velocity[k * 5 + i] - v[i]));
             }
         }
         print_message("# h = %g: position off %.1e, velocity off %.1e, energy gained %.1e J\n",
@@ -82,29 +43,6 @@ static void drop_against_reference(void **state)
     json_decref(root);
 }
 
-/* Any posture near the ground, any rates, any servo: what test_stepping asks the others for. */
-static stance_case random_event_case(uint64_t *seed, int i)
-{
-    stance_case c = plain_case();
-    c.friction = uniform(seed, 0, 2);
-    for (int k = 2; k < 5; k++) {
-        c.position[k] = uniform(seed, -M_PI, M_PI);
-        c.velocity[k] = i % 3 == 0 ? uniform(seed, -20, 20) : uniform(seed, -5, 5);
-    }
-    for (int k = 0; k < 2; k++)
-        c.velocity[k] = uniform(seed, -3, 3);
-    double gap[2];
-    biped()->gaps(biped(), c.robot, c.position, gap);
-    c.position[1] += 1e-13 - fmin(gap[0], gap[1]) + (i % 2 ? 0 : uniform(seed, 0, 0.2));
-    const double stiffness = uniform(seed, 0, 200);
-    hold_legs(&c, stiffness, stiffness / 20);
-    c.torque_limit = i % 5 ? 50 : INFINITY;
-    c.sample_every = i % 4 ? 1 : 0;
-    c.steps = 250;
-    c.robot[STANCE_ROBOT_FALL_HEIGHT] = -1e9;
-    return c;
-}
-
 /* Did both feet stand on one spot? Then their forces are not unique, nor may the motion be. */
 static bool feet_meet(const stance_trajectory *t, double end)
 {
@@ -118,24 +56,23 @@ static bool feet_meet(const stance_trajectory *t, double end)
 
 /* Two methods that have the equations of motion in common but neither how they integrate them nor
  * how they find and cross events: where both come to the end they agree. */
-static void agrees_with_capturing(void **state)
+TEST(agrees_with_capturing)
 {
-    (void)state;
     enum { N = 300 };
     uint64_t seed = 2024;
     int both = 0, gave_up[2] = {0}, meet = 0;
     double worst = 0;
     for (int i = 0; i < N; i++) {
-        stance_case c = random_event_case(&seed, i);
+        stance_case c;
+        random_case(&seed, i, 1e-3, &c);
         c.restitution = i % 7 == 0 ? 0.5 : 0;
         c.tolerance = 1e-12;
         stance_trajectory t = trajectory_new(c.steps + 1, c.step);
         c.trajectory = &t;
-        const stance_result a = run_case("biped", &c);
+        const stance_result a = run_one("event-driven", &c);
         c.trajectory = NULL;
         c.tolerance = 1e-10;
-        stance_result b;
-        run_cases(kernel_of("capturing", NULL), &c, &b, 1);
+        const stance_result b = run_one("capturing", &c);
         const bool compare = !feet_meet(&t, a.end_time);
         trajectory_free(&t);
         gave_up[0] += a.status != STANCE_DONE;
@@ -184,14 +121,13 @@ static void momenta(const double *robot, const double *q, const double *v, doubl
 
 /* In flight without torques: energy and the momenta, less what gravity adds, stay. With a servo
  * the momenta stay, and the energy changes by the work. */
-static void flight_conserves(void **state)
+TEST(flight_conserves)
 {
-    (void)state;
     uint64_t seed = 5;
     double worst = 0;
     for (int i = 0; i < 40; i++) {
-        stance_case c = random_event_case(&seed, i);
-        const stance_scene *biped = stance_scene_find("biped");
+        stance_case c;
+        random_case(&seed, i, 1e-3, &c);
         const bool passive = i % 2 == 0;
         if (passive)
             memset(c.near.gain, 0, sizeof c.near.gain);
@@ -200,9 +136,8 @@ static void flight_conserves(void **state)
         c.step = i % 3 ? 1e-3 : 1e-2;
         c.steps = (int64_t)lround(1 / c.step);
         c.tolerance = 1e-13;
-        const stance_result r = run_case("biped", &c);
+        const stance_result r = run_done("event-driven", &c);
         double before[3], after[3];
-        assert_int_equal(r.status, STANCE_DONE);
         assert_int_equal(r.events == 0 || !passive, 1);
         momenta(c.robot, c.position, c.velocity, before);
         momenta(c.robot, r.position, r.velocity, after);
@@ -219,8 +154,8 @@ static void flight_conserves(void **state)
         for (int k = 0; k < 3; k++)
             worst = fmax(worst, fabs(after[k] - before[k]) / (weight + fabs(before[k])));
         if (passive) {
-            const double e0 = biped->energy(biped, c.robot, c.position, c.velocity);
-            const double e1 = biped->energy(biped, c.robot, r.position, r.velocity);
+            const double e0 = biped()->energy(biped(), c.robot, c.position, c.velocity);
+            const double e1 = biped()->energy(biped(), c.robot, r.position, r.velocity);
             worst = fmax(worst, fabs(e1 - e0) / (1 + fabs(e0)));
         } else {
             worst = fmax(worst, r.energy_gain / (weight + fabs(before[2])));
@@ -232,47 +167,19 @@ static void flight_conserves(void **state)
 
 /* A ball at e < 1 comes to the instant at which its bounces accumulate and not beyond; every bounce
  * before that is where it belongs. */
-static void zeno_fails(void **state)
+TEST(zeno_fails)
 {
-    (void)state;
     for (double e = 0.1; e < 0.95; e += 0.2)
         for (double step = 1e-4; step < 0.05; step *= 10) {
-            stance_case c = event_case("ball", step, 30);
+            stance_case c = case_of_scene("ball", step, 30);
             c.restitution = e;
             c.position[1] = 1.1;
             const double zeno = sqrt(2 / STANCE_GRAVITY) * (1 + e) / (1 - e);
-            const stance_result r = run_case("ball", &c);
+            const stance_result r = run_one("event-driven", &c);
             assert_int_equal(r.status, STANCE_FAILED);
             assert_int_equal(r.failure, STANCE_FAILURE_EVENTS);
             assert_true(fabs(r.end_time - zeno) < 1.01 * step + 1e-3);
         }
-}
-
-/* A rod that slides on one end: refused where no force, or several, fit the accelerations. */
-static void painleve_fails(void **state)
-{
-    (void)state;
-    json_t *root = reference_load("tests/reference/known.json"), *row;
-    size_t i, refused = 0;
-    json_array_foreach(json_object_get(json_object_get(root, "painleve"), "cases"), i, row)
-    {
-        double x[5];
-        for (size_t k = 0; k < 5; k++)
-            x[k] = json_number_value(json_array_get(row, k));
-        const char *kind = json_string_value(json_array_get(row, 7));
-        stance_case c = event_case("rod", 1e-4, 1e-4);
-        c.robot[2] = x[0], c.friction = x[2], c.contacts = 1;
-        c.position[0] = 0.5 * cos(x[1]), c.position[1] = 0.5 * sin(x[1]), c.position[2] = x[1];
-        c.velocity[0] = x[4] - 0.5 * sin(x[1]) * x[3], c.velocity[1] = 0.5 * cos(x[1]) * x[3];
-        c.velocity[2] = x[3];
-        const stance_result r = run_case("rod", &c);
-        const bool paradox = strcmp(kind, "none") == 0 || strcmp(kind, "two") == 0;
-        assert_int_equal(r.status, paradox ? STANCE_FAILED : STANCE_DONE);
-        assert_int_equal(r.failure, paradox ? STANCE_FAILURE_PAINLEVE : STANCE_FAILURE_NONE);
-        refused += paradox;
-    }
-    json_decref(root);
-    assert_true(refused > 20);
 }
 
 /* Height of the rod's end 1 at time t of free flight; the rod is 1 m long. */
@@ -303,7 +210,7 @@ static void graze(const char *method, double tolerance, double least)
     uint64_t seed = 11;
     for (int i = 0; i < 100; i++) {
         const double spin = uniform(&seed, 30, 300), when = uniform(&seed, 0.5, 2.5) / spin;
-        stance_case c = event_case("rod", i % 2 ? 1e-2 : 1e-3, 1);
+        stance_case c = case_of_scene("rod", i % 2 ? 1e-2 : 1e-3, 1);
         c.contacts = 1;
         c.tolerance = tolerance;
         c.velocity[0] = 1, c.velocity[1] = uniform(&seed, -1, 1), c.velocity[2] = spin;
@@ -314,15 +221,13 @@ static void graze(const char *method, double tolerance, double least)
         for (size_t d = 0; d < sizeof depths / sizeof *depths && depths[d] >= least; d++)
             for (int side = -1; side <= 1; side += 2) {
                 c.position[1] = side * depths[d] - low;
-                const stance_result r = run_with(method, "rod", &c);
-                assert_int_equal(r.status, STANCE_DONE);
+                const stance_result r = run_done(method, &c);
                 assert_int_equal(r.events > 0, side < 0);
             }
     }
 }
-static void grazing_is_seen(void **state)
+TEST(grazing_is_seen)
 {
-    (void)state;
     graze("event-driven", 1e-12, 0);
     graze("capturing", 1e-10, 1e-7);
     graze("capturing", 1e-8, 1e-5);
@@ -338,12 +243,11 @@ static void short_slips(const char *method, double tolerance, double least)
             for (int side = -1; side <= 1; side += 2) {
                 const double mu = 0.3, drag = mu * STANCE_GRAVITY;
                 const double pull = drag * (1 + side * excesses[k]), w = 2 * M_PI * frequency;
-                stance_case c = event_case("block", 0.6 / frequency, 0.6 / frequency);
+                stance_case c = case_of_scene("block", 0.6 / frequency, 0.6 / frequency);
                 c.friction = mu;
                 c.tolerance = tolerance;
                 c.robot[1] = pull, c.robot[2] = frequency;
-                const stance_result r = run_with(method, "block", &c);
-                assert_int_equal(r.status, STANCE_DONE);
+                const stance_result r = run_done(method, &c);
                 if (side < 0) {
                     assert_true(r.position[0] == 0 && r.velocity[0] == 0 && r.events == 0);
                     continue;
@@ -354,10 +258,7 @@ static void short_slips(const char *method, double tolerance, double least)
                 for (int round = 0; round < 100; round++) {
                     const long double t = 0.5L * (a + b);
                     const long double v = pull / w * (cosl(w * t1) - cosl(w * t)) - drag * (t - t1);
-                    if (v > 0)
-                        a = t;
-                    else
-                        b = t;
+                    *(v > 0 ? &a : &b) = t;
                 }
                 const long double wanted = pull / w * cosl(w * t1) * (a - t1) -
                                            pull / (w * w) * (sinl(w * a) - sinl(w * t1)) -
@@ -369,9 +270,8 @@ static void short_slips(const char *method, double tolerance, double least)
                             (tolerance > 1e-11 ? tolerance : 1e-6 * (double)wanted + 1e-14));
             }
 }
-static void short_slip_is_seen(void **state)
+TEST(short_slip_is_seen)
 {
-    (void)state;
     short_slips("event-driven", 1e-12, 0);
     short_slips("capturing", 1e-10, 1e-2);
     short_slips("capturing", 1e-8, 1e-1);
@@ -379,10 +279,9 @@ static void short_slip_is_seen(void **state)
 
 /* Rebounds die out on a robot whose servo presses the foot onto the ground a hundred times harder
  * than its weight: the impacts that count no longer depend on that. */
-static void pressed_rebounds_end(void **state)
+TEST(pressed_rebounds_end)
 {
-    (void)state;
-    stance_case c = event_case("biped", 0.01, 0.8);
+    stance_case c = case_of_scene("biped", 0.01, 0.8);
     static const double start[] = {-0.6190420068784885, 0.6001175971973135, -0.8832618334430357};
     c.position[1] = 1.3;
     c.velocity[0] = 0.765348141110965, c.velocity[1] = -0.6428562436512562;
@@ -394,20 +293,19 @@ static void pressed_rebounds_end(void **state)
     for (int i = 0; i < 12; i++) {
         c.restitution = 0.04 * i;
         for (c.tolerance = 1e-8; c.tolerance > 1e-10; c.tolerance *= 0.1)
-            assert_int_equal(run_with("capturing", "biped", &c).status, STANCE_DONE);
+            run_done("capturing", &c);
     }
 }
 
 /* What a case gives depends on nothing but the case, and SUNDIALS says nothing. */
-static void cases_are_independent(void **state)
+TEST(cases_are_independent)
 {
-    (void)state;
     enum { N = 60 };
     stance_case cases[N], reversed[N];
     stance_result results[N], back[N];
     uint64_t seed = 3;
     for (int i = 0; i < N; i++) {
-        cases[i] = random_event_case(&seed, i);
+        random_case(&seed, i, 1e-3, &cases[i]);
         cases[i].tolerance = i % 2 ? 1e-12 : 1e-9;
         if (i % 10 == 9)
             cases[i].tolerance = 1e-18; /* cannot be met */
@@ -419,7 +317,7 @@ static void cases_are_independent(void **state)
     const stance_kernel *const rod =
         stance_kernel_find(stance_scene_find("rod"), stance_method_find("event-driven"), NULL);
     for (int i = 0; i < 12; i++) { /* of two contacts one, the other or both take part */
-        rods[i] = event_case("rod", 0.01, 0.5);
+        rods[i] = case_of_scene("rod", 0.01, 0.5);
         rods[i].position[1] = 0.75, rods[i].position[2] = 0.1 + 1.4 * i / 11;
         rods_reversed[11 - i] = rods[i];
     }
@@ -446,16 +344,4 @@ static void cases_are_independent(void **state)
     for (int i = 0; i < 12; i++)
         assert_memory_equal(&rods_there[i], &rods_back[11 - i], sizeof rods_there[i]);
     assert_ptr_equal(kernel_of("event-driven", "avx2"), kernel);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(drop_against_reference), cmocka_unit_test(agrees_with_capturing),
-        cmocka_unit_test(flight_conserves),       cmocka_unit_test(zeno_fails),
-        cmocka_unit_test(painleve_fails),         cmocka_unit_test(grazing_is_seen),
-        cmocka_unit_test(short_slip_is_seen),     cmocka_unit_test(cases_are_independent),
-        cmocka_unit_test(pressed_rebounds_end),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

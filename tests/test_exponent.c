@@ -4,6 +4,7 @@
 #include "support.h"
 
 #include "cases.h"
+#include "tests.h"
 
 #include "analysis/basin/basin_map.h"
 
@@ -204,7 +205,7 @@ static struct measured measure(size_t n, painter colour, double c, const double 
 
 /* ---- coverage ----------------------------------------------------------------------------- */
 
-static void alphas_are_within_their_errors(void **state)
+TEST(alphas_are_within_their_errors)
 {
     static const struct {
         const char *name;
@@ -248,7 +249,6 @@ static void alphas_are_within_their_errors(void **state)
     const int tries = patient ? 40 : 3;
     int held[2] = {0}, given[2] = {0};
     uint64_t random = 3;
-    (void)state;
     for (size_t k = 0; k < sizeof maps / sizeof maps[0]; k++) {
         const double alpha = maps[k].alpha > 0 ? maps[k].alpha : 1 + log(2) / log(maps[k].c);
         const bool smooth = alpha == 1;
@@ -292,10 +292,9 @@ static void alphas_are_within_their_errors(void **state)
 
 /* Bands of any width: alpha is 1 within its error, or there is a reason for none, whatever the
  * resolution; the distances that reach their width are left out. No band is a fractal. */
-static void thin_bands_are_smooth(void **state)
+TEST(thin_bands_are_smooth)
 {
     static const double widths[] = {0.2, 0.1, 0.06, 0.03, 0.015};
-    (void)state;
     for (size_t w = 0; w < sizeof widths / sizeof widths[0]; w++) {
         for (size_t n = 65; n <= 1025; n = 2 * n - 1) {
             int given = 0, held = 0;
@@ -343,10 +342,9 @@ static int wada(double x, double y, double c, const double *p)
     return 0;
 }
 
-static void stars_are_for_fractals(void **state)
+TEST(stars_are_for_fractals)
 {
     const double p[4] = {0.3, 0.7};
-    (void)state;
     for (int per_side = 10; per_side <= 80; per_side *= 2) {
         const struct measured m = measure(512, three, per_side, p);
         print_message("# %d stripes of each colour: S_bb %.3f\n", per_side, m.s_bb);
@@ -357,14 +355,4 @@ static void stars_are_for_fractals(void **state)
     print_message("# squares: S_bb %.3f, alpha %.3f +- %.3f, %s\n", m.s_bb, m.exponent.alpha,
                   m.exponent.error, basin_refusal_words[m.exponent.refusal]);
     assert_true(m.fractal);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(alphas_are_within_their_errors),
-        cmocka_unit_test(thin_bands_are_smooth),
-        cmocka_unit_test(stars_are_for_fractals),
-    };
-    return cmocka_run_group_tests_name("exponent", tests, NULL, NULL);
 }

@@ -1,13 +1,6 @@
 /* test_extremes - falls and largest values between the ends of steps, by the methods that look
  * there, against closed forms; and at the ends alone, by the others.
  */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
 #include "long.h"
 #include "motions.h"
 
@@ -47,9 +40,8 @@ static double tip_above(double t, const double *x)
 {
     return x[0] + x[1] * t - G / 2 * t * t + cos(x[2] + x[3] * t) - 0.2;
 }
-static void thrown(void **state)
+TEST(thrown)
 {
-    (void)state;
     struct robot r = robot_of("body stick free - 1 0.1 0 0 0 0\nnamed tip stick 0 1 0.2\n", 0);
     uint64_t seed = 7;
     int fell[2] = {0}, between = 0;
@@ -84,9 +76,8 @@ static void thrown(void **state)
 
 /* A wheel on a spring that may turn a little less, or more, than it does; the fixed steps that
  * their method names are judged at their ends. */
-static void turned(void **state)
+TEST(turned)
 {
-    (void)state;
     const double A = 0.7, w = sqrt(30 / 0.5);
     int seen = 0, tried = 0;
     for (int i = -2; i <= 2; i++) {
@@ -144,9 +135,8 @@ static void wheel_held(double t, const double *x, double *v)
     v[0] = fabs(q);
     v[1] = fabs(x[2] * q + x[3] * rate);
 }
-static void held(void **state)
+TEST(held)
 {
-    (void)state;
     struct robot r = robot_of("body wheel hinge - 1 0.4 0 0 0 0\nactuator motor wheel 1000\n", 0);
     uint64_t seed = 11;
     double worst[2] = {0};
@@ -185,9 +175,8 @@ static void mass_sprung(double t, const double *x, double *v)
     v[0] = fabs(2 * a * x[1] * cosine) / normal;
     v[1] = -normal / 2;
 }
-static void sprung(void **state)
+TEST(sprung)
 {
-    (void)state;
     uint64_t seed = 13;
     double worst[3] = {0};
     for (int leans = 0; leans < 2; leans++) {
@@ -225,9 +214,8 @@ static void sprung(void **state)
 
 /* An arm that hangs is thrown at a stop, and falls back: the furthest place is that of the impact,
  * inside a step. */
-static void struck(void **state)
+TEST(struck)
 {
-    (void)state;
     struct robot r = robot_of("body arm hinge - 1 0.1 0 -0.5 0 0 limits -inf 0.3\n", 0);
     r.c.has_target = true;
     for (int i = 0; i < 10; i++) {
@@ -239,13 +227,4 @@ static void struck(void **state)
         }
     }
     stance_scene_free(r.scene);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(thrown), cmocka_unit_test(turned), cmocka_unit_test(held),
-        cmocka_unit_test(sprung), cmocka_unit_test(struck),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

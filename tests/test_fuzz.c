@@ -1,16 +1,11 @@
 /* test_fuzz.c - inputs that fuzzing found, and every scenario there is, through the function that
  * fuzzing calls (fuzz_scenario.c). */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 #include <glob.h>
 #include <stdio.h>
 #include <stdlib.h>
 
 #include "fuzz_scenario.h"
+#include "tests.h"
 
 static void run_file(const char *name)
 {
@@ -37,38 +32,23 @@ static void run_files(const char *pattern)
     globfree(&files);
 }
 
-static void test_found(void **state)
+TEST(test_found)
 {
-    (void)state;
     run_files("tests/fuzz/found/*");
 }
 
-static void test_corpus(void **state)
+TEST(test_corpus)
 {
-    (void)state;
     run_files("tests/fuzz/scenario/*");
 }
 
-static void test_bad(void **state)
+TEST(test_bad)
 {
-    (void)state;
     run_files("tests/bad/*.yaml");
 }
 
-static void test_shipped(void **state)
+TEST(test_shipped)
 {
-    (void)state;
     run_files("scenarios/*.yaml");
     run_files("scenarios/*/*.yaml");
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_found),
-        cmocka_unit_test(test_corpus),
-        cmocka_unit_test(test_bad),
-        cmocka_unit_test(test_shipped),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

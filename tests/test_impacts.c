@@ -20,6 +20,7 @@ static const int scene_other[SCENE_CONTACTS] = {-1, -1, -1, -1};
 #include "dense.h"
 #include "long.h"
 #include "support.h"
+#include "tests.h"
 
 struct system {
     int contacts, coordinates;
@@ -197,7 +198,7 @@ static double judge(const struct system *s, bool moreau, const struct answer *a,
     return (double)((gain - fminl(fmaxl(gain, 0), bits)) / kinetic);
 }
 
-static void impacts(void **state)
+TEST(impacts)
 {
     const char *const asked = getenv("STANCE_TEST_IMPACTS");
     const long n = asked ? atol(asked) : long_tests() ? 200000 : 3000;
@@ -206,7 +207,6 @@ static void impacts(void **state)
          rough = 0, skipped = 0, lost = 0, hardly = 0;
     long higher = 0, looked = 0, beside = 0;
     double worst = 0, most = -1, largest = 0;
-    (void)state;
     for (long i = 0; i < n; i++) {
         struct system s;
         struct answer newton, some;
@@ -275,10 +275,9 @@ static void impacts(void **state)
 
 /* Two of these systems, where less than a sixteenth of the coefficient adds nothing, far above the
  * share below which none does: any a little above what is taken adds some. */
-static void what_is_narrow_is_found(void **state)
+TEST(what_is_narrow_is_found)
 {
     static const uint64_t seeds[] = {12555750287834678224u, 10980256084169574173u};
-    (void)state;
     for (int k = 0; k < 2; k++) {
         uint64_t seed = seeds[k];
         struct system s;
@@ -295,11 +294,10 @@ static void what_is_narrow_is_found(void **state)
 
 /* The search alone, of gains that are a quadratic with two roots in each of some parts of 0 ... 1,
  * which are told apart: the largest root is found. */
-static void largest_root(void **state)
+TEST(largest_root)
 {
     enum { FUNCTIONS = 20000, PARTS = 4 };
     uint64_t seed = 77;
-    (void)state;
     for (int i = 0; i < FUNCTIONS; i++) {
         double edge[PARTS + 1] = {1}, low[PARTS], high[PARTS], root = 0;
         for (int k = 0; k < PARTS; k++) {
@@ -331,14 +329,4 @@ static void largest_root(void **state)
         assert_true(tries < 400);
         assert_true(fabs(share.low - root) < 1e-10 && last == share.low);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(largest_root),
-        cmocka_unit_test(what_is_narrow_is_found),
-        cmocka_unit_test(impacts),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -4,6 +4,7 @@
  * Skipped without libmujoco.
  */
 #include "support.h"
+#include "tests.h"
 
 #include "runner/import/compare.h"
 #include "runner/plan/mjcf.h"
@@ -74,10 +75,9 @@ static void differs(struct robot *r, const char *what, double *number, double ot
 #define SEEN(what) differs(&r, #what, &(what), (what) * (1 + 1e-6), true)
 #define NOT_SEEN(what) differs(&r, #what, &(what), (what) + 0.01, false)
 
-static void bodies_and_joints(void **state)
+TEST(bodies_and_joints)
 {
     struct robot r;
-    (void)state;
     begin(&r, "tests/robots/spring_hopper.urdf");
     struct spatial_body *const body = r.model.body;
     struct spatial_joint *const joint = r.model.joint;
@@ -108,10 +108,9 @@ static void bodies_and_joints(void **state)
 }
 
 /* Products of inertia with the normal, and in the plane. */
-static void tensors(void **state)
+TEST(tensors)
 {
     struct robot r;
-    (void)state;
     begin(&r, "tests/robots/turned_leg.urdf");
     struct spatial_body *const body = r.model.body;
     if (isnan(off(&r))) {
@@ -136,13 +135,12 @@ static void tensors(void **state)
     end(&r);
 }
 
-static void sentences(void **state)
+TEST(sentences)
 {
     char text[400];
     struct compare_report report = {
         .itself = true, .states = 100, .worst = 3.1e-13, .state = 17, .coordinate = 2};
     const stance_scene *const biped = stance_scene_find("biped");
-    (void)state;
     assert_non_null(strstr(compare_sentence(&report, biped, text, sizeof text),
                            "agree with the file's to 3.1e-13 (relative, largest at state 17"));
     assert_non_null(strstr(text, biped->coordinate[2].name));
@@ -150,14 +148,4 @@ static void sentences(void **state)
     assert_non_null(strstr(compare_sentence(&report, biped, text, sizeof text), "DIFFER"));
     report.worst = NAN;
     assert_non_null(strstr(compare_sentence(&report, biped, text, sizeof text), "DIFFER"));
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(bodies_and_joints),
-        cmocka_unit_test(tensors),
-        cmocka_unit_test(sentences),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

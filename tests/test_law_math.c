@@ -1,5 +1,7 @@
 /* test_law_math.c - the functions that laws of the user's own may call, against the C library's. */
 #define STANCE_LANES 1
+#include "tests.h"
+
 #include "runner/objects/law/law_math.c"
 
 #include <setjmp.h>
@@ -19,10 +21,9 @@ static double wide(void)
     return (drand48() - 0.5) * pow(10, 12 * drand48() - 6);
 }
 
-static void close_to_the_library(void **state)
+TEST(close_to_the_library)
 {
     double exps = 0, tanhs = 0, atans = 0, asins = 0, floors = 0;
-    (void)state;
     srand48(1);
     for (int i = 0; i < 300000; i++) {
         const double x = wide(), y = wide(), z = 1400 * (drand48() - 0.5), s = 2 * drand48() - 1;
@@ -38,10 +39,9 @@ static void close_to_the_library(void **state)
     assert_true(exps <= 2 && tanhs <= 4 && atans <= 5 && asins <= 5 && floors == 0);
 }
 
-static void same_at_the_edges(void **state)
+TEST(same_at_the_edges)
 {
     static const double edge[] = {0, -0.0, 1, -1, INFINITY, -INFINITY, NAN};
-    (void)state;
     for (size_t i = 0; i < 7; i++) {
         const double x = edge[i], got[] = {law_exp(x), law_tanh(x), law_atan(x), law_floor(x)},
                      wanted[] = {exp(x), tanh(x), atan(x), floor(x)};
@@ -54,13 +54,4 @@ static void same_at_the_edges(void **state)
         }
     }
     assert_true(law_exp(-1000) == 0 && law_exp(1000) == INFINITY && law_exp(-740) == exp(-740));
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(close_to_the_library),
-        cmocka_unit_test(same_at_the_edges),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -3,6 +3,7 @@
  * which must never run away. */
 #include "long.h"
 #include "support.h"
+#include "tests.h"
 
 #include <complex.h>
 
@@ -66,10 +67,7 @@ static double limit_in_theory(double s, double kp, double kd)
         low = high, high *= 1.001;
     for (int i = 0; i < 60; i++) {
         const double middle = (low + high) / 2;
-        if (growth(s, kp, kd, middle) <= 1)
-            low = middle;
-        else
-            high = middle;
+        *(growth(s, kp, kd, middle) <= 1 ? &low : &high) = middle;
     }
     return low;
 }
@@ -99,10 +97,9 @@ static bool swings_up(const char *method, double h, double kp, double kd, const 
     enum { ROWS = STEPS + 1 };
     stance_case c = flying_case(h, kp, kd, vector);
     stance_trajectory t = trajectory_new(ROWS, h);
-    stance_result r;
     c.steps = STEPS;
     c.trajectory = &t;
-    run_cases(kernel_of(method, NULL), &c, &r, 1);
+    const stance_result r = run_one(method, &c);
     double size[3] = {0, 0, 0}; /* first, between, last */
     for (int k = 0; k < ROWS; k++)
         for (int i = 0; i < 2; i++) {
@@ -113,9 +110,8 @@ static bool swings_up(const char *method, double h, double kp, double kd, const 
     return r.status != STANCE_DONE || size[2] > 1.01 * size[0] || size[1] > 1e-3;
 }
 
-static void explicit_steps(void **state)
+TEST(explicit_steps)
 {
-    (void)state;
     static const double stiffness[] = {20, 500, 2e4, 1e6}, damping[] = {0, 0.3, 1, 3};
     double worst = 0;
     for (size_t i = 0; i < 4; i++)
@@ -131,10 +127,7 @@ static void explicit_steps(void **state)
             assert_true(swings_up("lagrange", high, kp, kd, vector));
             while (high - low > 1e-4 * theory) {
                 const double middle = (low + high) / 2;
-                if (swings_up("lagrange", middle, kp, kd, vector))
-                    high = middle;
-                else
-                    low = middle;
+                *(swings_up("lagrange", middle, kp, kd, vector) ? &high : &low) = middle;
             }
             worst = fmax(worst, fabs(low / theory - 1));
             /* What is implicit stays where no explicit step can go. */
@@ -148,45 +141,26 @@ static void explicit_steps(void **state)
 /* ---- the sampled controller: T* ---- */
 
 struct balance {
-    double leg, trunk, foot_mass, trunk_mass, hip_mass, theta, q2, speed; /* of the poles */
+    double robot[5], theta, q2, speed; /* of the poles */
 };
 static const struct balance balances[] = {
-    {0.535, 0.535, 1.8, 1.8, 5.4, -0.41, 0.82, 1}, {0.5, 0.5, 1, 1, 3, -0.3, 0.6, 1.5},
-    {0.9, 0.6, 4, 30, 20, 0.15, -0.4, 0.7},        {0.25, 0.3, 0.2, 0.5, 0.8, -0.2, 0.9, 2},
-    {1.2, 0.4, 1, 2, 10, 0.3, -0.7, 0.5},          {0.4, 0.8, 3, 1, 2, -0.5, 1, 1.2},
+    {{0.535, 0.535, 1.8, 1.8, 5.4}, -0.41, 0.82, 1}, {{0.5, 0.5, 1, 1, 3}, -0.3, 0.6, 1.5},
+    {{0.9, 0.6, 4, 30, 20}, 0.15, -0.4, 0.7},        {{0.25, 0.3, 0.2, 0.5, 0.8}, -0.2, 0.9, 2},
+    {{1.2, 0.4, 1, 2, 10}, 0.3, -0.7, 0.5},          {{0.4, 0.8, 3, 1, 2}, -0.5, 1, 1.2},
 };
 
 /* A robot on foot 1, 1e-6 rad off its equilibrium; and the theory's T*. */
 static stance_case sampled_case(const struct balance *b, double *critical)
 {
-    static const double pole[6] = {-3, -3.3, -3.6, -3.9, -4.2, -4.6}, im[6] = {0};
-    const stance_scene *scene = stance_scene_find("biped");
-    const stance_equilibrium_choice choice = {1, {b->theta, NAN, b->q2}, 0};
-    stance_equilibrium equilibrium;
-    stance_message message;
-    double A[36], B[12], K[12], re[6];
+    double A[36], B[12], K[12];
     stance_case c = plain_case();
-    c.robot[0] = b->leg, c.robot[1] = b->trunk;
-    c.robot[2] = b->foot_mass, c.robot[3] = b->trunk_mass, c.robot[4] = b->hip_mass;
-    for (int i = 0; i < 6; i++)
-        re[i] = b->speed * pole[i];
-    if (scene->equilibrium(scene, c.robot, &choice, &equilibrium, &message) != STANCE_OK)
-        fail_msg("no equilibrium: %s", message.text);
-    assert_int_equal(scene->linearise(scene, c.robot, &equilibrium, A, B), STANCE_OK);
-    assert_int_equal(
-        stance_place(STANCE_ROBUST, PLANT(6, 2, A, B), 0, POLES(re, im), K, NULL, &message),
-        STANCE_OK);
+    memcpy(c.robot, b->robot, sizeof b->robot);
+    put_in_balance(&c, b->theta, b->q2, b->speed, 1e-6);
+    const stance_equilibrium equilibrium = equilibrium_at(&c);
+    get_gain(&c, K);
+    assert_int_equal(biped()->linearise(biped(), c.robot, &equilibrium, A, B), STANCE_OK);
     assert_int_equal(stance_critical_sample_time(PLANT(6, 2, A, B), SAMPLING(K, 0, 0), 2, critical),
                      STANCE_OK);
-    put_gain(&c, K);
-    memcpy(c.position, equilibrium.position, sizeof c.position);
-    memcpy(c.near.feedforward, equilibrium.torque, sizeof c.near.feedforward);
-    memcpy(c.near.target, equilibrium.position + 2, sizeof(double[3]));
-    c.position[2] += 1e-6;
-    scene->stand(scene, c.robot, 1, c.position, c.velocity);
-    c.contacts = 1;
-    c.supports = 1;
-    c.has_target = true;
     c.tolerance = 1e-13;
     return c;
 }
@@ -246,9 +220,8 @@ static double simulated_limit(const char *method, const stance_case *base, int p
     return low + gap * (TRIES - 1) / 2;
 }
 
-static void sampled_controllers(void **state)
+TEST(sampled_controllers)
 {
-    (void)state;
     double worst[3] = {0};
     const size_t n = sizeof balances / sizeof *balances;
     for (size_t i = 0; i < n; i++) {
@@ -309,7 +282,6 @@ static bool chance(uint64_t *random, double share)
  * a metre above it. */
 static void wild_start(uint64_t *random, stance_case *c)
 {
-    const stance_scene *scene = stance_scene_find("biped");
     double gap[2];
     do {
         for (int i = 0; i < 2; i++)
@@ -320,7 +292,7 @@ static void wild_start(uint64_t *random, stance_case *c)
         memset(c->position, 0, sizeof c->position);
         for (int i = 2; i < 5; i++)
             c->position[i] = uniform(random, -3, 3);
-        scene->gaps(scene, c->robot, c->position, gap);
+        biped()->gaps(biped(), c->robot, c->position, gap);
         const double lowest =
             fmin(c->contacts & 1 ? gap[0] : INFINITY, c->contacts & 2 ? gap[1] : INFINITY);
         c->position[1] = (chance(random, 0.5) ? 0 : uniform(random, 0, 1)) - lowest;
@@ -360,9 +332,8 @@ static stance_case wild_case(uint64_t *random, int *group, double *stored)
 static double kinetic(const stance_case *c, const double *position, const double *velocity)
 {
     static const double rest[STANCE_MAX_COORDINATES];
-    const stance_scene *scene = stance_scene_find("biped");
-    return scene->energy(scene, c->robot, position, velocity) -
-           scene->energy(scene, c->robot, position, rest);
+    return biped()->energy(biped(), c->robot, position, velocity) -
+           biped()->energy(biped(), c->robot, position, rest);
 }
 
 /* Energy at the start above the lowest that there is: a foot on the ground, all else below it. */
@@ -387,9 +358,8 @@ static bool is_finite(const stance_result *r)
  * done is what the energies tell. */
 static void check_single_step(const stance_case *c, const stance_result *r)
 {
-    const stance_scene *scene = stance_scene_find("biped");
-    const double before = scene->energy(scene, c->robot, c->position, c->velocity);
-    const double after = scene->energy(scene, c->robot, r->position, r->velocity);
+    const double before = biped()->energy(biped(), c->robot, c->position, c->velocity);
+    const double after = biped()->energy(biped(), c->robot, r->position, r->velocity);
     if (r->energy_gain <= 0 || r->steps != 1 || r->subdivided_steps > 0)
         return;
     const double work = after - before - r->energy_gain;
@@ -475,9 +445,8 @@ static void run_wild(const char *method, int batches, struct tally tally[GROUPS]
     }
 }
 
-static void implicit_steps(void **state)
+TEST(implicit_steps)
 {
-    (void)state;
     static const char *const methods[] = {"implicit", "midpoint"};
     const int batches = long_tests() ? 1000 : 5;
     for (int m = 0; m < 2; m++) {
@@ -515,27 +484,24 @@ static stance_case endless_case(double damping)
 
 /* However hard a case is, it ends, and says why: by the attempts of one step, or by the sum of its
  * evaluations, 1e7 and 1e3 a step. Without these bounds this test would not end. */
-static void work_is_bounded(void **state)
+TEST(work_is_bounded)
 {
-    (void)state;
     static const char *const methods[] = {"event-driven", "lagrange", "implicit", "midpoint"};
     stance_case c = endless_case(4.7e6);
-    stance_result r;
-    run_cases(kernel_of("capturing", NULL), &c, &r, 1);
+    stance_result r = run_one("capturing", &c);
     assert_true(r.status == STANCE_FAILED && r.failure == STANCE_FAILURE_WORK && r.steps == 0);
     for (int m = 0; m < 4; m++) /* they pass it, or say one of their reasons */
-        run_cases(kernel_of(methods[m], NULL), &c, &r, 1);
+        run_one(methods[m], &c);
     c = endless_case(1.12);
-    run_cases(kernel_of("capturing", NULL), &c, &r, 1);
+    r = run_one("capturing", &c);
     assert_true(r.status == STANCE_FAILED && r.failure == STANCE_FAILURE_WORK);
     assert_true(r.steps > 100 && (double)r.evaluations > 9e6 && (double)r.evaluations < 1.1e7);
 }
 
 /* Landings in steps of 10 ms: what is left of a velocity that the law forbids, of the stored state.
  */
-static void little_is_left_after_landings(void **state)
+TEST(little_is_left_after_landings)
 {
-    (void)state;
     static const char *const methods[] = {"implicit", "midpoint"};
     const int count = long_tests() ? 100000 : 20000;
     for (int m = 0; m < 2; m++) {
@@ -544,10 +510,9 @@ static void little_is_left_after_landings(void **state)
         double largest = 0;
         for (int i = 0; i < count; i++) {
             stance_case c;
-            stance_result r;
             random_case(&seed, i, 1e-2, &c);
             c.restitution = 0;
-            run_cases(kernel_of(methods[m], NULL), &c, &r, 1);
+            const stance_result r = run_one(methods[m], &c);
             if (r.status == STANCE_DONE) {
                 above += r.signorini_residual > 1e-3;
                 largest = fmax(largest, r.signorini_residual);
@@ -557,16 +522,4 @@ static void little_is_left_after_landings(void **state)
                       above, count, largest);
         assert_true(above < count / 1000);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(little_is_left_after_landings),
-        cmocka_unit_test(work_is_bounded),
-        cmocka_unit_test(explicit_steps),
-        cmocka_unit_test(sampled_controllers),
-        cmocka_unit_test(implicit_steps),
-    };
-    return cmocka_run_group_tests_name("limits", tests, NULL, NULL);
 }

@@ -2,6 +2,7 @@
  * wrong one is told.
  */
 #include "reading.h"
+#include "tests.h"
 
 #include "engine/mechanism.h"
 #include "runner/plan/resolve.h"
@@ -75,10 +76,9 @@ static double quantity(const struct scenario *s, const double *robot, const char
     return NAN;
 }
 
-static void description_becomes_a_scene(void **state)
+TEST(description_becomes_a_scene)
 {
     struct scenario s;
-    (void)state;
     read_good(&s, good, NULL, 0);
     const stance_mechanism *const m = s.scene->mechanism;
     assert_true(m && m->bodies == 6 && m->elements == 2 && m->points == 1 && m->actuators == 2);
@@ -109,7 +109,7 @@ static void description_becomes_a_scene(void **state)
 }
 
 /* A number that is set, swept, sampled; one that is swept alone is there, too, and varies. */
-static void numbers_vary(void **state)
+TEST(numbers_vary)
 {
     static const char *const sets[] = {
         "robot.bodies.thigh1.mass=7", "controller={kind: hold, kp: 1, kd: 1}",
@@ -118,7 +118,6 @@ static void numbers_vary(void **state)
         "{paths: [robot.bodies.thigh1.mass, robot.bodies.thigh2.mass], values: [[5, 6]]}]"};
     struct scenario s;
     struct scenario_values v;
-    (void)state;
     read_good(&s, good, sets, 3);
     assert_near(quantity(&s, s.base.robot, "bodies.thigh2.mass"), 7, 0); /* like thigh1 */
     assert_int_equal(s.cases, 6);
@@ -142,10 +141,9 @@ static void numbers_vary(void **state)
 }
 
 /* The text that files store makes the same scene, and the same text again. */
-static void text_reads_back(void **state)
+TEST(text_reads_back)
 {
     static const char *const texts[] = {good, cart};
-    (void)state;
     for (int i = 0; i < 2; i++) {
         struct scenario s, again;
         read_good(&s, texts[i], NULL, 0);
@@ -184,7 +182,7 @@ static void resolve(const char *text, const char *const *sets, size_t set_count,
 }
 
 /* The regulator of a cart and pole, by SciPy from the linear model in closed form. */
-static void designs_act_on_names(void **state)
+TEST(designs_act_on_names)
 {
     static const char *const sets[] = {
         "initial={equilibrium: {}}",
@@ -194,7 +192,6 @@ static void designs_act_on_names(void **state)
     static const double gain[4] = {-3.16227766, 49.53696991, -5.91436222, 12.84512014};
     struct resolved_design design;
     stance_case c;
-    (void)state;
     resolve(cart, sets, 3, &design, &c, NULL);
     for (int i = 0; i < 4; i++)
         assert_near(design.gain[0][i], gain[i], 1e-3);
@@ -204,7 +201,7 @@ static void designs_act_on_names(void **state)
 }
 
 /* On a flat foot the posture has a coordinate more than the linear model: no gain acts on it. */
-static void held_coordinates_have_no_gains(void **state)
+TEST(held_coordinates_have_no_gains)
 {
     static const char *const sets[] = {
         "robot.actuators={hip1: {body: thigh1}, knee1: {body: shank1}, hip2: {body: thigh2}, "
@@ -215,7 +212,6 @@ static void held_coordinates_have_no_gains(void **state)
     struct resolved_design design;
     stance_case c;
     int held = 0;
-    (void)state;
     resolve(good, sets, 4, &design, &c, NULL);
     for (int k = 0; k < 5; k++) {
         bool any = false;
@@ -230,7 +226,7 @@ static void held_coordinates_have_no_gains(void **state)
 }
 
 /* A target on both feet is reached on both. */
-static void targets_stand_on_both_feet(void **state)
+TEST(targets_stand_on_both_feet)
 {
     static const char *const sets[] = {
         "robot.actuators={hip1: {body: thigh1}, knee1: {body: shank1}, hip2: {body: thigh2}, "
@@ -247,7 +243,6 @@ static void targets_stand_on_both_feet(void **state)
     stance_message message;
     stance_case c;
     stance_result end;
-    (void)state;
     read_good(&s, good, sets, 6);
     assert_true(resolve_design(s.scene, &s.base, &design, &message));
     assert_true(resolve_case(&s, &s.base, &design, 0, &c, &message));
@@ -263,14 +258,13 @@ static void targets_stand_on_both_feet(void **state)
 }
 
 /* With initial.support a state stands on the ground; beyond a stop it does not begin. */
-static void states_stand(void **state)
+TEST(states_stand)
 {
     static const char *const sets[] = {"initial.support=[foot1]", "ground.contacts=[foot1]",
                                        "initial.state.shank1=0.1"};
     struct resolved_design design;
     struct scenario s;
     stance_case c;
-    (void)state;
     read_good(&s, good, sets, 2);
     stance_message message;
     double gap[STANCE_MAX_CONTACTS];
@@ -293,10 +287,9 @@ static const struct {
 };
 enum { WRONG = sizeof wrong / sizeof wrong[0] };
 
-static void wrong_ones_are_told(void **state)
+TEST(wrong_ones_are_told)
 {
     int failed = 0;
-    (void)state;
     for (int i = 0; i < WRONG; i++) {
         const bool own = strstr(good, wrong[i].from) != NULL;
         char *const text = edited(own ? good : cart, wrong[i].from, wrong[i].to);
@@ -319,7 +312,7 @@ static void wrong_ones_are_told(void **state)
 
 /* Pieces of the ground, of a described robot and of one that is carried: their numbers, which of
  * them an axis gives, and what the file keeps. */
-static void ground_becomes_plates(void **state)
+TEST(ground_becomes_plates)
 {
     static const char *const scene[] = {good, "stance: 1\nscene: rod\ninitial: {state: {}}\n"
                                               "stop: {time: 5}\n"};
@@ -330,7 +323,6 @@ static void ground_becomes_plates(void **state)
         "sweep.grid=[{path: ground.plates.late.footfall, values: [3, 5]}, "
         "{path: ground.plates.field.seed, from: 1, to: 3, count: 3}, "
         "{path: ground.plates.field.height, from: 0, to: 0.02, count: 2}]"};
-    (void)state;
     for (int k = 0; k < 2; k++) {
         struct scenario s, again;
         struct scenario_values v;
@@ -356,20 +348,4 @@ static void ground_becomes_plates(void **state)
         scenario_free(&again);
         scenario_free(&s);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(ground_becomes_plates),
-        cmocka_unit_test(description_becomes_a_scene),
-        cmocka_unit_test(numbers_vary),
-        cmocka_unit_test(text_reads_back),
-        cmocka_unit_test(designs_act_on_names),
-        cmocka_unit_test(held_coordinates_have_no_gains),
-        cmocka_unit_test(targets_stand_on_both_feet),
-        cmocka_unit_test(states_stand),
-        cmocka_unit_test(wrong_ones_are_told),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -4,6 +4,7 @@
  * The mistakes are in tests/mistakes.txt, whose head says how.
  */
 #include "reading.h"
+#include "tests.h"
 
 enum { TEXT = 4096, MISTAKES = 150 };
 
@@ -84,7 +85,7 @@ static int check(const char *base, const char *wrong, const char *right, const c
     return failed;
 }
 
-static void every_mistake_says_what_mends_it(void **state)
+TEST(every_mistake_says_what_mends_it)
 {
     static char base[TEXT], part[3][TEXT]; /* wrong, right, said */
     static const char kinds[] = "-+=";
@@ -92,7 +93,6 @@ static void every_mistake_says_what_mends_it(void **state)
     char line[1024];
     int mistakes = 0, failed = 0;
     bool in_base = false;
-    (void)state;
 
     assert_non_null(in);
     for (bool more = true; more;) {
@@ -120,10 +120,4 @@ static void every_mistake_says_what_mends_it(void **state)
     fclose(in);
     assert_int_equal(failed, 0);
     assert_true(mistakes >= MISTAKES);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(every_mistake_says_what_mends_it)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

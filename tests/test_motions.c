@@ -1,17 +1,20 @@
 /* test_motions - whole motions of mechanisms, by every method, against closed forms and against
  * equations of motion written by hand for each: see motions.h.
  */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
 #include "long.h"
 #include "motions.h"
 
 /* ---- smooth motions ---------------------------------------------------------------------------*/
+
+/* A robot comes to where its own equations bring it, from where it is, in T; and is freed. */
+static void follows(const char *what, struct robot *r, motion *f, double T)
+{
+    double x[MOST];
+    start(r, x);
+    integrate(f, 2 * r->scene->coordinates, 0, T, NULL, x);
+    arrives(what, r, T / 100, T, x, 0);
+    stance_scene_free(r->scene);
+}
 
 /* (I + m c^2 + J) q'' = -m g (cx cos q - cz sin q) - k (q - rest) - d q' */
 static void pendulum_rate(double t, const double *x, double *rate)
@@ -21,18 +24,13 @@ static void pendulum_rate(double t, const double *x, double *rate)
     rate[1] = (-1.3 * G * (0.1 * cos(x[0]) + 0.4 * sin(x[0])) - 2 * (x[0] - 0.5) - 0.3 * x[1]) /
               (0.2 + 1.3 * 0.17 + 0.1);
 }
-static void pendulum(void **state)
+TEST(pendulum)
 {
-    (void)state;
     struct robot r = robot_of("body arm hinge - 1.3 0.2 0.1 -0.4 0.3 1 stiffness 2 damping 0.3 "
                               "rest 0.5 armature 0.1\n",
                               0.2);
-    double x[MOST];
     r.c.position[0] = 2, r.c.velocity[0] = -1;
-    start(&r, x);
-    integrate(pendulum_rate, 2, 0, 1.6, NULL, x);
-    arrives("pendulum", &r, 0.016, 1.6, x, 0);
-    stance_scene_free(r.scene);
+    follows("pendulum", &r, pendulum_rate, 1.6);
 }
 
 /* A cart of mass M with a rotor J on a rail that rises by b, a pole (m, I, centre l up) on it,
@@ -52,28 +50,27 @@ static void cart_pole_rate(double t, const double *x, double *rate)
     rate[2] = (B * force + c * turn) / (A * B - c * c);
     rate[3] = (A * turn + c * force) / (A * B - c * c);
 }
-static void cart_pole(void **state)
+TEST(cart_pole)
 {
-    (void)state;
     struct robot r = robot_of("body cart slide - 1 0 0 0 0 0 axis 20 3 "
                               "armature 0.2\n"
                               "body pole hinge cart 0.3 0.02 0 0.5 0 0\n"
                               "actuator motor cart 1000\n",
                               -0.3);
-    double x[MOST];
     r.c.position[0] = 0.4, r.c.position[1] = 0.3, r.c.velocity[1] = -0.5;
-    start(&r, x);
     for (int i = 0; i < 4; i++)
         r.c.near.gain[0][i] = -cart_gain[i];
-    integrate(cart_pole_rate, 4, 0, 1.6, NULL, x);
-    arrives("cart-pole", &r, 0.016, 1.6, x, 0);
-    stance_scene_free(r.scene);
+    follows("cart-pole", &r, cart_pole_rate, 1.6);
 }
 
 /* Two arms that hang off their axes, q the absolute angles, springs, dampers, a rotor between them:
  * C = d.R(q2 - q1) k2, C' its derivative,
  *   (I1 + m1 k1^2 + m2 d^2 + J) q1'' + (C - J) q2'' + C' q2'^2 = t1 - t2 + gravity, and likewise.
  */
+#define TWO_ARMS                                                                                   \
+    "body upper hinge - 2 0.1 0.1 -0.2 1 2 stiffness 3 damping 0.2 rest 0.4\n"                     \
+    "body lower hinge upper 1 0.05 -0.1 -0.3 0.05 -0.5 stiffness 5 damping 0.1 rest -0.3 "         \
+    "armature 0.02\n"
 static const double arm1[2] = {0.1, -0.2}, elbow[2] = {0.05, -0.5}, arm2[2] = {-0.1, -0.3};
 static double two_arms_drive[2];
 static void two_arms_rate(double t, const double *x, double *rate)
@@ -96,43 +93,24 @@ static void two_arms_rate(double t, const double *x, double *rate)
     rate[2] = (A22 * f1 - A12 * f2) / det;
     rate[3] = (A11 * f2 - A12 * f1) / det - rate[2];
 }
-static void two_arms_arrive(const char *what, const char *motors)
+/* Free, and with motors that give what they have, one by its own limit, one by that of all. */
+TEST(two_arms)
 {
-    char text[512];
-    snprintf(text, sizeof text,
-             "body upper hinge - 2 0.1 0.1 -0.2 1 2 stiffness 3 damping 0.2 rest 0.4\n"
-             "body lower hinge upper 1 0.05 -0.1 -0.3 0.05 -0.5 stiffness 5 damping 0.1 rest -0.3 "
-             "armature 0.02\n%s",
-             motors);
-    struct robot r = robot_of(text, 0.1);
-    double x[MOST];
-    r.c.position[0] = 1, r.c.position[1] = -2, r.c.velocity[1] = 3;
-    r.c.near.feedforward[0] = 10, r.c.near.feedforward[1] = -10;
-    r.c.torque_limit = 2;
-    start(&r, x);
-    integrate(two_arms_rate, 4, 0, 0.8, NULL, x);
-    arrives(what, &r, 0.008, 0.8, x, 0);
-    stance_scene_free(r.scene);
-}
-static void two_arms(void **state)
-{
-    (void)state;
-    two_arms_drive[0] = two_arms_drive[1] = 0;
-    two_arms_arrive("two arms", "");
-}
-/* Motors that give what they have, one by its own limit, one by that of all. */
-static void two_arms_limited(void **state)
-{
-    (void)state;
-    two_arms_drive[0] = 0.7, two_arms_drive[1] = -2;
-    two_arms_arrive("two arms at their limits",
-                    "actuator shoulder upper 0.7\nactuator elbow lower 5\n");
+    for (int limited = 0; limited < 2; limited++) {
+        struct robot r = robot_of(
+            limited ? TWO_ARMS "actuator shoulder upper 0.7\nactuator elbow lower 5\n" : TWO_ARMS,
+            0.1);
+        two_arms_drive[0] = limited ? 0.7 : 0, two_arms_drive[1] = limited ? -2 : 0;
+        r.c.position[0] = 1, r.c.position[1] = -2, r.c.velocity[1] = 3;
+        r.c.near.feedforward[0] = 10, r.c.near.feedforward[1] = -10;
+        r.c.torque_limit = 2;
+        follows(limited ? "two arms at their limits" : "two arms", &r, two_arms_rate, 0.8);
+    }
 }
 
 /* Seven bodies in flight: momentum as gravity gives it, energy. */
-static void flight(void **state)
+TEST(flight)
 {
-    (void)state;
     struct robot r = robot_of("body trunk free - 4 0.3 0.1 0.2 0 0\n"
                               "body thigh1 hinge trunk 2 0.1 0 -0.2 0.1 -0.1\n"
                               "body shank1 hinge thigh1 1 0.05 0.05 -0.2 0 -0.4\n"
@@ -173,9 +151,8 @@ static void flight(void **state)
 
 /* Four motors make trunk and joints obey e'' + kd e' + kp e = 0, on one foot and in the air, by
  * methods that integrate between samples; e = c1 exp(p t) + c2 exp(q t). */
-static void four_motors_decouple(void **state)
+TEST(four_motors_decouple)
 {
-    (void)state;
     for (int stands = 0; stands < 2; stands++) {
         struct robot r = robot_of("body trunk free - 20 2.2 0 0.2 0 0\n"
                                   "body thigh1 hinge trunk 6.8 1.08 0 -0.163 0 0\n"
@@ -225,9 +202,8 @@ static void four_motors_decouple(void **state)
 }
 
 /* The acrobot: two links that swing wildly and lose nothing; over hours with STANCE_TEST_LONG. */
-static void acrobot_keeps_its_energy(void **state)
+TEST(acrobot_keeps_its_energy)
 {
-    (void)state;
     struct robot r = robot_of("body upper hinge - 1 0.083 0 -0.5 0 0\n"
                               "body lower hinge upper 1 0.33 0 -1 0 -1\n",
                               0);
@@ -300,9 +276,8 @@ static void disc_arrives(const char *what, const struct robot *r, double h, doub
 }
 
 #define DISC "body disc free - 2 0.01 0 0 0 0\ndisc rim disc 0 0 0.1\n"
-static void disc(void **state)
+TEST(disc)
 {
-    (void)state;
     static const struct {
         const char *what;
         double slope, friction, v, w;
@@ -329,9 +304,8 @@ static void disc(void **state)
 
 /* A disc that falls, spinning, and is thrown back with restitution e: the normal impulse is
  * (1 + e) m |vz|, the tangential one stops the slip or is mu times that. */
-static void disc_bounces(void **state)
+TEST(disc_bounces)
 {
-    (void)state;
     const double e = 0.6, T = 0.3, give = 1 / disc_mass + rim * rim / disc_inertia, fall = 0.1;
     for (int slips = 0; slips < 2; slips++) {
         struct robot r = robot_of(DISC, 0);
@@ -366,9 +340,8 @@ static struct robot box(double slope, double friction)
     r.c.position[2] = -slope;
     return r;
 }
-static void sole_stands(void **state)
+TEST(sole_stands)
 {
-    (void)state;
     const double s = 0.2, weight = box_mass * G;
     double force[2 * 2 * 2], place[6], speed[6], gap[4];
     for (const stance_method *const *m = stance_methods(); *m; m++) {
@@ -390,9 +363,8 @@ static void sole_stands(void **state)
         stance_scene_free(r.scene);
     }
 }
-static void sole_slides(void **state)
+TEST(sole_slides)
 {
-    (void)state;
     struct robot r = box(0.5, 0.2);
     const double T = 0.48, pull = G * (sin(0.5) - 0.2 * cos(0.5)), gone = pull * T * T / 2;
     double x[MOST] = {gone * cos(0.5),     -gone * sin(0.5),     -0.5,
@@ -400,9 +372,8 @@ static void sole_slides(void **state)
     arrives("a sole slides", &r, 0.016, T, x, 0);
     stance_scene_free(r.scene);
 }
-static void sole_tips(void **state)
+TEST(sole_tips)
 {
-    (void)state;
     const double s = 0.5, T = 0.4;
     struct robot r = box(s, 5);
     double q[MOST] = {-s, 0};
@@ -427,9 +398,8 @@ static double until_stop(const double *x)
 {
     return 0.3 - x[0];
 }
-static void stop_is_hit(void **state)
+TEST(stop_is_hit)
 {
-    (void)state;
     struct robot r = robot_of("body arm hinge - 1 0.1 0 -0.5 0 0 limits -inf 0.3\n", 0);
     double x[MOST] = {0};
     int hits = 0;
@@ -447,9 +417,8 @@ static void stop_is_hit(void **state)
 }
 /* An arm that falls onto its stop lies there, and has not fallen where the stop is as far as it may
  * turn. */
-static void stop_holds(void **state)
+TEST(stop_holds)
 {
-    (void)state;
     struct robot r = robot_of("body arm hinge - 1 0.03 0 0.3 0 0 turn 1 limits -1 1\n", 0);
     r.c.settle = true;
     for (const stance_method *const *m = stance_methods(); *m; m++)
@@ -466,9 +435,8 @@ static void stop_holds(void **state)
 
 /* Whatever the interval before it is, an impact is the contact law's and not the projection's; nor
  * does that stop what slides. */
-static void impacts_are_not_projected(void **state)
+TEST(impacts_are_not_projected)
 {
-    (void)state;
     struct robot r = robot_of("body foot free - 1 0.01 0 0.05 0 0 turn 1.5\n"
                               "body shank hinge foot 4 0.06 0 0.2 0 0.07 limits -0.8 0.8\n"
                               "body thigh hinge shank 40 3 0 0.4 0 0.42 limits 0 2.5\n"
@@ -491,9 +459,8 @@ static void impacts_are_not_projected(void **state)
 }
 
 /* Two bodies about one point in free flight: the stop shares out the moment of momentum. */
-static void stop_in_flight(void **state)
+TEST(stop_in_flight)
 {
-    (void)state;
     struct robot r = robot_of("body trunk free - 1 0.3 0 0 0 0\n"
                               "body leg hinge trunk 2 0.1 0 0 0 0 limits -0.5 0.5\n",
                               0);
@@ -511,9 +478,8 @@ static void stop_in_flight(void **state)
 }
 
 /* A cart runs down its rail to the end, and stays. */
-static void rail_ends(void **state)
+TEST(rail_ends)
 {
-    (void)state;
     for (const stance_method *const *m = stance_methods(); *m; m++) {
         struct robot r =
             robot_of("body cart slide - 2 0 0 0 0 0 axis 4 -3 armature 0.5 limits -1 1\n", 0.4);
@@ -546,9 +512,8 @@ static double until_foot(const double *x)
 {
     return wheel_slope + M_PI / 6 - (x[0] - strides * M_PI / 3);
 }
-static void rimless_wheel(void **state)
+TEST(rimless_wheel)
 {
-    (void)state;
     const double s = wheel_slope, T = 4;
     char text[1024] = "body wheel free - 1 0.2 0 0 0 0\n";
     for (int k = 0; k < 6; k++)
@@ -605,9 +570,8 @@ static struct robot pushed(const char *text, double from, double to, double T, d
     return r;
 }
 #define PUSHED "body block free - 1.5 0.1 0 0 0 0\nnamed hand block 0.3 0.2\nforce 8 -5 "
-static void push(void **state)
+TEST(push)
 {
-    (void)state;
     double x[MOST];
     for (int k = 0; k < 2; k++) {
         swinging = k ? 3.7 : 0;
@@ -620,9 +584,8 @@ static void push(void **state)
 }
 /* Ends inside steps: what is given is exact; where it acts is known to order 2 by methods whose
  * steps are all of one length, and to their own by the others. */
-static void push_inside_steps(void **state)
+TEST(push_inside_steps)
 {
-    (void)state;
     double x[MOST];
     struct robot r = pushed(PUSHED "0.1037 0.2531\n", 0.1037, 0.2531, 0.4, x);
     for (const stance_method *const *m = stance_methods(); *m; m++) {
@@ -648,36 +611,26 @@ static void push_inside_steps(void **state)
 
 /* A blow to a pendulum: I q' changes by the blow's moment; and to a disc that lies on the ground,
  * which sticks or slips as the friction of the blow itself decides. */
-static void blow_to_pendulum(void **state)
+static struct robot struck_pendulum(const char *text, double when, double *x)
 {
-    (void)state;
-    struct robot r = robot_of("body arm hinge - 1 0.1 0 -0.5 0 0\n"
-                              "named hand arm 0.1 -0.8\nimpulse 0.7 0.3 0.4\n",
-                              0);
-    double x[MOST];
+    struct robot r = robot_of(text, 0);
     r.c.position[0] = 0.4;
     start(&r, x);
-    integrate(stopped_rate, 2, 0, 0.4, NULL, x);
+    integrate(stopped_rate, 2, 0, when, NULL, x);
     const double px = 0.1 * cos(x[0]) + 0.8 * sin(x[0]), pz = 0.1 * sin(x[0]) - 0.8 * cos(x[0]);
     x[1] += (px * 0.3 - pz * 0.7) / 0.35;
-    integrate(stopped_rate, 2, 0.4, 1.2, NULL, x);
+    integrate(stopped_rate, 2, when, 1.2, NULL, x);
+    return r;
+}
+#define STRUCK "body arm hinge - 1 0.1 0 -0.5 0 0\nnamed hand arm 0.1 -0.8\nimpulse 0.7 0.3 "
+TEST(blow_to_pendulum)
+{
+    double x[MOST];
+    struct robot r = struck_pendulum(STRUCK "0.4\n", 0.4, x);
     arrives("blow to a pendulum", &r, 0.008, 1.2, x, 0);
     stance_scene_free(r.scene);
-}
-/* Inside a step: methods whose steps may be of any length have it at its instant. */
-static void blow_inside_steps(void **state)
-{
-    (void)state;
-    struct robot r = robot_of("body arm hinge - 1 0.1 0 -0.5 0 0\n"
-                              "named hand arm 0.1 -0.8\nimpulse 0.7 0.3 0.4013\n",
-                              0);
-    double x[MOST];
-    r.c.position[0] = 0.4;
-    start(&r, x);
-    integrate(stopped_rate, 2, 0, 0.4013, NULL, x);
-    const double px = 0.1 * cos(x[0]) + 0.8 * sin(x[0]), pz = 0.1 * sin(x[0]) - 0.8 * cos(x[0]);
-    x[1] += (px * 0.3 - pz * 0.7) / 0.35;
-    integrate(stopped_rate, 2, 0.4013, 1.2, NULL, x);
+    /* Inside a step: methods whose steps may be of any length have it at its instant. */
+    r = struck_pendulum(STRUCK "0.4013\n", 0.4013, x);
     for (const stance_method *const *m = stance_methods(); *m; m++) {
         const stance_result end = run(&r, *m, 0.002, 1.2);
         const double error = off(&r, &end, x);
@@ -686,9 +639,8 @@ static void blow_inside_steps(void **state)
     }
     stance_scene_free(r.scene);
 }
-static void blow_to_disc(void **state)
+TEST(blow_to_disc)
 {
-    (void)state;
     const double px = 3, pz = 2, y = 0.04;
     for (int slips = 0; slips < 2; slips++) {
         struct robot r = robot_of(DISC "named hand disc 0 0.04\nimpulse 3 -2 0.1\n", 0);
@@ -757,41 +709,9 @@ static void like_two(const char *sole, const char *two)
                       stance_methods()[number]->name, worst[number], given_up[number]);
     }
 }
-static void sole_is_two_points(void **state)
+TEST(sole_is_two_points)
 {
-    (void)state;
     like_two(BOX "sole foot box -0.15 0 0.1 0\n", BOX "point a box -0.15 0\npoint b box 0.1 0\n");
     like_two(BOX "sole foot box -0.15 0 0.1 0 0.05\n",
              BOX "disc heel box -0.15 0 0.05\ndisc toe box 0.1 0 0.05\n");
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(pendulum),
-        cmocka_unit_test(cart_pole),
-        cmocka_unit_test(two_arms),
-        cmocka_unit_test(two_arms_limited),
-        cmocka_unit_test(flight),
-        cmocka_unit_test(four_motors_decouple),
-        cmocka_unit_test(acrobot_keeps_its_energy),
-        cmocka_unit_test(disc),
-        cmocka_unit_test(disc_bounces),
-        cmocka_unit_test(sole_stands),
-        cmocka_unit_test(sole_slides),
-        cmocka_unit_test(sole_tips),
-        cmocka_unit_test(stop_is_hit),
-        cmocka_unit_test(stop_holds),
-        cmocka_unit_test(impacts_are_not_projected),
-        cmocka_unit_test(stop_in_flight),
-        cmocka_unit_test(rail_ends),
-        cmocka_unit_test(rimless_wheel),
-        cmocka_unit_test(push),
-        cmocka_unit_test(push_inside_steps),
-        cmocka_unit_test(blow_to_pendulum),
-        cmocka_unit_test(blow_inside_steps),
-        cmocka_unit_test(blow_to_disc),
-        cmocka_unit_test(sole_is_two_points),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,6 +2,7 @@
  * forms, against all directions, and against torques that steer a point just inside home. */
 #include "linear.h"
 #include "long.h"
+#include "tests.h"
 
 #include "runner/plan/design.h"
 
@@ -36,6 +37,18 @@ static void invert(int n, const double *T, double *inverse)
             inverse[i * n + j] = work[i * 2 * n + n + j];
 }
 
+/* out[rows][columns] = a[rows][inner] b[inner][columns], of neither of which it may be part. */
+static void multiply(int rows, int inner, int columns, const double *a, const double *b,
+                     double *out)
+{
+    for (int i = 0; i < rows; i++)
+        for (int j = 0; j < columns; j++) {
+            out[i * columns + j] = 0;
+            for (int k = 0; k < inner; k++)
+                out[i * columns + j] += a[i * inner + k] * b[k * columns + j];
+        }
+}
+
 /* A = T D T^-1 in a random basis T. */
 static void random_basis(uint64_t *seed, int n, const double *D, double *T, double *A)
 {
@@ -43,18 +56,8 @@ static void random_basis(uint64_t *seed, int n, const double *D, double *T, doub
     for (int i = 0; i < n * n; i++)
         T[i] = uniform(seed, -1, 1) + (i % (n + 1) == 0 ? 2 : 0);
     invert(n, T, inverse);
-    for (int i = 0; i < n; i++)
-        for (int j = 0; j < n; j++) {
-            product[i * n + j] = 0;
-            for (int k = 0; k < n; k++)
-                product[i * n + j] += T[i * n + k] * D[k * n + j];
-        }
-    for (int i = 0; i < n; i++)
-        for (int j = 0; j < n; j++) {
-            A[i * n + j] = 0;
-            for (int k = 0; k < n; k++)
-                A[i * n + j] += product[i * n + k] * inverse[k * n + j];
-        }
+    multiply(n, n, n, T, D, product);
+    multiply(n, n, n, product, inverse, A);
 }
 
 /* x' = A x + B u with the given eigenvalues (of pairs one) in a random basis, and random B. */
@@ -85,9 +88,8 @@ static stance_null_set *made(int n, int m, const double *A, const double *B, con
 }
 
 /* x' = a x + b u: |x| < b u / a, by sides. */
-static void one_mode(void **state)
+TEST(one_mode)
 {
-    (void)state;
     const double a = 2, b = 3, low = -1, high = 5;
     stance_null_set *const set = made(1, 1, &a, &b, &low, &high);
     double re[K], im[K];
@@ -103,9 +105,8 @@ static void one_mode(void **state)
 
 /* diag(l1, l2), one symmetric torque |u| <= 1, b = (1, 1): the boundary is traced by u switching
  * once at time T: z = -(1/l) (1 - 2 exp(-l T)) of each mode (Hu and Lin, section 2.4). */
-static void two_modes(void **state)
+TEST(two_modes)
 {
-    (void)state;
     const double A[4] = {3, 0, 0, 1.2}, B[2] = {1, 1}, low = -1, high = 1;
     stance_null_set *const set = made(2, 1, A, B, &low, &high);
     for (double T = 0; T < 6; T += 0.01) {
@@ -125,43 +126,26 @@ struct plant {
     double unstable[K * K]; /* projector on the modes that are, of rows from the right */
 };
 
-/* exp(-A t) by Taylor and squaring, times B. */
-static void flow(const struct plant *p, double t, double *out)
+/* E[n][n] = exp(-A t) by Taylor and squaring. */
+static void flow(const struct plant *p, double t, double E[K * K])
 {
     const int n = p->n, parts = 1 << 10;
-    double E[K * K], next[K * K];
-    for (int i = 0; i < n * n; i++)
-        E[i] = i % (n + 1) == 0;
-    double power[K * K];
-    memcpy(power, E, sizeof power);
-    double fact = 1;
+    double next[K * K], power[K * K], part[K * K], fact = 1;
+    for (int i = 0; i < n * n; i++) {
+        E[i] = power[i] = i % (n + 1) == 0;
+        part[i] = -p->A[i] * (t / parts);
+    }
     for (int order = 1; order < 14; order++) {
-        for (int i = 0; i < n; i++)
-            for (int j = 0; j < n; j++) {
-                next[i * n + j] = 0;
-                for (int k = 0; k < n; k++)
-                    next[i * n + j] -= power[i * n + k] * p->A[k * n + j] * (t / parts);
-            }
+        multiply(n, n, n, power, part, next);
         memcpy(power, next, sizeof power);
         fact *= order;
         for (int i = 0; i < n * n; i++)
             E[i] += power[i] / fact;
     }
     for (int s = 1; s < parts; s *= 2) {
-        for (int i = 0; i < n; i++)
-            for (int j = 0; j < n; j++) {
-                next[i * n + j] = 0;
-                for (int k = 0; k < n; k++)
-                    next[i * n + j] += E[i * n + k] * E[k * n + j];
-            }
-        memcpy(E, next, sizeof E);
+        multiply(n, n, n, E, E, next);
+        memcpy(E, next, sizeof next);
     }
-    for (int i = 0; i < n; i++)
-        for (int j = 0; j < p->m; j++) {
-            out[i * p->m + j] = 0;
-            for (int k = 0; k < n; k++)
-                out[i * p->m + j] += E[i * n + k] * p->B[k * p->m + j];
-        }
 }
 
 /* Of plants of unstable modes alone the set has an inside in x itself, with the support function
@@ -179,11 +163,7 @@ static double part_of(const struct plant *p, int j, const double s[3], double h)
 static void march(int n, const double *E, double *row)
 {
     double next[K];
-    for (int i = 0; i < n; i++) {
-        next[i] = 0;
-        for (int k = 0; k < n; k++)
-            next[i] += row[k] * E[k * n + i];
-    }
+    multiply(1, n, n, row, E, next);
     memcpy(row, next, sizeof(double) * (size_t)n);
 }
 
@@ -192,26 +172,16 @@ static double quadrature(const struct plant *p, const double *eta, double slowes
     enum { PARTS = 20000 };
     const double h = 36 / slowest / PARTS;
     double row[K], E[K * K], s[INPUTS][3], sum = 0;
-    for (int c = 0; c < p->n; c++) { /* columns of exp(-A h / 2) */
-        struct plant one = *p;
-        double column[K];
-        one.m = 1;
-        for (int i = 0; i < p->n; i++)
-            one.B[i] = i == c;
-        flow(&one, h / 2, column);
-        for (int i = 0; i < p->n; i++)
-            E[i * p->n + c] = column[i];
-    }
+    flow(p, h / 2, E);
     for (int i = 0; i < p->n; i++) /* rounding must not grow along the others */
         march(p->n, p->unstable, E + i * p->n);
     memcpy(row, eta, sizeof(double) * (size_t)p->n);
     for (int t = 0; t < PARTS; t++) {
         for (int part = 0; part < 3; part++) {
-            for (int j = 0; j < p->m; j++) {
-                s[j][part] = 0;
-                for (int i = 0; i < p->n; i++)
-                    s[j][part] -= row[i] * p->B[i * p->m + j];
-            }
+            double along[INPUTS];
+            multiply(1, p->n, p->m, row, p->B, along);
+            for (int j = 0; j < p->m; j++)
+                s[j][part] = -along[j];
             if (part < 2)
                 march(p->n, E, row);
         }
@@ -234,7 +204,7 @@ static void compare(uint64_t *seed, const struct plant *p, const stance_null_set
                     double slowest, int points, struct errors *e)
 {
     for (int k = 0; k < points; k++) {
-        double x[K], eta[K], along = 0;
+        double x[K], eta[K], along;
         for (int i = 0; i < p->n; i++)
             x[i] = uniform(seed, -1, 1);
         const double gauge = stance_null_set_gauge(set, x);
@@ -249,8 +219,7 @@ static void compare(uint64_t *seed, const struct plant *p, const stance_null_set
             eta[i] = (stance_null_set_gauge(set, high) - stance_null_set_gauge(set, low)) / 2e-5;
         }
         march(p->n, p->unstable, eta);
-        for (int i = 0; i < p->n; i++)
-            along += eta[i] * x[i];
+        multiply(1, p->n, 1, eta, x, &along);
         e->worst = fmax(e->worst, fabs(along / quadrature(p, eta, slowest) / gauge - 1));
         /* No direction gives more. */
         for (int d = 0; d < 2; d++) {
@@ -258,9 +227,7 @@ static void compare(uint64_t *seed, const struct plant *p, const stance_null_set
             for (int i = 0; i < p->n; i++)
                 other[i] = eta[i] * (1 + uniform(seed, -0.3, 0.3));
             march(p->n, p->unstable, other);
-            along = 0;
-            for (int i = 0; i < p->n; i++)
-                along += other[i] * x[i];
+            multiply(1, p->n, 1, other, x, &along);
             e->above = fmax(e->above, along / quadrature(p, other, slowest) / gauge - 1);
         }
         for (int i = 0; i < p->n; i++)
@@ -273,9 +240,8 @@ static void compare(uint64_t *seed, const struct plant *p, const stance_null_set
 }
 
 /* Of 1 to 5 modes, pairs among them. */
-static void support_is_the_integral(void **state)
+TEST(support_is_the_integral)
 {
-    (void)state;
     uint64_t seed = 3;
     struct errors e = {0};
     const int rounds = long_tests() ? 10 : 3;
@@ -328,10 +294,19 @@ static void project(struct plant *p, double shift)
         p->unstable[i] = 0.5 * (S[i] + (i % (n + 1) == 0));
 }
 
-/* Robots with random numbers, of one, two and three unstable modes beside others. */
-static void robots(void **state)
+static stance_null_set *design_set(struct design_report *r, const struct scenario *s,
+                                   const char *what)
 {
-    (void)state;
+    stance_message message = {""};
+    stance_null_set *const set = design_plant(r, s, &message) ? design_null_set(r, &message) : NULL;
+    if (!set)
+        fail_msg("%s: %s", what, message.text);
+    return set;
+}
+
+/* Robots with random numbers, of one, two and three unstable modes beside others. */
+TEST(robots)
+{
     static const struct {
         const char *file, *robot;
         int modes;
@@ -372,18 +347,13 @@ static void robots(void **state)
             char text[4][96];
             const char *sets[4];
             double re[K], im[K], slowest = INFINITY;
-            stance_message message = {""};
             for (int k = 0; k < 4; k++) {
                 snprintf(text[k], sizeof text[k], "%s=%.17g", kinds[kind].number[k].path,
                          kinds[kind].number[k].value * uniform(&seed, 0.7, 1.4));
                 sets[k] = text[k];
             }
             assert_true(scenario_read(&s, kinds[kind].file, NULL, sets, 4, stderr));
-            if (!design_plant(&r, &s, &message))
-                fail_msg("%s", message.text);
-            stance_null_set *const set = design_null_set(&r, &message);
-            if (!set)
-                fail_msg("%s", message.text);
+            stance_null_set *const set = design_set(&r, &s, kinds[kind].robot);
             assert_int_equal(stance_null_set_modes(set, re, im), kinds[kind].modes);
             for (int i = 0; i < kinds[kind].modes; i++)
                 slowest = fmin(slowest, re[i]);
@@ -471,9 +441,8 @@ static void random_modes(uint64_t *seed, struct modal *p)
 
 /* The set of all of it, in a random basis, against that of the unstable modes that torques reach
  * alone, wherever what they do not reach and what lasts is 0; and nothing elsewhere. */
-static void unreached_modes(void **state)
+TEST(unreached_modes)
 {
-    (void)state;
     uint64_t seed = 11;
     int lasting[KINDS] = {0}, decaying = 0;
     double worst = 0;
@@ -481,13 +450,15 @@ static void unreached_modes(void **state)
     for (int round = 0; round < rounds; round++) {
         struct modal p;
         double D[K * K], T[K * K], A[K * K], B[K * INPUTS], low[INPUTS], high[INPUTS];
-        double L[K * K], G[K * INPUTS], re[K], im[K];
+        double L[K * K], G[K * INPUTS], modal_B[K * INPUTS], re[K], im[K];
         int unstable[K], k = 0, wanted = 0;
         random_modes(&seed, &p);
         const int n = p.n, m = p.m;
         for (int i = 0; i < n; i++) {
             for (int j = 0; j < n; j++)
                 D[i * n + j] = p.D[i * K + j];
+            for (int j = 0; j < m; j++)
+                modal_B[i * m + j] = p.B[i * INPUTS + j];
             const bool lasts = !p.reached[i] && p.kind[i] < DECAYING;
             lasting[p.kind[i]] += lasts;
             decaying += !p.reached[i] && !lasts;
@@ -504,12 +475,7 @@ static void unreached_modes(void **state)
         for (int j = 0; j < m; j++)
             low[j] = -uniform(&seed, 0.2, 2), high[j] = uniform(&seed, 0.2, 2);
         random_basis(&seed, n, D, T, A);
-        for (int i = 0; i < n; i++)
-            for (int j = 0; j < m; j++) {
-                B[i * m + j] = 0;
-                for (int l = 0; l < n; l++)
-                    B[i * m + j] += T[i * n + l] * p.B[l * INPUTS + j];
-            }
+        multiply(n, n, m, T, modal_B, B);
         stance_null_set *const set = made(n, m, A, B, low, high), *const alone =
                                                                       made(k, m, L, G, low, high);
         assert_int_equal(stance_null_set_modes(set, NULL, NULL), k);
@@ -526,11 +492,7 @@ static void unreached_modes(void **state)
             }
             for (int i = 0; i < k; i++)
                 z[i] = modal[unstable[i]];
-            for (int i = 0; i < n; i++) {
-                x[i] = 0;
-                for (int j = 0; j < n; j++)
-                    x[i] += T[i * n + j] * modal[j];
-            }
+            multiply(n, n, 1, T, modal, x);
             const double gauge = stance_null_set_gauge(set, x);
             if (off > 1e-7) {
                 assert_true(isinf(gauge) && !stance_null_set_holds(set, x));
@@ -553,9 +515,8 @@ static void unreached_modes(void **state)
 
 /* How little of a torque counts: far less than what moves a robot, more than rounding. With x2 = 0
  * the boundary is where exp(-2 T) = 1/2 (two_modes): x1 = b (sqrt(2) - 1). */
-static void hardly_reached(void **state)
+TEST(hardly_reached)
 {
-    (void)state;
     const double A[4] = {1, 0, 0, 2}, low = -1, high = 1, x[2] = {1e-7, 0};
     for (int i = 0; i < 2; i++) {
         const double B[2] = {i ? 1e-14 : 1e-7, 1};
@@ -574,9 +535,8 @@ static void hardly_reached(void **state)
  * body moved as well, a cart so that the centre of mass stays where it was, a wheel so that its own
  * angle does; and the first with a speed. Without anything else to hold it the cart keeps place and
  * momentum of the centre of mass, with damping d the momentum + d times its place. */
-static void drifting_robots(void **state)
+TEST(drifting_robots)
 {
-    (void)state;
     static const struct {
         const char *what, *first, *parent;
         int poles, unreached;
@@ -611,7 +571,6 @@ static void drifting_robots(void **state)
         const int poles = robots[k].poles;
         const double off = 0.5 * 5 / (0.5 * 9.81 * 0.5);
         char text[1000];
-        stance_message message = {""};
         int used =
             snprintf(text, sizeof text, "stance: 1\nscene: mechanism\nrobot:\n  bodies:\n    %s}\n",
                      robots[k].first);
@@ -627,11 +586,7 @@ static void drifting_robots(void **state)
         snprintf(text + used, sizeof text - (size_t)used,
                  "initial: {equilibrium: {}}\ncontroller: {kind: none}\nstop: {time: 1}\n");
         assert_true(scenario_read(&s, "robot.yaml", text, NULL, 0, stderr));
-        if (!design_plant(&r, &s, &message))
-            fail_msg("%s: %s", robots[k].what, message.text);
-        stance_null_set *const set = design_null_set(&r, &message);
-        if (!set)
-            fail_msg("%s: %s", robots[k].what, message.text);
+        stance_null_set *const set = design_set(&r, &s, robots[k].what);
         assert_int_equal(stance_null_set_unreached(set, NULL, NULL), robots[k].unreached);
         assert_int_equal(stance_null_set_modes(set, NULL, NULL), poles);
         for (int at = 0; at < 3; at++) {
@@ -648,9 +603,8 @@ static void drifting_robots(void **state)
     }
 }
 
-static void refusals(void **state)
+TEST(refusals)
 {
-    (void)state;
     const double A[4] = {1, 0, 0, 2}, B[2] = {0, 1}, low = -1, high = 1, none = -INFINITY, up = 0.1;
     stance_null_set *set;
     stance_message message;
@@ -664,19 +618,4 @@ static void refusals(void **state)
     set = made(2, 1, calm, B, &low, &high);
     assert_true(stance_null_set_holds(set, x) && stance_null_set_gauge(set, x) == 0);
     stance_null_set_free(set);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(one_mode),
-        cmocka_unit_test(two_modes),
-        cmocka_unit_test(support_is_the_integral),
-        cmocka_unit_test(robots),
-        cmocka_unit_test(unreached_modes),
-        cmocka_unit_test(hardly_reached),
-        cmocka_unit_test(drifting_robots),
-        cmocka_unit_test(refusals),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

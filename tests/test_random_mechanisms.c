@@ -9,12 +9,6 @@
  *
  * The same holds on random plates; and on one plate that is raised a robot does what it does below.
  */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -22,6 +16,7 @@
 
 #include "long.h"
 #include "random_mechanism.h"
+#include "tests.h"
 
 enum { CASES = 100 };
 
@@ -158,19 +153,16 @@ static void hunt(const stance_method *method, int hinged, int sliding,
     assert_true(failed <= 1 + t.cases / 2000);
 }
 
-static void implicit(void **state)
+TEST(implicit)
 {
-    (void)state;
     hunt(stance_method_find("implicit"), trees_of(), trees_of(), NULL);
 }
-static void midpoint(void **state)
+TEST(midpoint)
 {
-    (void)state;
     hunt(stance_method_find("midpoint"), trees_of(), trees_of(), NULL);
 }
-static void capturing(void **state)
+TEST(capturing)
 {
-    (void)state;
     hunt(stance_method_find("capturing"), trees_of() / 4, trees_of() / 4, NULL);
 }
 
@@ -205,10 +197,9 @@ static void factors_of(int tree, const char *method, long *same, long *cases)
     stance_scene_free(rough);
 }
 
-static void factors(void **state)
+TEST(factors)
 {
     static const char *const method[] = {"implicit", "midpoint", "capturing", "lagrange"};
-    (void)state;
     for (size_t i = 0; i < sizeof method / sizeof *method; i++) {
         long same = 0, cases = 0;
         for (int tree = 0; tree < trees_of() / 10; tree++)
@@ -218,10 +209,9 @@ static void factors(void **state)
     }
 }
 
-static void plates(void **state)
+TEST(plates)
 {
     static const char *const method[] = {"implicit", "midpoint", "capturing"};
-    (void)state;
     for (size_t i = 0; i < sizeof method / sizeof *method; i++)
         hunt(stance_method_find(method[i]), trees_of() / 3, trees_of() / 5, lay_any);
 }
@@ -261,10 +251,9 @@ static void raised_by(const char *name, long *same, long *cases)
     }
 }
 
-static void raised(void **state)
+TEST(raised)
 {
     static const char *const method[] = {"implicit", "midpoint", "capturing", "lagrange"};
-    (void)state;
     for (size_t i = 0; i < sizeof method / sizeof *method; i++) {
         long same = 0, cases = 0;
         raised_by(method[i], &same, &cases);
@@ -274,13 +263,12 @@ static void raised(void **state)
 }
 
 /* Capturing and the reference make the same of cases on plates. */
-static void reference(void **state)
+TEST(reference)
 {
     static const char *const method[] = {"event-driven", "capturing"};
     static stance_case c[CASES];
     static stance_result r[2][CASES];
     long same = 0, cases = 0;
-    (void)state;
     for (int tree = 0; tree < trees_of(); tree++) {
         stance_scene *const scene = on_plates(random_scene(tree, 0.1), lay_any);
         for (int k = 0; k < 20; k++)
@@ -303,14 +291,4 @@ static void reference(void **state)
     }
     print_message("# on plates, capturing and event-driven: %ld of %ld the same\n", same, cases);
     assert_true(cases - same <= 1 + cases / 100);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(factors),   cmocka_unit_test(raised),   cmocka_unit_test(plates),
-        cmocka_unit_test(reference), cmocka_unit_test(implicit), cmocka_unit_test(midpoint),
-        cmocka_unit_test(capturing),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

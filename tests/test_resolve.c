@@ -1,5 +1,6 @@
 /* From the numbers of a scenario to a case: start, law, doe, and what is refused. */
 #include "support.h"
+#include "tests.h"
 
 #include "runner/plan/resolve.h"
 
@@ -85,9 +86,8 @@ static void assert_refused(const struct scenario_values *v, const char *text)
         fail_msg("message '%s' instead of '%s'", message.text, text);
 }
 
-static void balance(void **state)
+TEST(balance)
 {
-    (void)state;
     struct scenario_values v = balance_values();
     v.offset[2] = -0.02;
     v.offset[5 + 2] = 0.15;
@@ -106,9 +106,8 @@ static void balance(void **state)
 }
 
 /* Offsets of the translation come after the foot has been put down. */
-static void offsets_of_translation(void **state)
+TEST(offsets_of_translation)
 {
-    (void)state;
     struct scenario_values v = balance_values();
     const stance_case before = resolved(&v);
     v.offset[0] = 0.5;
@@ -133,9 +132,8 @@ static void offsets_of_translation(void **state)
     resolved(&v);
 }
 
-static void other_foot(void **state)
+TEST(other_foot)
 {
-    (void)state;
     struct scenario_values v = balance_values();
     v.support_foot = 2;
     v.contacts = 2;
@@ -152,9 +150,8 @@ static void other_foot(void **state)
 }
 
 /* Steps divide the sample interval and are never longer than asked for. */
-static void sampling(void **state)
+TEST(sampling)
 {
-    (void)state;
     const struct {
         double sample_time, step, stop;
         int64_t every, steps;
@@ -180,9 +177,8 @@ static void sampling(void **state)
     }
 }
 
-static void no_law(void **state)
+TEST(no_law)
 {
-    (void)state;
     struct scenario_values v = balance_values();
     v.law = law_index("none");
     const stance_case c = resolved(&v);
@@ -194,9 +190,8 @@ static void no_law(void **state)
     assert_true(!c.has_target && c.supports == 0 && c.settle);
 }
 
-static void hold_law(void **state)
+TEST(hold_law)
 {
-    (void)state;
     struct scenario_values v = balance_values();
     const double dropped[10] = {0, 1.5, -0.5, 0.9, -1, 2};
     v.law = law_index("hold");
@@ -227,9 +222,8 @@ static void hold_law(void **state)
 }
 
 /* Target, torque and gains come from the model, the start from the robot. */
-static void wrong_model(void **state)
+TEST(wrong_model)
 {
-    (void)state;
     struct scenario_values v = balance_values();
     const stance_case honest = resolved(&v);
     v.model[3] = 2.0; /* trunk_mass */
@@ -246,9 +240,8 @@ static void wrong_model(void **state)
                         sizeof consistent.near.target);
 }
 
-static void own_equilibrium_and_gains(void **state)
+TEST(own_equilibrium_and_gains)
 {
-    (void)state;
     struct scenario_values v = balance_values();
     v.design_point = (struct scenario_equilibrium){true, {0, 0, NAN}, 0};
     v.design = DESIGN_GAINS;
@@ -262,9 +255,8 @@ static void own_equilibrium_and_gains(void **state)
     assert_refused(&v, "12 finite gains are needed");
 }
 
-static void refusals(void **state)
+TEST(refusals)
 {
-    (void)state;
     struct scenario_values v = balance_values();
     v.equilibrium.given = false;
     assert_refused(&v, "an initial state is needed: initial.equilibrium or initial.state");
@@ -318,9 +310,8 @@ static void refusals(void **state)
 }
 
 /* The method's own tolerance unless one is given; what reads none is content without. */
-static void tolerance(void **state)
+TEST(tolerance)
 {
-    (void)state;
     struct scenario_values v = balance_values();
     for (v.method = 0; stance_methods()[v.method]; v.method++) {
         const double own = stance_methods()[v.method]->tolerance;
@@ -334,9 +325,8 @@ static void tolerance(void **state)
 }
 
 /* Scenes that nothing holds begin at a state. */
-static void scenes_that_move(void **state)
+TEST(scenes_that_move)
 {
-    (void)state;
     static const char *const names[] = {"ball", "block", "rod"};
     for (int k = 0; k < 3; k++) {
         const stance_scene *scene = stance_scene_find(names[k]);
@@ -364,9 +354,8 @@ static void scenes_that_move(void **state)
 }
 
 /* A case that failed leaves the same bits everywhere: nothing half done. */
-static void failed_design_is_clear(void **state)
+TEST(failed_design_is_clear)
 {
-    (void)state;
     struct scenario_values v = balance_values();
     struct resolved_design design, clear;
     stance_message message;
@@ -378,17 +367,4 @@ static void failed_design_is_clear(void **state)
     v.pole_re[1] = -4.6; /* three times */
     assert_false(resolve_design(stance_scene_find("biped"), &v, &design, &message));
     assert_memory_equal(&design, &clear, sizeof clear);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(balance),     cmocka_unit_test(offsets_of_translation),
-        cmocka_unit_test(other_foot),  cmocka_unit_test(sampling),
-        cmocka_unit_test(no_law),      cmocka_unit_test(hold_law),
-        cmocka_unit_test(wrong_model), cmocka_unit_test(own_equilibrium_and_gains),
-        cmocka_unit_test(refusals),    cmocka_unit_test(failed_design_is_clear),
-        cmocka_unit_test(tolerance),   cmocka_unit_test(scenes_that_move),
-    };
-    return cmocka_run_group_tests_name("resolve", tests, NULL, NULL);
 }

@@ -2,18 +2,9 @@
  * they say is held to the same case simulated on without settling, for ten times as long. */
 #include "long.h"
 #include "support.h"
+#include "tests.h"
 
 enum { SIDE = 48 };
-
-static stance_result run_one(const char *method, const stance_case *c)
-{
-    stance_result r;
-    run_cases(kernel_of(method, NULL), c, &r, 1);
-    if (r.status != STANCE_DONE)
-        print_message("# %s: failure %d after %.3f s\n", method, r.failure, r.end_time);
-    assert_int_equal(r.status, STANCE_DONE);
-    return r;
-}
 
 /* Outcomes of a map of starts around the equilibrium; those that come to rest must not fall later.
  */
@@ -46,9 +37,8 @@ static void map(const char *method, stance_case base, double tilt, double rate, 
 }
 
 /* The controller of one foot on both: what it leaves standing on both feet topples, slowly. */
-static void slow_is_not_at_rest(void **state)
+TEST(slow_is_not_at_rest)
 {
-    (void)state;
     static const char *const methods[] = {"implicit", "midpoint", "capturing"};
     for (int m = 0; m < 3; m++) {
         stance_case c = balance_case(0, 0);
@@ -74,16 +64,15 @@ static double critical_time(const stance_case *c, int delay)
 }
 
 /* A loop that samples so seldom that it is unstable stabilises nothing, however near it starts. */
-static void unstable_loops_stabilise_nothing(void **state)
+TEST(unstable_loops_stabilise_nothing)
 {
-    (void)state;
     for (int late = 0; late < 2; late++)
         for (int k = 0; k < 2; k++) {
             stance_case c = balance_case(1e-7, 0);
             const double critical = critical_time(&c, late);
             c.sample_every = (int64_t)lround((k ? 1.2 : 0.8) * critical / c.step);
             c.delay = late;
-            const stance_result r = run_one("implicit", &c);
+            const stance_result r = run_done("implicit", &c);
             print_message("# T = %.0f ms, delay %d: outcome %d\n", (double)c.sample_every, late,
                           r.outcome);
             assert_true((r.outcome == STANCE_STABILISED) == (k == 0));
@@ -105,22 +94,21 @@ static stance_case straddle(double kp, double tilt)
     c.steps = 20000;
     return c;
 }
-static void stiff_legs_rest(void **state)
+TEST(stiff_legs_rest)
 {
-    (void)state;
     static const char *const methods[] = {"implicit", "midpoint", "capturing", "lagrange",
                                           "event-driven"};
     for (int m = 0; m < 5; m++) {
         stance_case stiff = straddle(100, 0);
         stiff.tolerance = 1e-8;
-        const stance_result held = run_one(methods[m], &stiff);
+        const stance_result held = run_done(methods[m], &stiff);
         assert_int_equal(held.outcome, STANCE_RESTED);
         assert_true(held.end_time < 1);
         if (m > 2) /* these chatter */
             continue;
         stance_case weak = straddle(0, 1e-3);
         weak.tolerance = 1e-6;
-        const stance_result falls = run_one(methods[m], &weak);
+        const stance_result falls = run_done(methods[m], &weak);
         print_message("# %s: stiff %d after %.3f s, weak %d after %.3f s\n", methods[m],
                       held.outcome, held.end_time, falls.outcome, falls.end_time);
         assert_int_equal(falls.outcome, STANCE_FELL);
@@ -128,9 +116,8 @@ static void stiff_legs_rest(void **state)
 }
 
 /* A block that is pulled to and fro rests where the pull never reaches what friction holds. */
-static void pulled_blocks_rest_if_held(void **state)
+TEST(pulled_blocks_rest_if_held)
 {
-    (void)state;
     const stance_scene *const scene = stance_scene_find("block");
     static const double share[] = {0.9, 0.999, 1.001, 1.05, 1.2}; /* of what friction holds */
     for (int k = 0; k < 5; k++) {
@@ -299,9 +286,8 @@ static struct stay stay_of(const stance_kernel *kernel, stance_case *c, int coun
 }
 
 /* What rests does not move afterwards, and nearly all of what has stopped was said to rest. */
-static void soft_legs_rest_where_they_stay(void **state)
+TEST(soft_legs_rest_where_they_stay)
 {
-    (void)state;
     static const char *const methods[] = {"implicit", "midpoint"};
     const int count = long_tests() ? 20000 : 500;
     stance_case *const c = calloc((size_t)count, sizeof *c);
@@ -321,9 +307,8 @@ static void soft_legs_rest_where_they_stay(void **state)
 }
 
 /* The same with laws that are not linear about where it stands, and where the trunk sinks. */
-static void odd_laws_rest_where_they_stay(void **state)
+TEST(odd_laws_rest_where_they_stay)
 {
-    (void)state;
     static const char *const names[] = {"two laws", "ramps", "limits", "underground"};
     const int count = long_tests() ? 10000 : 200;
     stance_case *const c = calloc((size_t)count, sizeof *c);
@@ -342,9 +327,8 @@ static void odd_laws_rest_where_they_stay(void **state)
 }
 
 /* At e = 0.55 and 0.75 the steps of 1 ms end in bounces of micrometres, for ever: it lies still. */
-static void bounces_within_a_step_rest(void **state)
+TEST(bounces_within_a_step_rest)
 {
-    (void)state;
     const stance_scene *const scene = stance_scene_find("ball");
     for (int k = 0; k < 19; k++) {
         stance_case c = plain_case();
@@ -362,18 +346,4 @@ static void bounces_within_a_step_rest(void **state)
         run_cases(stance_kernel_find(scene, stance_method_find("midpoint"), NULL), &c, &r, 1);
         assert_int_equal(r.outcome, STANCE_RESTED);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(soft_legs_rest_where_they_stay),
-        cmocka_unit_test(odd_laws_rest_where_they_stay),
-        cmocka_unit_test(bounces_within_a_step_rest),
-        cmocka_unit_test(slow_is_not_at_rest),
-        cmocka_unit_test(unstable_loops_stabilise_nothing),
-        cmocka_unit_test(stiff_legs_rest),
-        cmocka_unit_test(pulled_blocks_rest_if_held),
-    };
-    return cmocka_run_group_tests_name("rest", tests, NULL, NULL);
 }

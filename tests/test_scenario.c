@@ -4,6 +4,7 @@
  */
 #include "long.h"
 #include "reading.h"
+#include "tests.h"
 
 #include "runner/scenario/schema.h"
 #include "runner/store/store.h"
@@ -132,14 +133,13 @@ static void check_numbers(const double *found, const double *wanted, size_t n)
             assert_near(found[i], wanted[i], 0);
 }
 
-static void every_key_is_read(void **state)
+TEST(every_key_is_read)
 {
     static const double robot[] = {0.5, 0.6, 1.5, 2, 5}, model[] = {0.51, NAN, NAN, NAN, 5.5};
     static const double offset[] = {1, 2, 0.1, 0.2, 0.3, 3, 4, 5, 6, 0.7};
     static const double re[] = {-3, -3.3, -4, -5, -4, -4.6}, im[] = {0, 0, 1.5, 0, -1.5, 0};
     static const double start[] = {-0.41, 0.5, NAN}, target[] = {-0.4, NAN, 0.8};
     struct scenario s;
-    (void)state;
     read_good(&s, full, NULL, 0);
     const struct scenario_values *v = &s.base;
 
@@ -188,10 +188,9 @@ static void every_key_is_read(void **state)
     scenario_free(&s);
 }
 
-static void defaults_hold(void **state)
+TEST(defaults_hold)
 {
     struct scenario s;
-    (void)state;
     read_good(&s,
               "stance: 1\nscene: biped\ninitial: {equilibrium: {q1: 0.5, q2: 1}}\n"
               "stop: {time: 2}\n",
@@ -258,13 +257,12 @@ static void defaults_hold(void **state)
     scenario_free(&s);
 }
 
-static void axes_make_cases(void **state)
+TEST(axes_make_cases)
 {
     struct scenario s;
     struct scenario_values v;
     char text[64];
     uint64_t index = 0;
-    (void)state;
     read_good(&s, full, NULL, 0);
     assert_int_equal(s.axes, 5);
     assert_int_equal(s.cases, 4 * 3 * 2 * 3);
@@ -325,7 +323,7 @@ static void axes_make_cases(void **state)
 }
 
 /* Scenes without controller: their own keys and defaults, and no designs. */
-static void other_scenes_are_read(void **state)
+TEST(other_scenes_are_read)
 {
     static const struct {
         const char *text;
@@ -349,7 +347,6 @@ static void other_scenes_are_read(void **state)
     };
     struct scenario s;
     struct scenario_values v;
-    (void)state;
     read_good(&s, bounces, NULL, 0);
     assert_ptr_equal(s.scene, stance_scene_find("ball"));
     assert_int_equal(s.base.contacts, 1);
@@ -374,13 +371,12 @@ static void other_scenes_are_read(void **state)
 }
 
 /* What only a sweep gives counts as given. */
-static void swept_fields_count_as_given(void **state)
+TEST(swept_fields_count_as_given)
 {
     struct scenario s;
     static const char *const design[] = {
         "controller.poles=[-1, -2, -3, -4, -5, -6]",
         "sweep.grid=[{path: controller.design, values: [gains, place]}]"};
-    (void)state;
     read_good(&s,
               "stance: 1\nscene: biped\ninitial: {equilibrium: {theta: 0.1}}\n"
               "controller: {kind: hold, kd: 1}\nsweep:\n  grid:\n"
@@ -422,13 +418,12 @@ static void same_scenario(const struct scenario *a, const struct scenario *b)
     assert_string_equal(a->text, b->text);
 }
 
-static void resolved_text_reads_back(void **state)
+TEST(resolved_text_reads_back)
 {
     static const char *const sets[] = {"title=\"caf\\u00e9 \\\"q\\\" \\\\ : # \\u2028\"",
                                        "stop.time=3.25", "ground.restitution=0.25", "seed=5"};
     DIR *directory = opendir("scenarios");
     struct scenario a, b;
-    (void)state;
     for (size_t i = 0; i < GOOD_TEXTS; i++) {
         for (size_t n = 0; n <= 4; n += 4) {
             read_good(&a, good_texts[i], sets, n);
@@ -455,10 +450,9 @@ static void resolved_text_reads_back(void **state)
 }
 
 /* Order and layout of the file do not matter, nor where a value comes from. */
-static void resolved_text_is_canonical(void **state)
+TEST(resolved_text_is_canonical)
 {
     struct scenario a, b;
-    (void)state;
     read_good(&a, places, (const char *[]){"ground.friction=0.5", "method.step=0.002"}, 2);
     read_good(&b,
               "# the same\nscene:   biped\nground: {friction: &f 0.5}\nstop:\n    time: 8\n"
@@ -474,10 +468,9 @@ static void resolved_text_is_canonical(void **state)
 
 /* ---- --set ---------------------------------------------------------------------------------- */
 
-static void sets_edit(void **state)
+TEST(sets_edit)
 {
     struct scenario s;
-    (void)state;
     read_good(&s, full,
               (const char *[]){"sweep.grid[0].count=7", "controller.poles[0]=-3.1",
                                "sweep.grid[2]={path: ground.restitution, values: [0]}",
@@ -497,10 +490,9 @@ static void sets_edit(void **state)
 }
 
 /* Long axes of numbers are refined, words and short lists are not. */
-static void refinement(void **state)
+TEST(refinement)
 {
     struct scenario s;
-    (void)state;
     read_good(&s, full, NULL, 0);
     assert_false(s.refine.given);
     scenario_free(&s);
@@ -519,7 +511,7 @@ static void refinement(void **state)
     }
 }
 
-static void bad_sets_are_refused(void **state)
+TEST(bad_sets_are_refused)
 {
     static const char *const wanted[][2] = {
         {"stop.time=x", "stop.time: expected a number, found 'x'"},
@@ -543,7 +535,6 @@ static void bad_sets_are_refused(void **state)
          "stop.time: 0 is out of range (more than 0, at most 1e+09 s)"},
     };
     char line[1024];
-    (void)state;
     for (size_t i = 0; i < sizeof wanted / sizeof wanted[0]; i++) {
         snprintf(line, sizeof line, "--set %s: %s\n", wanted[i][0], wanted[i][1]);
         refused(places, &wanted[i][0], 1, line);
@@ -552,11 +543,10 @@ static void bad_sets_are_refused(void **state)
 
 /* ---- bad scenarios -------------------------------------------------------------------------- */
 
-static void bad_files_lead_to_one_line(void **state)
+TEST(bad_files_lead_to_one_line)
 {
     DIR *directory = opendir("tests/bad");
     int files = 0;
-    (void)state;
     assert_non_null(directory);
     for (struct dirent *entry; (entry = readdir(directory)) != NULL;) {
         char file[512], head[1024], wanted[2048];
@@ -577,10 +567,9 @@ static void bad_files_lead_to_one_line(void **state)
     assert_true(files >= 70);
 }
 
-static void unreadable_files_lead_to_one_line(void **state)
+TEST(unreadable_files_lead_to_one_line)
 {
     struct scenario s;
-    (void)state;
     assert_false(read_as(&s, "tests/bad/absent.yaml", NULL, NULL, 0));
     assert_string_equal(errors, "tests/bad/absent.yaml: No such file or directory\n");
     assert_false(read_as(&s, "tests/bad", NULL, NULL, 0));
@@ -600,13 +589,12 @@ static void unreadable_files_lead_to_one_line(void **state)
 }
 
 /* All errors, in order of position, those of --set last; at most 20. */
-static void several_errors_are_sorted(void **state)
+TEST(several_errors_are_sorted)
 {
     char text[4096] = "stance: 1\nscene: biped\n"
                       "stop: {time: soon, fall_height: 2}\n"
                       "initial: {state: {z: 1, x: y}}\n"
                       "ground: {friction: 11, grip: 1}\n";
-    (void)state;
     refused(text, (const char *[]){"method.step=1", "seed=-1"}, 2,
             "bad.yaml:3:14: stop.time: expected a number, found 'soon'\n"
             "bad.yaml:3:33: stop.fall_height: 2 is out of range (0 ... 1)\n"
@@ -699,12 +687,11 @@ static void set_and_sweep(const struct scenario_field *field, uint64_t *random)
     }
 }
 
-static void every_field_can_be_set_and_swept(void **state)
+TEST(every_field_can_be_set_and_swept)
 {
     struct schema *schema = malloc(sizeof *schema);
     uint64_t random = 1;
     int fields = 0;
-    (void)state;
     assert_non_null(schema);
     assert_true(schema_build(schema, stance_scene_find("biped"), NULL, false));
     for (int round = 0; round < 20; round++) {
@@ -750,14 +737,13 @@ static void damage(char *text, size_t size, uint64_t *random)
 }
 
 /* Whatever becomes of good scenarios, nothing crashes, and what is accepted reads back. */
-static void damaged_text_is_survived(void **state)
+TEST(damaged_text_is_survived)
 {
     static const char *const sets[] = {"sweep.grid[0].count=2", "controller.poles[2]=-3+1.5i",
                                        "ground={friction: 0.5, contacts: [foot1]}", "seed=1"};
     const long rounds = long_tests() ? 200000 : 20000;
     uint64_t random = 7;
     char text[4096], set[256];
-    (void)state;
     for (long round = 0; round < rounds; round++) {
         const char *const edits[] = {set};
         struct scenario a, b;
@@ -775,26 +761,4 @@ static void damaged_text_is_survived(void **state)
                         strncmp(errors, "--set ", 6) == 0);
         }
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_key_is_read),
-        cmocka_unit_test(defaults_hold),
-        cmocka_unit_test(axes_make_cases),
-        cmocka_unit_test(other_scenes_are_read),
-        cmocka_unit_test(swept_fields_count_as_given),
-        cmocka_unit_test(resolved_text_reads_back),
-        cmocka_unit_test(resolved_text_is_canonical),
-        cmocka_unit_test(sets_edit),
-        cmocka_unit_test(refinement),
-        cmocka_unit_test(bad_sets_are_refused),
-        cmocka_unit_test(bad_files_lead_to_one_line),
-        cmocka_unit_test(unreadable_files_lead_to_one_line),
-        cmocka_unit_test(several_errors_are_sorted),
-        cmocka_unit_test(every_field_can_be_set_and_swept),
-        cmocka_unit_test(damaged_text_is_survived),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

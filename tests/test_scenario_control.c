@@ -1,6 +1,7 @@
 /* Scenarios of linear controllers, from the text to the gains: which axes make designs of their
  * own, which gains a design leads to, and what is said where there is none. */
 #include "reading.h"
+#include "tests.h"
 
 #include "runner/plan/design.h"
 
@@ -16,7 +17,7 @@ static const char *designed(const char *keys)
 }
 
 /* Gains for the sampled model depend on the sample time, others do not. */
-static void sample_time_may_be_design(void **state)
+TEST(sample_time_may_be_design)
 {
     static const char axis[] =
         "sweep.grid=[{path: controller.sample_time, from: 0.001, to: 0.01, count: 3}]";
@@ -24,7 +25,6 @@ static void sample_time_may_be_design(void **state)
         "sweep.grid=[{path: controller.sample_time, from: 0.001, to: 0.01, count: 3}, "
         "{path: controller.design_time, values: [continuous, sampled]}]";
     struct scenario s;
-    (void)state;
     read_good(&s, designed("design: lqr, design_time: sampled, sample_time: 0.002"),
               (const char *[]){axis}, 1);
     assert_true(s.axis[0].design);
@@ -78,7 +78,7 @@ static void leads_to(const struct scenario *s, uint64_t index, const double *K, 
     assert_int_equal(c.delay, delay);
 }
 
-static void every_design_reaches_the_case(void **state)
+TEST(every_design_reaches_the_case)
 {
     static const char axes[] = "sweep.grid=[{path: controller.sample_time, values: [0.01, 0.02]}, "
                                "{path: controller.delay, values: [0, 1]}]";
@@ -86,7 +86,6 @@ static void every_design_reaches_the_case(void **state)
     const char *const sets[] = {axes};
     double A[N * N], B[N * M], K[M * N];
     struct scenario s;
-    (void)state;
     for (int k = 0; k < 6; k++) {
         char keys[256];
         snprintf(keys, sizeof keys, "design: %s, design_time: %s, %s",
@@ -131,13 +130,12 @@ static void impossible(const char *keys, const char *const *sets, size_t count, 
     scenario_free(&s);
 }
 
-static void impossible_designs(void **state)
+TEST(impossible_designs)
 {
     /* Both legs level, the trunk long: see test_design.c. */
     static const char *const level[] = {
         "robot={leg_length: 0.5, trunk_length: 2, foot_mass: 2, trunk_mass: 4, hip_mass: 4}",
         "initial.equilibrium={q1: 2.0943951023931953, q2: 2.0943951023931953}"};
-    (void)state;
     impossible("poles: [-3, -3.3, -3.6, -3.9, -4.2, -4.6]", level, 2,
                "initial.equilibrium: the pair (A, B) is not controllable: no input reaches the "
                "mode with eigenvalue "
@@ -228,11 +226,10 @@ static void check_set(const struct design_report *r)
     assert_true(most > 0.99);
 }
 
-static void sets_keep_within_bounds(void **state)
+TEST(sets_keep_within_bounds)
 {
     struct scenario s;
     char name[64];
-    (void)state;
     check_set(report(&s, "poles: [-3, -3.3, -3.6, -3.9, -4.2, -4.6], torque_limit: 10"));
     scenario_free(&s);
     const struct design_report *r =
@@ -251,9 +248,8 @@ static void sets_keep_within_bounds(void **state)
 }
 
 /* One sample after the other, by hand: growth as the report's spectral radius says. */
-static void sampled_loop_grows_as_reported(void **state)
+TEST(sampled_loop_grows_as_reported)
 {
-    (void)state;
     for (int delay = 0; delay < 4; delay++) {
         struct scenario s;
         char keys[128];
@@ -295,16 +291,4 @@ static void sampled_loop_grows_as_reported(void **state)
         assert_true(r->set.exists == (r->stable && !delay));
         scenario_free(&s);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(sample_time_may_be_design),
-        cmocka_unit_test(every_design_reaches_the_case),
-        cmocka_unit_test(impossible_designs),
-        cmocka_unit_test(sets_keep_within_bounds),
-        cmocka_unit_test(sampled_loop_grows_as_reported),
-    };
-    return cmocka_run_group_tests_name("scenario_control", tests, NULL, NULL);
 }

@@ -3,6 +3,7 @@
  */
 #include "runner/base/words.h"
 #include "support.h"
+#include "tests.h"
 
 #include "runner/base/command.h"
 #include "runner/scenario/schema_mechanism.h"
@@ -59,9 +60,8 @@ static const char *section_of(const char *scene)
     return NULL;
 }
 
-static void every_path_is_described(void **state)
+TEST(every_path_is_described)
 {
-    (void)state;
     for (int k = 0; stance_scenes()[k]; k++) {
         struct schema *schema = built_schema(stance_scenes()[k]);
         char head[64], first[32];
@@ -87,9 +87,8 @@ static void every_path_is_described(void **state)
 
 /* Names of a robot of one's own are those of the pattern; what several scenes have alike is said
  * once. */
-static void own_names_are_described(void **state)
+TEST(own_names_are_described)
 {
-    (void)state;
     static const struct {
         const char *path, *begins;
     } paths[] = {
@@ -115,9 +114,8 @@ static void own_names_are_described(void **state)
 }
 
 /* A scene's own keys are described for every scene that has them, and for no other. */
-static void scenes_have_their_own_keys(void **state)
+TEST(scenes_have_their_own_keys)
 {
-    (void)state;
     assert_true(describe("robot", false));
     assert_non_null(strstr(described, "scene: biped\n"));
     assert_non_null(strstr(described, "Keys: leg_length, "));
@@ -143,9 +141,8 @@ static void scenes_have_their_own_keys(void **state)
 }
 
 /* What reads method.tolerance is named, with what it reads by default. */
-static void tolerance_names_its_methods(void **state)
+TEST(tolerance_names_its_methods)
 {
-    (void)state;
     assert_true(describe("method.tolerance", false));
     assert_non_null(strstr(described, "default: the method's own"));
     for (int i = 0; described[i]; i++)
@@ -233,10 +230,9 @@ static void check_scene_schema(json_t *root, const stance_scene *scene)
     free(schema);
 }
 
-static void schema_agrees_with_the_table(void **state)
+TEST(schema_agrees_with_the_table)
 {
     json_error_t problem;
-    (void)state;
     assert_true(describe(NULL, true));
     json_t *root = json_loads(described, JSON_REJECT_DUPLICATES, &problem);
     json_t *scenes = json_object_get(root, "oneOf");
@@ -248,27 +244,13 @@ static void schema_agrees_with_the_table(void **state)
 
 /* ---- options and words ---------------------------------------------------------------------- */
 
-static void nearest_words(void **state)
+TEST(nearest_words)
 {
     static const char *const known[] = {"friction", "restitution", "contacts", "x"};
-    (void)state;
     assert_string_equal(nearest_word("fricton", known, 4), "friction");
     assert_string_equal(nearest_word("rfiction", known, 4), "friction");
     assert_string_equal(nearest_word("restituti", known, 4), "restitution");
     assert_null(nearest_word("gravity", known, 4));
     assert_null(nearest_word("z", known, 4));
     assert_null(nearest_word("", known, 4));
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_path_is_described),
-        cmocka_unit_test(own_names_are_described),
-        cmocka_unit_test(scenes_have_their_own_keys),
-        cmocka_unit_test(tolerance_names_its_methods),
-        cmocka_unit_test(schema_agrees_with_the_table),
-        cmocka_unit_test(nearest_words),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

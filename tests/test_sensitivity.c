@@ -1,17 +1,12 @@
 /* test_sensitivity.c - sensitivity indices against functions whose indices are known in closed
  * form, how often their intervals hold these, and tables of comma-separated values. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "long.h"
+#include "tests.h"
 
 #include "analysis/sensitivity/sensitivity.h"
 #include "runner/scenario/doe.h"
@@ -292,12 +287,11 @@ static struct tally cover(enum doe_method method, const struct function *f, uint
 
 /* Intervals of independent and of a design's own blocks hold the truth as often as they say, index
  * by index, whatever the response is; indices of factors that do nothing are exact. */
-static void test_coverage(void **state)
+TEST(test_coverage)
 {
     const bool patient = long_tests();
     const int seeds = patient ? 2000 : 1000;
     const double slack = 3.5 * sqrt(0.95 * 0.05 / seeds);
-    (void)state;
     for (size_t f = 0; f < (patient ? FUNCTIONS : 1); f++) {
         const struct function *own = &functions[f];
         for (int independent = 0; independent < 2; independent++) {
@@ -326,11 +320,10 @@ static double pair(size_t f, const double *first, const double *total, size_t i,
 }
 
 /* The sum of the first-order indices, and indices of second order. */
-static void test_coverage_of_sums_and_pairs(void **state)
+TEST(test_coverage_of_sums_and_pairs)
 {
     enum { SEEDS = 1000, BLOCKS = 256 };
     const double slack = 3.5 * sqrt(0.95 * 0.05 / SEEDS);
-    (void)state;
     for (size_t f = 0; f < (long_tests() ? FUNCTIONS : 1); f++) {
         const struct function *own = &functions[f];
         const size_t k = own->factors;
@@ -360,12 +353,11 @@ static void test_coverage_of_sums_and_pairs(void **state)
 
 /* First-order indices from bins, of independent points and Latin hypercubes from 93 % on; those of
  * a Sobol' sequence are conservative. */
-static void test_coverage_of_bins(void **state)
+TEST(test_coverage_of_bins)
 {
     const bool patient = long_tests();
     const int seeds = patient ? 1000 : 200;
     const double slack = 3.5 * sqrt(0.95 * 0.05 / seeds);
-    (void)state;
     for (size_t f = 0; f < (patient ? FUNCTIONS : 1); f++) {
         for (int m = 0; m < 3; m++) {
             const enum doe_method method = (enum doe_method)m; /* random, lhs, sobol */
@@ -379,14 +371,13 @@ static void test_coverage_of_bins(void **state)
 }
 
 /* Means of effects of 20 and of 10 trajectories; what they are of a few thousand is the truth. */
-static void test_coverage_of_effects(void **state)
+TEST(test_coverage_of_effects)
 {
     enum { TRUTHS = 20000 };
     const int seeds = long_tests() ? 4000 : 200;
     const double slack = 3.5 * sqrt(0.95 * 0.05 / seeds);
     const struct function *own = &functions[0];
     struct sensitivity truth;
-    (void)state;
     struct data all = make(DOE_MORRIS, own, TRUTHS, 99, false, false);
     analyse(&truth, &all, &usual);
     for (uint64_t n = 10; n <= (long_tests() ? 40 : 10); n *= 2) {
@@ -413,10 +404,9 @@ static void test_coverage_of_effects(void **state)
 
 /* ---- single designs ----------------------------------------------------------------------- */
 
-static void test_indices(void **state)
+TEST(test_indices)
 {
     double first[MOST], total[MOST];
-    (void)state;
     for (size_t f = 0; f < SMOOTH; f++) {
         struct sensitivity s;
         struct data d = make(DOE_SALTELLI, &functions[f], 4096, 3, false, false);
@@ -438,10 +428,9 @@ static void test_indices(void **state)
 
 /* What factors share two at a time: of Ishigami's function 1 and 3 alone, of the g-function
  * V1 V2 / V and so on. */
-static void test_pairs(void **state)
+TEST(test_pairs)
 {
     double first[MOST], total[MOST];
-    (void)state;
     for (size_t f = 0; f < SMOOTH; f++) {
         struct sensitivity s;
         struct data d = make(DOE_SALTELLI, &functions[f], 2048, 5, true, false);
@@ -462,11 +451,10 @@ static void test_pairs(void **state)
 
 /* Indices do not depend on the response's zero and unit; nor does anything on the order of calls.
  */
-static void test_units(void **state)
+TEST(test_units)
 {
     struct sensitivity s, other;
     struct data d = make(DOE_SALTELLI, &functions[0], 128, 2, true, false);
-    (void)state;
     analyse(&s, &d, &usual);
     for (size_t i = 0; i < d.points; i++)
         d.y[i] = 1e6 - 1e-3 * d.y[i];
@@ -490,12 +478,11 @@ static double linear(const double *u)
 }
 static const struct function straight = {"linear", 4, linear, NULL};
 
-static void test_morris(void **state)
+TEST(test_morris)
 {
     static const double slopes[4] = {2, -5, 0, 0.5};
     struct sensitivity s;
     struct data d = make(DOE_MORRIS, &straight, 10, 1, false, false);
-    (void)state;
     analyse(&s, &d, &usual);
     for (size_t j = 0; j < 4; j++) {
         assert_float_equal(sensitivity_weight(&s, j), fabs(slopes[j]), 1e-12);
@@ -522,12 +509,11 @@ static void test_morris(void **state)
 
 /* A missing response is as if its block had never been: here one in each of the sequences, so that
  * the others keep theirs. */
-static void test_missing(void **state)
+TEST(test_missing)
 {
     enum { BLOCK = 5, GONE = DOE_REPLICATES };
     struct sensitivity s, other;
     struct data d = make(DOE_SALTELLI, &functions[0], 5 * GONE, 4, false, false);
-    (void)state;
     for (size_t i = 0; i < GONE; i++)
         d.y[(GONE + i) * BLOCK + i % BLOCK] = NAN;
     analyse(&s, &d, &usual);
@@ -542,12 +528,11 @@ static void test_missing(void **state)
 }
 
 /* Factors of few values: their bins are the values, in whatever numbers of points. */
-static void test_listed(void **state)
+TEST(test_listed)
 {
     enum { N = 400 };
     double y[N], u[2 * N], first = 0;
     struct sensitivity s;
-    (void)state;
     for (size_t i = 0; i < N; i++) {
         u[2 * i] = i % 3 == 2;
         u[2 * i + 1] = (double)(i * 7 % N);
@@ -564,11 +549,10 @@ static void test_listed(void **state)
 }
 
 /* Nothing to say: no number rather than a wrong one, and no crash. */
-static void test_nothing(void **state)
+TEST(test_nothing)
 {
     double y[24], u[24 * 2] = {0};
     struct sensitivity s;
-    (void)state;
     for (size_t i = 0; i < 24; i++)
         y[i] = 0.5;
     assert_true(sensitivity_sobol(&s, y, 6, 2, false, 0.95));
@@ -588,22 +572,4 @@ static void test_nothing(void **state)
     assert_true(sensitivity_given(&s, y, u, 24, 2, true, &usual));
     assert_true(s.blocks == 0 && isnan(s.all[0].estimate));
     sensitivity_free(&s);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_indices),
-        cmocka_unit_test(test_pairs),
-        cmocka_unit_test(test_units),
-        cmocka_unit_test(test_morris),
-        cmocka_unit_test(test_missing),
-        cmocka_unit_test(test_listed),
-        cmocka_unit_test(test_nothing),
-        cmocka_unit_test(test_coverage),
-        cmocka_unit_test(test_coverage_of_sums_and_pairs),
-        cmocka_unit_test(test_coverage_of_bins),
-        cmocka_unit_test(test_coverage_of_effects),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

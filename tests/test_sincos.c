@@ -1,9 +1,9 @@
 /* The kernels' sine and cosine against libm's long double ones. */
 #include "support.h"
+#include "tests.h"
 
-static void accuracy(void **state)
+TEST(accuracy)
 {
-    (void)state;
     uint64_t seed = 1;
     double worst = 0;
     for (int i = 0; i < 3000000; i++) {
@@ -22,9 +22,8 @@ static void accuracy(void **state)
     assert_true(worst < 2.5e-16);
 }
 
-static void exact_points(void **state)
+TEST(exact_points)
 {
-    (void)state;
     double s, c;
     stance_sincos(0, &s, &c);
     assert_true(s == 0 && c == 1);
@@ -34,9 +33,8 @@ static void exact_points(void **state)
     assert_true(s == 1e-300 && c == 1);
 }
 
-static void beyond_the_range(void **state)
+TEST(beyond_the_range)
 {
-    (void)state;
     const double beyond[] = {1e4 + 1e-8, -1e4 - 1e-8, 1e300, INFINITY, -INFINITY, NAN};
     double s, c;
     for (size_t i = 0; i < sizeof beyond / sizeof *beyond; i++) {
@@ -45,14 +43,4 @@ static void beyond_the_range(void **state)
     }
     stance_sincos(1e4, &s, &c);
     assert_true(fabs(s - sin(1e4)) < 2.5e-16 && fabs(c - cos(1e4)) < 2.5e-16);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(accuracy),
-        cmocka_unit_test(exact_points),
-        cmocka_unit_test(beyond_the_range),
-    };
-    return cmocka_run_group_tests_name("sincos", tests, NULL, NULL);
 }

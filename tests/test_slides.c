@@ -1,12 +1,5 @@
 /* test_slides - whole motions of mechanisms with joints that slide, by every method: see motions.h.
  */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
 #include "motions.h"
 
 /* A bead on a rod that swings about its end, q its angle, l along (0.6, -0.8) of it from (0.1, 0),
@@ -27,9 +20,8 @@ static void bead_rate(double t, const double *x, double *rate)
     rate[2] = (C * f - B * g) / (A * C - B * B);
     rate[3] = (A * g - B * f) / (A * C - B * B);
 }
-static void bead(void **state)
+TEST(bead)
 {
-    (void)state;
     struct robot r = robot_of("body rod hinge - 1 0.3 0 0 0.4 1\n"
                               "body bead slide rod 0.7 0 0 0 0.1 0 axis 3 -4 stiffness 20 damping "
                               "0.3 rest 0.4 armature 0.05\n",
@@ -49,9 +41,8 @@ static void bead(void **state)
     "body leg free - 4 0.1 0 0 0 0\nbody shoe slide leg 0.5 0.001 0 0 0 0 axis 0 -1 stiffness "    \
     "900 "
 static const double sprung = 4, unsprung = 0.5;
-static void hopper_in_flight(void **state)
+TEST(hopper_in_flight)
 {
-    (void)state;
     struct robot r = robot_of(HOPPER "rest 0.5\n", 0.1);
     const double a = 0.3, T = 0.4, share = unsprung / (sprung + unsprung);
     const double swing = sqrt(900 * (1 / sprung + 1 / unsprung));
@@ -70,9 +61,8 @@ static void hopper_in_flight(void **state)
 }
 
 /* The shoe comes to its stop: body and shoe go on together. */
-static void slide_stops_in_flight(void **state)
+TEST(slide_stops_in_flight)
 {
-    (void)state;
     struct robot r =
         robot_of("body leg free - 4 0.1 0 0 0 0\nbody shoe slide leg 0.5 0.001 0 0 0 0 "
                  "axis 0 -1 limits 0 0.25\n",
@@ -110,9 +100,8 @@ static double until_hop(const double *x)
 {
     return stands ? unsprung * G + thrust(x) : x[0] - x[1];
 }
-static void hopper_hops(void **state)
+TEST(hopper_hops)
 {
-    (void)state;
     const double T = 1.6;
     struct robot r = robot_of(HOPPER "damping 6 rest 0.5\npoint foot shoe 0 0\n", 0);
     double x[MOST] = {0.75, 0.5, 0, 0};
@@ -135,9 +124,8 @@ static void hopper_hops(void **state)
 }
 
 /* Slides on slides and beyond hinges, in flight: momentum, moment of momentum, energy. */
-static void slides_in_flight(void **state)
+TEST(slides_in_flight)
 {
-    (void)state;
     struct robot r = robot_of(
         "body base free - 3 0.1 0.05 0.1 0 0\n"
         "body boom slide base 1 0.02 0.1 0.02 0.1 0.3 axis 3 1 stiffness 40 rest 0.2\n"
@@ -171,16 +159,4 @@ static void slides_in_flight(void **state)
              energy, 1e-6 * fabs(energy));
     }
     stance_scene_free(r.scene);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(bead),
-        cmocka_unit_test(hopper_in_flight),
-        cmocka_unit_test(slide_stops_in_flight),
-        cmocka_unit_test(hopper_hops),
-        cmocka_unit_test(slides_in_flight),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

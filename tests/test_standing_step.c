@@ -8,6 +8,7 @@
 #define STANCE_SCENE_LANES "engine/scenes/biped_lanes.h"
 #include "engine/methods/capturing.c"
 #include "inside.h"
+#include "tests.h"
 
 enum { PARTS = 32 };
 
@@ -54,9 +55,8 @@ static int by_size(const void *a, const void *b)
 
 /* Errors of steps h and h / 2 against 32 parts: order 4 makes them 32 times smaller in a step. And
  * an estimate below the error is what a tolerance cannot bear. */
-static void errors_are_estimated(void **state)
+TEST(errors_are_estimated)
 {
-    (void)state;
     static const double steps[] = {1e-3, 5e-3, 2e-2};
     enum { TRIES = 3000 };
     static double ratio[TRIES];
@@ -101,9 +101,8 @@ static void errors_are_estimated(void **state)
 }
 
 /* What stands is held: gaps, contact velocities, and no energy but the work of the torques. */
-static void standing_is_exact(void **state)
+TEST(standing_is_exact)
 {
-    (void)state;
     enum { TRIES = 300, LENGTH = 200 };
     uint64_t seed = 29;
     double gap = 0, slip = 0, drift = 0;
@@ -134,13 +133,4 @@ static void standing_is_exact(void **state)
                   slip, drift);
     assert_true(taken > TRIES * LENGTH / 4);
     assert_true(gap < 1e-14 && slip < 1e-13 && drift < 1e-7);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(errors_are_estimated),
-        cmocka_unit_test(standing_is_exact),
-    };
-    return cmocka_run_group_tests_name("standing", tests, NULL, NULL);
 }

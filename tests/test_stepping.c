@@ -3,6 +3,7 @@
  * an independent event-driven program (tests/reference). */
 #include "long.h"
 #include "support.h"
+#include "tests.h"
 
 #define PENETRATION 1e-9
 #define CONE 1e-9
@@ -44,37 +45,29 @@ static struct extremes run_random(const char *method, double h, double restituti
     return e;
 }
 
-static void contact_laws(const char *method)
+TEST(contact_laws)
 {
     static const double steps[] = {1e-4, 5e-4, 1e-3, 2e-3, 5e-3, 1e-2, 2e-2};
-    for (size_t k = 0; k < sizeof steps / sizeof *steps; k++) {
-        const struct extremes e = run_random(method, steps[k], 0, STANCE_IMPACTS_LIMITED, 10000);
+    enum { STEPS = sizeof steps / sizeof *steps };
+    for (int k = 0; k < 2 * STEPS; k++) {
+        const char *const method = k < STEPS ? "implicit" : "midpoint";
+        const double h = steps[k % STEPS];
+        const struct extremes e = run_random(method, h, 0, STANCE_IMPACTS_LIMITED, 10000);
         print_message("# %s h=%g: penetration %.1e, cone %.1e, impact energy %.1e, projection "
                       "%.2g J, ambiguous %d, subdivided %d of 10000\n",
-                      method, steps[k], e.penetration, e.cone, e.impact_energy,
-                      e.energy_of_projection, e.ambiguous, e.subdivided);
+                      method, h, e.penetration, e.cone, e.impact_energy, e.energy_of_projection,
+                      e.ambiguous, e.subdivided);
         assert_true(e.penetration <= PENETRATION);
         assert_true(e.cone <= CONE);
         assert_true(e.impact_energy <= 1e-9);
         assert_int_equal(e.failed, 0);
     }
 }
-static void contact_laws_implicit(void **state)
-{
-    (void)state;
-    contact_laws("implicit");
-}
-static void contact_laws_midpoint(void **state)
-{
-    (void)state;
-    contact_laws("midpoint");
-}
 
 /* Newton's restitution with Coulomb friction can create energy (Kane); limited, or by Moreau's law,
  * it does not, with any method. */
-static void restitution_creates_energy_by_newton_alone(void **state)
+TEST(restitution_creates_energy_by_newton_alone)
 {
-    (void)state;
     const double e[] = {0.2, 0.5, 0.8, 1};
     int gained[4];
     for (int k = 0; k < 4; k++) {
@@ -99,10 +92,8 @@ static void restitution_creates_energy_by_newton_alone(void **state)
 
 /* The contact forces of a trajectory obey the laws, checked from outside: gaps from the scene's
  * own kinematics, the cone and complementarity from the recorded forces. */
-static void trajectories_obey_the_laws(void **state)
+TEST(trajectories_obey_the_laws)
 {
-    (void)state;
-    const stance_scene *const scene = stance_scene_find("biped");
     const stance_kernel *const kernel = kernel_of("implicit", NULL);
     uint64_t seed = 3;
     enum { ROWS = 251 };
@@ -116,7 +107,7 @@ static void trajectories_obey_the_laws(void **state)
         const int last = (int)lround(r.end_time / 1e-3);
         for (int row = 1; row <= last; row++) {
             double gap[2];
-            scene->gaps(scene, c.robot, t.position + row * 5, gap);
+            biped()->gaps(biped(), c.robot, t.position + row * 5, gap);
             for (int k = 0; k < 2; k++) {
                 const double n = t.force[(row * 2 + k) * 2], s = t.force[(row * 2 + k) * 2 + 1];
                 assert_true(gap[k] >= -PENETRATION);
@@ -130,9 +121,8 @@ static void trajectories_obey_the_laws(void **state)
 }
 
 /* Impacts at a vanishing step against the independent exact solutions: least kinetic energy. */
-static void impacts_against_reference(void **state)
+TEST(impacts_against_reference)
 {
-    (void)state;
     json_t *root = reference_load("tests/reference/impacts.json"), *item;
     json_t *problems = json_object_get(root, "problems");
     assert_non_null(problems);
@@ -141,30 +131,23 @@ static void impacts_against_reference(void **state)
     json_array_foreach(problems, index, item)
     {
         stance_case c = plain_case();
-        c.friction = json_number_value(json_object_get(item, "mu"));
-        c.restitution = json_number_value(json_object_get(item, "e"));
+        c.friction = number_in(item, "mu");
+        c.restitution = number_in(item, "e");
         c.impacts = STANCE_IMPACTS_NEWTON;
-        for (int i = 0; i < 5; i++) {
-            c.position[i] =
-                json_number_value(json_array_get(json_object_get(item, "q"), (size_t)i));
-            c.velocity[i] =
-                json_number_value(json_array_get(json_object_get(item, "v"), (size_t)i));
-        }
-        double gap[2];
+        numbers(json_object_get(item, "q"), c.position, 5);
+        numbers(json_object_get(item, "v"), c.velocity, 5);
+        double gap[2], best[5];
         biped()->gaps(biped(), c.robot, c.position, gap);
         assert_true(fmin(gap[0], gap[1]) > -1e-12);
         c.step = 1e-9;
         c.steps = 1;
         c.robot[STANCE_ROBOT_FALL_HEIGHT] = -1e9;
-        stance_result r;
-        run_cases(kernel_of("implicit", NULL), &c, &r, 1);
-        assert_int_equal(r.status, STANCE_DONE);
-        json_t *best = json_object_get(item, "v_plus");
+        const stance_result r = run_done("implicit", &c);
+        numbers(json_object_get(item, "v_plus"), best, 5);
         double error = 0, scale = 1;
         for (int i = 0; i < 5; i++) {
-            const double v = json_number_value(json_array_get(best, (size_t)i));
-            error = fmax(error, fabs(r.velocity[i] - v));
-            scale = fmax(scale, fabs(v));
+            error = fmax(error, fabs(r.velocity[i] - best[i]));
+            scale = fmax(scale, fabs(best[i]));
         }
         if (error > 1e-6 * scale)
             print_message("# problem %zu: off by %g\n", index, error);
@@ -185,20 +168,6 @@ static void impacts_against_reference(void **state)
 
 enum { DROP_ROWS = 1201 };
 
-static stance_case second_drop(double h)
-{
-    static const double robot[5] = {0.5, 0.5, 1, 1, 3}, q[5] = {0, 1.5, -0.5, 0.9, -1};
-    stance_case c = plain_case();
-    memcpy(c.robot, robot, sizeof robot);
-    memcpy(c.position, q, sizeof q);
-    c.velocity[0] = 1;
-    c.friction = 0.3;
-    hold_legs(&c, 200, 20);
-    c.step = h;
-    c.steps = (int64_t)lround(1.2 / h);
-    return c;
-}
-
 struct drop_error {
     double at04, at12, velocity_l1, touch1, touch2;
 };
@@ -210,32 +179,28 @@ static struct drop_error drop_error(const char *method, double h)
     json_t *path = json_object_get(drop, "velocity_1ms");
     stance_case c = second_drop(h);
     stance_trajectory t = trajectory_new(DROP_ROWS, 1e-3);
-    stance_result r;
     c.trajectory = &t;
-    run_cases(kernel_of(method, NULL), &c, &r, 1);
-    assert_int_equal(r.status, STANCE_DONE);
+    run_done(method, &c);
     struct drop_error e = {0, 0, 0, 0, 0};
     json_t *states = json_object_get(drop, "states");
+    double q4[5], q12[5], v[5];
+    numbers(json_object_get(json_object_get(states, "0.4"), "q"), q4, 5);
+    numbers(json_object_get(json_object_get(states, "1.2"), "q"), q12, 5);
     for (int i = 0; i < 5; i++) {
-        json_t *q4 = json_object_get(json_object_get(states, "0.4"), "q");
-        json_t *q12 = json_object_get(json_object_get(states, "1.2"), "q");
-        e.at04 = fmax(e.at04, fabs(t.position[400 * 5 + i] -
-                                   json_number_value(json_array_get(q4, (size_t)i))));
-        e.at12 = fmax(e.at12, fabs(t.position[1200 * 5 + i] -
-                                   json_number_value(json_array_get(q12, (size_t)i))));
-        if (h <= 1e-3)
-            for (int row = 0; row < DROP_ROWS; row++) {
-                json_t *v = json_array_get(path, (size_t)row);
-                e.velocity_l1 += 1e-3 * fabs(t.velocity[row * 5 + i] -
-                                             json_number_value(json_array_get(v, (size_t)i)));
-            }
+        e.at04 = fmax(e.at04, fabs(t.position[400 * 5 + i] - q4[i]));
+        e.at12 = fmax(e.at12, fabs(t.position[1200 * 5 + i] - q12[i]));
+    }
+    for (int row = 0; row < DROP_ROWS && h <= 1e-3; row++) {
+        numbers(json_array_get(path, (size_t)row), v, 5);
+        for (int i = 0; i < 5; i++)
+            e.velocity_l1 += 1e-3 * fabs(t.velocity[row * 5 + i] - v[i]);
     }
     trajectory_free(&t);
 
     /* Touchdown to a step's accuracy: the first step with a force, recorded at every step. */
     const int64_t rows = c.steps + 1;
     t = trajectory_new(rows, h);
-    run_cases(kernel_of(method, NULL), &c, &r, 1);
+    run_one(method, &c);
     for (int64_t row = rows - 1; row > 0; row--) {
         if (t.force[row * 4] > 0)
             e.touch1 = (double)row * h;
@@ -258,9 +223,8 @@ static double slope(const double *h, const double *error, int n)
     return (n * sxy - sx * sy) / (n * sxx - sx * sx);
 }
 
-static void second_drop_converges(void **state)
+TEST(second_drop_converges)
 {
-    (void)state;
     static const double h[] = {1e-2, 5e-3, 2e-3, 1e-3, 5e-4, 2e-4, 1e-4, 5e-5, 2e-5, 1e-5};
     enum { N = sizeof h / sizeof *h };
     static const char *const methods[] = {"implicit", "midpoint"};
@@ -289,7 +253,6 @@ static void second_drop_converges(void **state)
  * method at a step 64 times smaller. */
 static double smooth_error(const char *method, bool stance, double h)
 {
-    const stance_scene *const scene = stance_scene_find("biped");
     double reference[5] = {0}, error = 0;
     for (int fine = 1; fine >= 0; fine--) {
         stance_case c = plain_case();
@@ -298,13 +261,11 @@ static double smooth_error(const char *method, bool stance, double h)
         c.friction = 1e3;
         c.contacts = stance ? 1 : 0;
         c.settle = false;
-        scene->stand(scene, c.robot, 1, c.position, c.velocity);
+        biped()->stand(biped(), c.robot, 1, c.position, c.velocity);
         hold_legs(&c, 20, 1);
         c.step = fine ? h / 64 : h;
         c.steps = (int64_t)lround(0.256 / c.step);
-        stance_result r;
-        run_cases(kernel_of(method, NULL), &c, &r, 1);
-        assert_int_equal(r.status, STANCE_DONE);
+        const stance_result r = run_done(method, &c);
         for (int i = 0; i < 5; i++)
             error = fine ? 0 : fmax(error, fabs(r.position[i] - reference[i]));
         memcpy(reference, r.position, sizeof reference);
@@ -312,9 +273,8 @@ static double smooth_error(const char *method, bool stance, double h)
     return error;
 }
 
-static void smooth_order(void **state)
+TEST(smooth_order)
 {
-    (void)state;
     static const double h[] = {8e-3, 4e-3, 2e-3, 1e-3};
     static const struct {
         const char *method;
@@ -334,9 +294,8 @@ static void smooth_order(void **state)
 
 /* ---- the drop of section 2.4 ---------------------------------------------------------------- */
 
-static void first_drop_stages(void **state)
+TEST(first_drop_stages)
 {
-    (void)state;
     enum { ROWS = 1501 };
     stance_case c = plain_case();
     c.position[1] = 1.5, c.position[2] = -0.5, c.position[3] = 0.9, c.position[4] = -1;
@@ -345,10 +304,8 @@ static void first_drop_stages(void **state)
     hold_legs(&c, 500, 50);
     c.steps = 1500;
     stance_trajectory t = trajectory_new(ROWS, 1e-3);
-    stance_result r;
     c.trajectory = &t;
-    run_cases(kernel_of("implicit", NULL), &c, &r, 1);
-    assert_int_equal(r.status, STANCE_DONE);
+    run_done("implicit", &c);
 
     int land = 0, stop = 0, turn = 0, second = 0;
     double foot[2], speed[2];
@@ -389,9 +346,8 @@ static void first_drop_stages(void **state)
 /* The equation of a long step has further roots, far away and fast. A robot without torques gains
  * no energy but what discretisation makes of it; the first case went from 193 J to 302,772 J in one
  * step that had converged. */
-static void far_roots_are_refused(void **state)
+TEST(far_roots_are_refused)
 {
-    (void)state;
     stance_case c = plain_case();
     c.friction = 0.5;
     c.position[1] = 1.3749378810949437, c.position[2] = 0.5359201713349733;
@@ -400,9 +356,7 @@ static void far_roots_are_refused(void **state)
     c.velocity[2] = 7.30844240972327, c.velocity[3] = 7.262569281620582;
     c.step = 0.05, c.steps = 40;
     c.robot[STANCE_ROBOT_FALL_HEIGHT] = 0;
-    stance_result r;
-    run_cases(kernel_of("implicit", NULL), &c, &r, 1);
-    assert_int_equal(r.status, STANCE_DONE);
+    const stance_result r = run_done("implicit", &c);
     assert_true(r.energy_gain < 10);
     static const char *const methods[] = {"implicit", "midpoint"};
     for (int m = 0; m < 2; m++) {
@@ -434,9 +388,8 @@ static void far_roots_are_refused(void **state)
 
 /* One value for every width, order and slicing, and for every processor and compiler. It changes
  * only when the mathematics of a step changes: then say so in the CHANGELOG. */
-static void golden(void **state)
+TEST(golden)
 {
-    (void)state;
     static const struct {
         const char *scene, *method;
         uint64_t hash;
@@ -468,9 +421,8 @@ static void golden(void **state)
 }
 
 /* So many cases that some have several contact solutions beside neighbours of every kind. */
-static void neighbours_change_nothing(void **state)
+TEST(neighbours_change_nothing)
 {
-    (void)state;
     static const char *const methods[] = {"implicit", "midpoint"};
     for (size_t m = 0; m < sizeof methods / sizeof *methods; m++) {
         const stance_kernel *const wide = kernel_of(methods[m], stance_isa(0));
@@ -482,12 +434,10 @@ static void neighbours_change_nothing(void **state)
     }
 }
 
-/* ---- bad days
- * ------------------------------------------------------------------------------------- */
+/* ---- bad days ------------------------------------------------------------------------------- */
 
-static void failures_are_reported(void **state)
+TEST(failures_are_reported)
 {
-    (void)state;
     stance_case c[3];
     stance_result r[3];
     for (int i = 0; i < 3; i++) {
@@ -503,23 +453,4 @@ static void failures_are_reported(void **state)
     assert_int_equal(r[1].status, STANCE_FAILED);
     assert_int_equal(r[1].failure, STANCE_FAILURE_ANGLE);
     assert_int_equal(r[2].status, STANCE_DONE); /* a bad neighbour does no harm */
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(contact_laws_implicit),
-        cmocka_unit_test(contact_laws_midpoint),
-        cmocka_unit_test(restitution_creates_energy_by_newton_alone),
-        cmocka_unit_test(trajectories_obey_the_laws),
-        cmocka_unit_test(impacts_against_reference),
-        cmocka_unit_test(second_drop_converges),
-        cmocka_unit_test(smooth_order),
-        cmocka_unit_test(first_drop_stages),
-        cmocka_unit_test(far_roots_are_refused),
-        cmocka_unit_test(golden),
-        cmocka_unit_test(neighbours_change_nothing),
-        cmocka_unit_test(failures_are_reported),
-    };
-    return cmocka_run_group_tests_name("stepping", tests, NULL, NULL);
 }

@@ -1,15 +1,10 @@
 /* Jacobi's method against LAPACK, on matrices of every kind. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 #include <lapacke.h>
 #include <math.h>
 #include <string.h>
 
 #include "cases.h"
+#include "tests.h"
 
 #include "runner/optimise/cma.h"
 
@@ -76,9 +71,8 @@ static void fill(enum kind kind, int n, uint64_t *seed, double *a)
     }
 }
 
-static void eigenvalues(void **state)
+TEST(eigenvalues)
 {
-    (void)state;
     uint64_t seed = 9;
     static double a[MOST * MOST];
     for (int n = 1; n <= MOST; n += n < 16 ? 1 : 4) {
@@ -93,9 +87,8 @@ static void eigenvalues(void **state)
 }
 
 /* Badly scaled: the small eigenvalue by the determinant, to its own digits. */
-static void graded_eigenvalues(void **state)
+TEST(graded_eigenvalues)
 {
-    (void)state;
     for (double d = 1; d > 1e-150; d /= 1000) {
         double a[4] = {1, 0.5 * d, 0.5 * d, d * d}, value[2], vector[4];
         const double root = sqrt(pow(1 - d * d, 2) + d * d);
@@ -103,13 +96,4 @@ static void graded_eigenvalues(void **state)
         symmetric_eigen(2, a, value, vector);
         assert_true(fabs(value[1] / large - 1) < 1e-15 && fabs(value[0] / small - 1) < 1e-14);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(eigenvalues),
-        cmocka_unit_test(graded_eigenvalues),
-    };
-    return cmocka_run_group_tests_name("symmetric eigenvalues", tests, NULL, NULL);
 }

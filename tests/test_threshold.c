@@ -5,6 +5,7 @@
 #include "support.h"
 
 #include "cases.h"
+#include "tests.h"
 
 #include "analysis/basin/basin.h"
 
@@ -72,12 +73,11 @@ static uint8_t in(bool inside)
 
 /* Sampled starts, of which those below 0.9 - 0.5 x are inside, and of a tenth, which has nothing to
  * do with that, none. The share is linear and crosses 0.8 of its first value at 0.36. */
-static void sampled_starts(void **state)
+TEST(sampled_starts)
 {
     struct results r = make_results(false, true);
     int held = 0, crossed = 0;
     double width = 0;
-    (void)state;
     for (int seed = 0; seed < SEEDS; seed++) {
         uint64_t random = (uint64_t)seed * 104729 + 1;
         for (int p = 0; p < POINTS; p++) {
@@ -98,12 +98,11 @@ static void sampled_starts(void **state)
 }
 
 /* Starts on a grid for each of some sampled parameters, which move the edge. */
-static void sampled_parameters(void **state)
+TEST(sampled_parameters)
 {
     struct results r = make_results(true, true);
     const int seeds = long_tests() ? SEEDS : SEEDS / 5;
     int held = 0;
-    (void)state;
     for (int seed = 0; seed < seeds; seed++) {
         uint64_t random = (uint64_t)seed * 104729 + 1;
         for (int p = 0; p < POINTS; p++) {
@@ -121,12 +120,11 @@ static void sampled_parameters(void **state)
 }
 
 /* Starts on a grid alone: conservative, as the likely errors are. */
-static void starts_on_a_grid(void **state)
+TEST(starts_on_a_grid)
 {
     struct results r = make_results(true, false);
     int held = 0;
     double width = 0;
-    (void)state;
     for (int seed = 0; seed < SEEDS; seed++) {
         uint64_t random = (uint64_t)seed * 104729 + 1;
         const double first = uniform(&random, 0.6, 0.9), slope = uniform(&random, 0.3, 0.5);
@@ -142,10 +140,9 @@ static void starts_on_a_grid(void **state)
     assert_true(held >= 950 && width < 0.3);
 }
 
-static void what_is_not_crossed(void **state)
+TEST(what_is_not_crossed)
 {
     struct results r = make_results(true, false);
-    (void)state;
     for (int i = 0; i < VALUES; i++)
         for (int g = 0; g < GRID; g++)
             kind[i * GRID + g] = in(grid[g] < 0.5 + 0.03 * i);
@@ -167,11 +164,10 @@ static void what_is_not_crossed(void **state)
     assert_false(measure(&r, false, 0.8).crossed);
 }
 
-static void starts_are_lost_in_order(void **state)
+TEST(starts_are_lost_in_order)
 {
     struct results r = make_results(true, false);
     struct basin_loss loss;
-    (void)state;
     for (int i = 0; i < VALUES; i++)
         for (int g = 0; g < GRID; g++)
             kind[i * GRID + g] = in(g < 20 - (i > 3 ? 2 * (i - 3) : 0) || (g == 30 && i < 9));
@@ -193,14 +189,4 @@ static void starts_are_lost_in_order(void **state)
     assert_int_equal(loss.lost[loss.at], 1);
     assert_int_equal(loss.unknown, 1);
     free(loss.lost);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(sampled_starts),           cmocka_unit_test(sampled_parameters),
-        cmocka_unit_test(starts_on_a_grid),         cmocka_unit_test(what_is_not_crossed),
-        cmocka_unit_test(starts_are_lost_in_order),
-    };
-    return cmocka_run_group_tests_name("threshold", tests, NULL, NULL);
 }

@@ -2,17 +2,12 @@
  * the user's coordinates (engine/scenes/mechanism*.c), and its derivatives against differences, on
  * random trees in random states.
  */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "random_mechanism.h"
+#include "tests.h"
 
 #include "engine/scenes/mechanism_pose.h"
 #include "engine/tree.h"
@@ -497,22 +492,19 @@ static void trees_of(double slides)
     assert_in_range(down, 100, TREES * STATES - 100);
 }
 
-static void trees(void **state)
+TEST(trees)
 {
-    (void)state;
     trees_of(0);
 }
-static void trees_that_slide(void **state)
+TEST(trees_that_slide)
 {
-    (void)state;
     trees_of(0.4);
 }
 
 /* The structure that kernels are compiled for ahead is that of the biped that the program carries,
  * and of whoever describes the same. */
-static void structure_ahead(void **state)
+TEST(structure_ahead)
 {
-    (void)state;
     const stance_scene *const biped = stance_scene_find("biped");
     const stance_method *const midpoint = stance_method_find("midpoint");
     static char wanted[STANCE_TREE_TEXT], text[STANCE_TREE_TEXT + 400];
@@ -527,14 +519,4 @@ static void structure_ahead(void **state)
     assert_true(stance_kernel_ahead(stance_kernel_find(same, midpoint, NULL)));
     assert_false(stance_kernel_ahead(stance_kernel_find(stance_scene_find("rod"), midpoint, NULL)));
     stance_scene_free(same);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(structure_ahead),
-        cmocka_unit_test(trees),
-        cmocka_unit_test(trees_that_slide),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,5 +1,6 @@
 /* test_yaml.c - what YAML means: texts that are the same scenario; letters that cannot be seen. */
 #include "reading.h"
+#include "tests.h"
 
 #define HEAD "stance: 1\nscene: ball\ninitial: {state: {z: 1}}\nstop: {time: 1}\n"
 
@@ -21,9 +22,8 @@ static void refused(const char *text, const char *set, const char *said)
 }
 
 /* As YAML's merge keys are defined: own keys first, then the mappings in their order. */
-static void merge_keys_are_read(void **state)
+TEST(merge_keys_are_read)
 {
-    (void)state;
     are_the_same(HEAD "x-a: &a {restitution: 0.3, friction: 0.4}\n"
                       "ground: {<<: *a, friction: 0.9}\n",
                  HEAD "ground: {friction: 0.9, restitution: 0.3}\n");
@@ -49,9 +49,8 @@ static void merge_keys_are_read(void **state)
 
 /* YAML 1.2, of which libyaml reads 1.1: a colon before a bracket ends a key. Places are those of
  * the file. */
-static void colons_before_brackets_end_keys(void **state)
+TEST(colons_before_brackets_end_keys)
 {
-    (void)state;
     are_the_same(HEAD "sweep: {grid:[{path: ground.friction, values:[0, 1]}]}\n",
                  HEAD "sweep: {grid: [{path: ground.friction, values: [0, 1]}]}\n");
     refused(HEAD "robot: {mass:, radius:{a:}, size: 1}\n", NULL,
@@ -68,7 +67,7 @@ static void colons_before_brackets_end_keys(void **state)
 }
 
 /* Every letter that cannot be seen is named where it does harm, and nowhere else. */
-static void hidden_letters_are_named(void **state)
+TEST(hidden_letters_are_named)
 {
     static const struct {
         const char *letter, *name;
@@ -89,7 +88,6 @@ static void hidden_letters_are_named(void **state)
         {"\U000e0041", "U+E0041 (tag or variation selector)", false},
     };
     char text[500], said[500], set[64];
-    (void)state;
     for (size_t i = 0; i < sizeof hidden / sizeof *hidden; i++) {
         const char *const letter = hidden[i].letter, *const name = hidden[i].name,
                           *const it = hidden[i].blank ? "is no blank" : "cannot be seen";
@@ -124,11 +122,10 @@ static void hidden_letters_are_named(void **state)
     "stop: {time: 1}\ncontroller: {kind: state-feedback, design: "
 
 /* Weights, poles and gains by name are the lists that they stand for. */
-static void names_stand_for_lists(void **state)
+TEST(names_stand_for_lists)
 {
     struct scenario s, of;
     double re[SCENARIO_MAX_POLES], im[SCENARIO_MAX_POLES];
-    (void)state;
     are_the_same(ROBOT "lqr, weights: {vq1: 5, theta: 100}}\n",
                  ROBOT "lqr, weights: {states: [100, 1, 1, 1, 5, 1]}}\n");
     are_the_same(ROBOT "lqr, weights: {states: {q1: 2}, torques: {hip2: 3}}}\n",
@@ -182,9 +179,8 @@ static void names_stand_for_lists(void **state)
 }
 
 /* A robot of another kind than the scene is told in one line, not in one for each of its keys. */
-static void robots_of_other_scenes(void **state)
+TEST(robots_of_other_scenes)
 {
-    (void)state;
     refused("stance: 1\nscene: biped\nrobot: {bodies: {a: {joint: free, mass: 1}}, contacts: {f: "
             "{body: a}}}\ninitial: {equilibrium: {a: 0}, support: [f]}\nstop: {time: 1}\n",
             NULL,
@@ -195,16 +191,4 @@ static void robots_of_other_scenes(void **state)
             NULL,
             "bad.yaml:2:8: scene: robot.leg_length is a number of the scene biped, a mechanism "
             "has bodies; write scene: biped\n");
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(merge_keys_are_read),
-        cmocka_unit_test(colons_before_brackets_end_keys),
-        cmocka_unit_test(hidden_letters_are_named),
-        cmocka_unit_test(names_stand_for_lists),
-        cmocka_unit_test(robots_of_other_scenes),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,48 @@
+/* tests.h - the tests of one program, and its main: a test registers itself where it stands, so
+ * that none can be written and forgotten. They run in the order in which they stand.
+ *
+ *   TEST(falls)
+ *   {
+ *       ... of cmocka's
+ *   }
+ */
+#ifndef STANCE_TESTS_TESTS_H
+#define STANCE_TESTS_TESTS_H
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+#include <stdlib.h>
+
+/* cmocka passes over those behind the last. */
+static struct CMUnitTest registered[64];
+
+static inline void register_test(const char *name, CMUnitTestFunction test)
+{
+    size_t k = 0;
+    while (registered[k].name)
+        if (++k == sizeof registered / sizeof *registered)
+            abort();
+    registered[k] = (struct CMUnitTest){.name = name, .test_func = test};
+}
+
+#define TEST(name)                                                                                 \
+    static void name(void **state);                                                                \
+    __attribute__((constructor)) static void register_##name(void)                                 \
+    {                                                                                              \
+        register_test(#name, name);                                                                \
+    }                                                                                              \
+    static void name(void **state __attribute__((unused)))
+
+/* What is done before all tests and after them: a program that needs it gives them a value. */
+static CMFixtureFunction before_tests, after_tests;
+
+int main(void)
+{
+    return cmocka_run_group_tests_name(__BASE_FILE__, registered, before_tests, after_tests);
+}
+
+#endif
