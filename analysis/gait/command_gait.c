@@ -159,16 +159,15 @@ static json_t *facts_of(const struct scenario *s, const struct return_map *map,
                      {"modulus", as_number(hypot(gait->re[i], gait->im[i]))},
                      {"error", as_number(gait->error[i])}, {".number", as_text(number)});
     }
+    for (int i = 0; clock && i < STANCE_MAX_COEFFICIENTS; i++)
+        table_append(clock, as_number(margins->clock[i]));
     json_t *const facts = TABLE_OBJECT(
         GAIT(TABLE_MEMBER){".shorter", as_truth(repeats < map->steps)},
         {".slips", as_truth(r->slip_distance > 1e-6)}, {".under", as_truth(margins->under > 0)},
         {".clock_off", as_number(margins->clock_off)});
-    for (int i = 0; clock && i < STANCE_MAX_COEFFICIENTS; i++) {
-        table_append(clock, as_number(margins->clock[i]));
-        if (told)
-            say_add(facts, ".clock", "%s%.9g%s", i > 0 ? ", " : "controller.phase.clock=[",
-                    margins->clock[i], i + 1 == STANCE_MAX_COEFFICIENTS ? "]" : "");
-    }
+    for (int i = 0; told && clock && i < STANCE_MAX_COEFFICIENTS; i++)
+        say_add(facts, ".clock", "%s%.9g%s", i > 0 ? ", " : "controller.phase.clock=[",
+                margins->clock[i], i + 1 == STANCE_MAX_COEFFICIENTS ? "]" : "");
     return facts;
 }
 

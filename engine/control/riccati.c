@@ -225,6 +225,8 @@ static stance_error sample_cost(regulator *g, const stance_plant *plant, double 
     for (int i = 0; i < side; i++)
         pencil[i * twice + side + i] = i < n ? states[i] : torques[i - n];
     const stance_error error = stance_exponential(twice, pencil, T, E, NULL);
+    if (error != STANCE_OK)
+        return error;
     double *G = pencil; /* not needed any more */
     for (int i = 0; i < side; i++) {
         for (int j = 0; j < side; j++) {
@@ -247,7 +249,7 @@ static stance_error sample_cost(regulator *g, const stance_plant *plant, double 
             }
         }
     }
-    return error;
+    return STANCE_OK;
 }
 
 stance_error stance_lqr(const stance_plant *plant, double T, const double *states,

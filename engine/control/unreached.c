@@ -84,6 +84,8 @@ static stance_error stay_unreached(const struct balanced *b, int k, double *C, c
         for (int i = 0; i < k * before; i++)
             S[i] -= next[i];
         error = null_space(k, before, S, UNREACHED * b->norm, W, d);
+        if (error != STANCE_OK)
+            return error;
         multiply(false, k, before, *d, V, W, next);
         memcpy(V, next, (size_t)(k * *d) * sizeof *V);
     }

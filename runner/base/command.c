@@ -426,7 +426,6 @@ static bool read_number(const struct option *o, const char *text, uint64_t *whol
 {
     char *end;
     const bool is_whole = o->kind == OPTION_WHOLE;
-    errno = 0;
     *whole = is_whole ? strtoull(text, &end, 10) : 0;
     *number = is_whole ? (double)*whole : strtod(text, &end);
     return end != text && !*end && errno == 0 && *number >= o->low &&
@@ -448,6 +447,7 @@ static bool read_value(const struct command *command, const struct option *o, co
     bool good = true;
     if (known > 0 && word == known)
         return false;
+    errno = 0; /* of what reads it */
     if (o->read)
         good = o->read(text, member);
     else if (o->kind == OPTION_FLAG)

@@ -153,7 +153,7 @@ bool field_number(struct problems *problems, const struct scenario_field *field,
 {
     bool finite;
     const bool whole = field->whole || field->type == FIELD_INTEGER,
-               none = field->words && field->type == FIELD_NUMBER;
+               none = field->words && (field->type == FIELD_NUMBER || field->type == FIELD_NUMBERS);
     const char *const wanted = whole && none ? "a whole number or none"
                                : whole       ? "a whole number"
                                : none        ? "a number or none"

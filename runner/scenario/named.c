@@ -201,8 +201,9 @@ bool named_read(struct reader *r, const char *const *sets, size_t set_count)
         if (r->s->scene)
             put_indices(r, sets[i], text, size);
         tree_set(&r->tree, r->s->scene ? text : sets[i], (int)i + 1, &r->problems);
+        good = make_lists(r); /* which the next one may change */
     }
-    return good && make_lists(r);
+    return good;
 }
 
 /* ---- lists that do not fit ------------------------------------------------------------------- */

@@ -42,14 +42,18 @@ static FILE *open_file(const char *file, struct stat *status)
 }
 
 /* At most so many bytes, into text[most + 2], of which the last is 0. Returns what is wrong; NULL:
- * nothing. `larger`: what is said of more. */
-static const char *read_file(const char *file, char *text, size_t most, const char *larger,
-                             size_t *length)
+ * nothing. `larger`: what is said of more. `named`: a scenario names it, of which a stranger may
+ * have made a pipe or a terminal that never ends. */
+static const char *read_file(const char *file, bool named, char *text, size_t most,
+                             const char *larger, size_t *length)
 {
     struct stat status = {0};
+    const bool other = named && stat(file, &status) == 0 && !S_ISREG(status.st_mode);
+    *length = 0;
+    if (other && !S_ISDIR(status.st_mode))
+        return "is no regular file";
     FILE *const in = open_file(file, &status);
     const char *wrong = NULL;
-    *length = 0;
     if (!in)
         return errno == ETIMEDOUT ? "a named pipe into which nothing is written" : strerror(errno);
     if (S_ISDIR(status.st_mode))
@@ -73,7 +77,7 @@ char *scenario_text(const char *file, struct problems *problems, size_t *length)
         return NULL;
     }
     errno = 0;
-    const char *const wrong = read_file(file, text, TREE_MAX_BYTES,
+    const char *const wrong = read_file(file, false, text, TREE_MAX_BYTES,
                                         "larger than 1 MiB, the most a scenario may take", length);
     char with[PATH_SIZE];
     snprintf(with, sizeof with, "%.*s.yaml", PATH_SIZE - 6, file);
@@ -105,7 +109,7 @@ const char *reader_file(struct reader *r, const char *key, const struct tree_nod
     snprintf(path, sizeof path, "%.*s%s", slash ? (int)(slash - r->s->file) + 1 : 0, r->s->file,
              node->text);
     const char *wrong =
-        text ? read_file(path, text, most,
+        text ? read_file(path, true, text, most,
                          "is larger than may be (256 KiB of source, 512 KiB of numbers)", &length)
              : "out of memory";
     if (!wrong && (memchr(text, '\0', length) || !tree_check_text(text, length, &ignored)))
