@@ -118,7 +118,7 @@ expect "a study of heights" 0 "$stance" run "$walks" --set "$plates" --set "$gri
 expect "is gone on with" 0 "$stance" run "$walks" --set "$plates" --set "$grid" --set stop.time=0.5 -o heights.h5 --resume
 expect "which other plates are not" 2 "$stance" run "$walks" --set "$plates" --set "$grid" --set ground.plates.step.from=0.2 \
     --set stop.time=0.5 -o heights.h5 --resume
-says "... by what differs" '\+ +from: 0.2'
+says "... by what differs" 'ground.plates.step.from: 0.3, now 0.2'
 "$python" - >log 2>&1 <<'END'
 import h5py, yaml
 f = h5py.File("heights.h5")

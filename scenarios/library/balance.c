@@ -23,6 +23,7 @@ int main(void)
         stance_kernel_find(biped, stance_method_find("capturing"), NULL);
     const stance_equilibrium_choice choice = {.supports = 1, .posture = {-0.41, NAN, 0.82}};
     double A[STATES * STATES], B[STATES * TORQUES], K[TORQUES * STATES];
+    const stance_plant plant = {STATES, TORQUES, A, B};
     double states[STATES] = {1, 1, 1, 1, 1, 1}, torques[TORQUES] = {1, 1};
     stance_equilibrium rest;
     stance_message message = {""};
@@ -46,7 +47,7 @@ int main(void)
     if (error == STANCE_OK)
         error = biped->linearise(biped, c.robot, &rest, A, B);
     if (error == STANCE_OK)
-        error = stance_lqr(STATES, TORQUES, A, B, states, torques, K, &message);
+        error = stance_lqr(&plant, 0, states, torques, K, &message);
     if (error != STANCE_OK) {
         fprintf(stderr, "%s %s\n", stance_error_text(error), message.text);
         return 1;
