@@ -21,7 +21,8 @@ struct page {
 static size_t row_of(const struct page *page, size_t curve)
 {
     const size_t rows = page->rays->rows;
-    return page->curves == rows ? curve : curve * (rows - 1) / (page->curves - 1);
+    return page->curves == rows || page->curves < 2 ? curve
+                                                    : curve * (rows - 1) / (page->curves - 1);
 }
 
 static const struct basin_ray *rays_of(const struct page *page, size_t curve)

@@ -46,7 +46,7 @@ static bool derive(const struct return_map *map, const struct return_point *z,
     for (int j = 0; j < n; j++)
         for (int k = 0; k < count; k++)
             w->from[1 + count * j + k].z[j] += d->apart[k] * d->h;
-    if (!return_map_take(map, (size_t)(1 + count * n), w->from, w->to, message))
+    if (!return_map_take(map, 1 + (size_t)count * (size_t)n, w->from, w->to, message))
         return false;
     memset(w->J, 0, sizeof w->J);
     memset(w->by, 0, sizeof w->by);

@@ -62,11 +62,11 @@ static void follow(struct trace *t, size_t side)
     for (size_t at = side + 1; at > 0;) {
         const size_t here = at - 1, all = t->nx * t->ny;
         const bool up = here >= all;
-        const size_t from = up ? here - all : here;
+        const size_t from = up ? here - all : here, row = from / t->nx;
         t->met[here] = true;
         t->horizontal[b->points] = !up;
         b->point[b->points][0] = (double)(from % t->nx);
-        b->point[b->points++][1] = (double)(from / t->nx);
+        b->point[b->points++][1] = (double)row;
         at = 0;
         for (int k = 1; k >= 0 && at == 0; k--)
             if (t->next[here][k] > 0 && !t->met[t->next[here][k] - 1])

@@ -97,7 +97,7 @@ static struct range range_of(const struct case_page *page, struct columns column
 /* "ground.friction = 0.3, ..." of a case of a sweep, from its scenario. */
 static void swept_text(const struct scenario *s, uint64_t index, char *text, size_t size)
 {
-    size_t point[SCENARIO_MAX_AXES];
+    size_t point[SCENARIO_MAX_AXES] = {0};
     char word[64];
     for (int a = s->axes - 1; a >= 0; a--) {
         point[a] = (size_t)(index % s->axis[a].count);

@@ -173,7 +173,7 @@ static void put_outline(struct page *page, int f, int number)
 /* A line in the colour of each outline, or one for all where that is the same. */
 static void put_allowed(struct page *page)
 {
-    struct plot_allowed_panel panel[MOST_OUTLINES];
+    struct plot_allowed_panel panel[MOST_OUTLINES] = {0};
     int count = 0;
     bool same = true;
     for (int f = 0; f < page->files; f++) {

@@ -137,7 +137,7 @@ static bool make_shares(struct page *page)
 {
     const bool pair = page->second >= 0;
     const size_t stride = pair ? page->r->axis[page->second].count : 1;
-    enum results_kind kinds[2];
+    enum results_kind kinds[2] = {0};
     const int found = choose_kinds(page->counts, page->values * stride, kinds);
     bool good = true;
     page->count = pair ? (int)stride : found;

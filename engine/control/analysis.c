@@ -37,7 +37,7 @@ static int by_real_then_imaginary(const void *left, const void *right)
 stance_error stance_eigenvalues(int n, const double *A, double *re, double *im)
 {
     double copy[STANCE_LOOP_MOST * STANCE_LOOP_MOST], sorted[STANCE_LOOP_MOST][2];
-    if (n < 1 || n > STANCE_LOOP_MOST || !matrix_finite((size_t)(n * n), A))
+    if (n < 1 || n > STANCE_LOOP_MOST || !matrix_finite((size_t)n * (size_t)n, A))
         return STANCE_BAD_ARGUMENT;
     memcpy(copy, A, (size_t)(n * n) * sizeof *A);
     if (LAPACKE_dgeev(LAPACK_COL_MAJOR, 'N', 'N', n, copy, n, re, im, NULL, 1, NULL, 1) != 0)
@@ -56,7 +56,8 @@ stance_error stance_check_plant(const stance_plant *plant, stance_message *messa
     if (n < 1 || m < 1 || n > STANCE_PLANT_MOST || m > STANCE_PLANT_MOST)
         return stance_refuse(message, STANCE_BAD_ARGUMENT,
                              "a design needs 1 to %d states and inputs", STANCE_PLANT_MOST);
-    if (!matrix_finite((size_t)(n * n), plant->A) || !matrix_finite((size_t)(n * m), plant->B))
+    if (!matrix_finite((size_t)n * (size_t)n, plant->A) ||
+        !matrix_finite((size_t)n * (size_t)m, plant->B))
         return stance_refuse(message, STANCE_BAD_ARGUMENT, "A and B must be finite");
     return STANCE_OK;
 }

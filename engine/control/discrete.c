@@ -42,7 +42,7 @@ stance_error stance_exponential(int n, const double *A, double T, double *E, dou
     /* The transposes that Fortran sees have transposed exponentials. */
     mb05nd_(&n, &T, A, &n, E, &n, integral ? integral : unused, &n, &tolerance, integers, work,
             &room, &info);
-    return info == 0 && matrix_finite((size_t)(n * n), E) ? STANCE_OK : STANCE_NUMERICAL;
+    return info == 0 && matrix_finite((size_t)n * (size_t)n, E) ? STANCE_OK : STANCE_NUMERICAL;
 }
 
 enum { N = STANCE_PLANT_MOST, LOOP = STANCE_LOOP_MOST };
@@ -61,7 +61,7 @@ static stance_error sampled_make(sampled *s, const stance_plant *plant, const do
     const stance_error error = stance_check_plant(plant, NULL);
     const int n = plant->states, m = plant->inputs;
     if (error != STANCE_OK || delay < 0 || (delay && !K) || n + delay * m > LOOP ||
-        (K && !matrix_finite((size_t)(n * m), K)))
+        (K && !matrix_finite((size_t)n * (size_t)m, K)))
         return STANCE_BAD_ARGUMENT;
     s->plant = plant, s->K = K;
     s->n = n, s->m = m, s->delay = delay;
@@ -76,7 +76,7 @@ static stance_error sampled_discretise(sampled *s, double T)
     if (error != STANCE_OK)
         return error;
     matrix_multiply(s->n, s->n, s->m, s->integral, s->plant->B, s->Bd);
-    return matrix_finite((size_t)(s->n * s->m), s->Bd) ? STANCE_OK : STANCE_NUMERICAL;
+    return matrix_finite((size_t)s->n * (size_t)s->m, s->Bd) ? STANCE_OK : STANCE_NUMERICAL;
 }
 
 stance_error stance_discretise(const stance_plant *plant, double T, double *Ad, double *Bd)
@@ -163,7 +163,7 @@ stance_error stance_sampled_wander(const stance_plant *plant, const stance_sampl
                                    const double *measured, double commanded, double *rms)
 {
     sampled s;
-    double P[LOOP * LOOP], half[LOOP * LOOP], next[LOOP * LOOP], largest = 1;
+    double P[LOOP * LOOP] = {0}, half[LOOP * LOOP], next[LOOP * LOOP] = {0}, largest = 1;
     if (!isfinite(loop->T) || loop->T <= 0 || !loop->K)
         return STANCE_BAD_ARGUMENT;
     stance_error error = sampled_make(&s, plant, loop->K, loop->delay);
@@ -430,7 +430,7 @@ stance_error stance_place(stance_placement how, const stance_plant *plant, doubl
                           stance_message *message)
 {
     const placement wanted = {plant, poles};
-    stance_robustness ignored;
+    stance_robustness ignored = {0};
     robustness = robustness ? robustness : &ignored;
     *robustness = (stance_robustness){0, NAN};
     if (!isfinite(T) || T < 0)

@@ -23,7 +23,7 @@ stance_error stance_solve_lyapunov(int n, const double *F, bool discrete, const 
 {
     enum { N = STANCE_PLANT_MOST };
     const int work = n * n + 4 * n;
-    const size_t nn = (size_t)(n * n);
+    const size_t nn = (size_t)n * (size_t)n;
     double a[N * N], u[N * N], re[N], im[N], dwork[N * N + 4 * N];
     double scale = 1, separation = 0, bound = 0;
     int integers = 0, info = 0;
@@ -55,7 +55,7 @@ static stance_error check_stable(int n, const double *loop, bool sampled, stance
 stance_error stance_lyapunov(int n, const double *loop, bool sampled, const double *weight,
                              double *P, stance_message *message)
 {
-    const size_t nn = (size_t)(n * n);
+    const size_t nn = (size_t)n * (size_t)n;
     double factor[STANCE_PLANT_MOST * STANCE_PLANT_MOST];
     if (n < 1 || n > STANCE_PLANT_MOST || !matrix_finite(nn, loop))
         return stance_refuse(message, STANCE_BAD_ARGUMENT,
@@ -85,9 +85,9 @@ stance_error stance_sublevel(int n, const double *P, const stance_bounds *bounds
     enum { N = STANCE_PLANT_MOST };
     const int count = bounds->count;
     double factor[N * N];
-    if (n < 1 || n > N || count < 0 || !matrix_finite((size_t)(n * n), P))
+    if (n < 1 || n > N || count < 0 || !matrix_finite((size_t)n * (size_t)n, P))
         return STANCE_BAD_ARGUMENT;
-    double *const solved = matrix_room((size_t)(n * (count + n)));
+    double *const solved = matrix_room((size_t)n * (size_t)(count + n));
     if (!solved)
         return STANCE_NO_MEMORY;
     /* Columns P^-1 a_k, then P^-1 e_i; row-major [count][n] is column-major [n][count]. */

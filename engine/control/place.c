@@ -523,7 +523,7 @@ static bool solve_from(problem *p, const number *start, double *K, candidate *c)
 static stance_error solve(problem *p, double *K, candidate *c, stance_message *message)
 {
     candidate mirrored = {0};
-    double other[N * N];
+    double other[N * N] = {0};
     int before = 0;
     const stance_error error =
         screen(p, &before) ? finish(p, K, c, message) : not_independent(message);

@@ -82,7 +82,7 @@ static stance_error assign(const stance_plant *plant, const double complex *pole
             for (int k = 0; k < n; k++)
                 K[j * n + i] -= f[k * m + j] * turn[k * n + i];
         }
-    if (info != 0 || !matrix_finite((size_t)(n * m), K))
+    if (info != 0 || !matrix_finite((size_t)n * (size_t)m, K))
         return STANCE_NUMERICAL;
     return assigned == n
                ? STANCE_OK

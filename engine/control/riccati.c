@@ -67,7 +67,7 @@ static stance_error solve_riccati(regulator *g)
             &n, b, &n, g->Q, &n, g->R, &m, l, &n, &rcond, g->X, &n, alpha[0], alpha[1], alpha[2], s,
             &side, t, &side, u, &two, &tolerance, integers, dwork, &work, unused, &info, 1, 1, 1, 1,
             1, 1);
-    const bool good = info == 0 && matrix_finite((size_t)(n * n), g->X);
+    const bool good = info == 0 && matrix_finite((size_t)n * (size_t)n, g->X);
     return good ? STANCE_OK : STANCE_NUMERICAL;
 }
 
@@ -75,7 +75,7 @@ static stance_error solve_riccati(regulator *g)
 static stance_error feedback(const regulator *g, double *K)
 {
     const int n = g->n, m = g->m;
-    double XB[N * N], left[N * N], right[N * N], turned[N * N];
+    double XB[N * N], left[N * N] = {0}, right[N * N] = {0}, turned[N * N];
     matrix_multiply(n, n, m, g->X, g->B, XB);
     if (g->discrete) {
         matrix_transpose(n, m, g->B, turned);
@@ -95,12 +95,12 @@ static stance_error feedback(const regulator *g, double *K)
     if (LAPACKE_dposv(LAPACK_COL_MAJOR, 'U', m, n, left, m, right, m) != 0)
         return STANCE_NUMERICAL;
     matrix_transpose(n, m, right, K);
-    return matrix_finite((size_t)(n * m), K) ? STANCE_OK : STANCE_NUMERICAL;
+    return matrix_finite((size_t)n * (size_t)m, K) ? STANCE_OK : STANCE_NUMERICAL;
 }
 
 static stance_error is_stable(const regulator *g, const double *K, bool *stable)
 {
-    double loop[N * N], re[N], im[N];
+    double loop[N * N] = {0}, re[N], im[N];
     matrix_close(g->n, g->m, g->A, g->B, K, loop);
     const stance_error error = stance_eigenvalues(g->n, loop, re, im);
     *stable = true;

@@ -228,18 +228,20 @@ static stance_error balance(const stance_plant *plant, struct balanced *b, doubl
 static stance_error make_rest(const struct balanced *b, struct unreached *out)
 {
     const int n = b->n, rest = n - out->count;
-    double rows[N * N], V[N * N], AV[N * N];
+    double rows[N * N], V[N * N] = {0}, AV[N * N];
     int left;
     matrix_transpose(out->count, n, out->row, rows);
     /* The rows are independent: none of their singular values is 0. */
     const stance_error error = null_space(out->count, n, rows, -1, V, &left);
+    if (error != STANCE_OK)
+        return error;
     multiply(true, n, n, rest, b->A, V, AV); /* A' by columns, flipped: A V */
     multiply(true, rest, n, rest, V, AV, rows);
     matrix_transpose(rest, rest, rows, out->A);
     for (int i = 0; i < rest; i++)
         for (int j = 0; j < n; j++)
             out->rest[i * n + j] = V[i * n + j] * out->scale[j];
-    return error;
+    return STANCE_OK;
 }
 
 stance_error stance_unreached_find(const stance_plant *plant, struct unreached *out)

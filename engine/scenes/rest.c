@@ -78,7 +78,7 @@ static void accelerate(const struct near *e, const double *s, const double *torq
 static void linearise(struct near *e)
 {
     const int n = e->n, m = e->m, d = e->d;
-    double a[2][N];
+    double a[2][N] = {{0}};
     for (int j = 0; j < 2 * d + m; j++) {
         double command[2][2 * M];
         for (int side = 0; side < 2; side++) {
@@ -155,7 +155,7 @@ static void times(int n, double *A, const double *B)
 /* A[n][n] becomes exp(A T): Taylor's series of a part of it, squared. */
 static void exponential(int n, double *A, double T)
 {
-    double term[STATES * STATES], sum[STATES * STATES];
+    double term[STATES * STATES] = {0}, sum[STATES * STATES];
     int squarings = 0;
     for (double size = n * matrix_largest(n * n, A) * T; size > 0.5 && squarings < 60; squarings++)
         size *= 0.5, T *= 0.5;
@@ -243,13 +243,14 @@ static int map_of(const struct near *e, double *A)
 static bool bounded(int n, double *A, double time, double whole)
 {
     const double bound = GROWTH * fmax(1, matrix_largest(n * n, A));
-    for (; time < whole; time *= 2) {
+    while (time < whole) {
         const double size = matrix_largest(n * n, A);
         if (!(size <= ENDLESS))
             return false;
         if (n * size < 0.5) /* it decays */
             return true;
         times(n, A, A);
+        time *= 2;
     }
     return matrix_largest(n * n, A) <= bound;
 }

@@ -493,7 +493,7 @@ static enum trials_end run_stages(struct search *search, struct course *at, stan
     enum trials_end end = TRIALS_DONE;
     for (int k = 0; k < search->stages && end == TRIALS_DONE; k++) {
         at->stage = &search->stage[k];
-        if (at->stage->stage == 0) {
+        if (!at->cma || at->stage->stage == 0) {
             if (k > 0)
                 start.mean = &search->record.coordinate[(size_t)at->best * (size_t)space->n];
             start.lambda = at->stage->lambda;
@@ -501,7 +501,8 @@ static enum trials_end run_stages(struct search *search, struct course *at, stan
             cma_free(at->cma);
             at->cma = cma_make(&start);
             const bool good = at->cma || no_memory(message);
-            if (!parallel_agree(search->parallel, good, message->text, sizeof message->text))
+            if (!parallel_agree(search->parallel, good, message->text, sizeof message->text) ||
+                !good)
                 return TRIALS_BROKEN;
         }
         end = run_stage(search, at, message);

@@ -434,7 +434,7 @@ enum trials_end elsewhere_run(const struct trials *with, int where, size_t candi
         there->search.critical = 0;
     }
     const bool good = (there && trials_make(&trials, there, with->parallel)) || no_memory(message);
-    if (parallel_agree(with->parallel, good, message->text, sizeof message->text)) {
+    if (parallel_agree(with->parallel, good, message->text, sizeof message->text) && good) {
         trials.has_kernels = true; /* those of `with` */
         trials.attend = with->attend;
         trials.context = with->context;

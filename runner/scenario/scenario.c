@@ -370,7 +370,7 @@ static bool read_version(struct reader *r)
     if (version && (version->kind != TREE_SCALAR || version->quoted ||
                     !number_parse(version->text, &number, &finite)))
         return field_mismatch(&r->problems, "stance", "the version of the format, 1", version);
-    return number == 1 || /* what is missing is reported later */
+    return !version || number == 1 || /* what is missing is reported later */
            problem_add(&r->problems, version->mark,
                        "stance: this program reads version 1 of the format, not %s",
                        shown(word, version->text));

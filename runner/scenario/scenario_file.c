@@ -129,13 +129,13 @@ static void drop_key(struct tree_node *node, const char *path)
     for (bool first = true; node && *path; first = false) {
         if (!tree_path_step(&path, first, name, &index) || !tree_place(node, name, &i))
             return;
-        if (*path) {
-            node = node->item[i];
-            continue;
+        if (!*path) {
+            node->count--;
+            memmove(&node->key[i], &node->key[i + 1], (node->count - i) * sizeof *node->key);
+            memmove(&node->item[i], &node->item[i + 1], (node->count - i) * sizeof(void *));
+            return;
         }
-        node->count--;
-        memmove(&node->key[i], &node->key[i + 1], (node->count - i) * sizeof *node->key);
-        memmove(&node->item[i], &node->item[i + 1], (node->count - i) * sizeof(void *));
+        node = node->item[i];
     }
 }
 

@@ -55,6 +55,8 @@ void schema_fill(char *text, size_t size, const char *format, const char *other)
 static bool add_quantities(struct schema *schema, const struct row *row)
 {
     const stance_scene *const scene = schema->scene;
+    if (!scene)
+        return false; /* never: such rows are by_scene */
     const stance_carried *const carried = scene->mechanism->carried;
     const bool robot = row->family == FAMILY_ROBOT, posture = row->family == FAMILY_POSTURE,
                offset = row->family == FAMILY_OFFSET;
@@ -88,6 +90,8 @@ static bool add_quantities(struct schema *schema, const struct row *row)
 static bool add_named(struct schema *schema, const struct row *row)
 {
     const stance_scene *const scene = schema->scene;
+    if (!scene)
+        return false; /* never: such rows are by_scene */
     const bool gains = row->family == FAMILY_GAINS, inputs = row->family == FAMILY_INPUTS;
     const int p = scene->postures, columns = inputs ? 1 : 2 * p,
               rows = gains || inputs ? scene->actuators : 1;

@@ -148,18 +148,19 @@ struct look {
 
 static bool add_point(struct look *look, const char *text, double number, size_t part, size_t place)
 {
-    struct point *larger = realloc(look->point, (look->points + 1) * sizeof *larger);
-    char *const own = strdup(text);
-    look->point = larger ? larger : look->point;
-    if (!larger || !own) {
-        free(own);
+    struct point *const larger = realloc(look->point, (look->points + 1) * sizeof *larger);
+    if (!larger)
         return false;
-    }
-    const double before = place > 0 ? larger[look->points - 1].number : NAN;
+    look->point = larger;
+    struct point *const made = &look->point[look->points];
+    *made = (struct point){strdup(text), number, part, place};
+    if (!made->text)
+        return false;
+    const double before = place > 0 ? made[-1].number : NAN;
     look->rising = look->rising && !(place > 0 && !(number > before));
     look->falling = look->falling && !(place > 0 && !(number < before));
     look->numbers = look->numbers && !isnan(number);
-    larger[look->points++] = (struct point){own, number, part, place};
+    look->points++;
     return true;
 }
 
@@ -200,6 +201,8 @@ static bool look_at_value(struct merge *m, struct look *look, size_t p)
     const char *const text = m->part[p].value ? m->part[p].value : m->part[0].value;
     double number;
     bool finite;
+    if (!text)
+        return no_memory(&m->message);
     if (!number_parse(text, &number, &finite))
         number = strcmp(text, "none") == 0 ? INFINITY : NAN;
     m->part[p].of.points = 1;
@@ -381,7 +384,7 @@ static bool set_recorded(struct merge *m, const struct look *look, struct tree *
     for (size_t i = 0; row && i < look->records; i++)
         row[i] = adopt_row(&m->part[look->recorded[i].part].of, look->recorded[i].row);
     const size_t count = row ? numbers_unite(row, look->records) : 0;
-    for (size_t i = 0; i < count; i++)
+    for (size_t i = 0; i < count && i < look->records; i++)
         same = same && look->recorded[i].part == 0 && look->recorded[i].row == row[i];
     if (good) {
         fputs("record.cases=", out);

@@ -24,7 +24,9 @@ static bool read_varied(struct results *r, const char *path, int factor, stance_
     char *words = hdf_text(from.id, "flag_meanings"), *rest = words;
     v->of.value = malloc(n * sizeof *v->of.value);
     v->word = words ? calloc(UINT8_MAX, sizeof *v->word) : NULL;
-    bool good = (v->of.value && (v->word || !words)) || results_no_memory(r, message);
+    bool good = v->of.value && (v->word || !words);
+    if (!good)
+        results_no_memory(r, message);
     if (words)
         results_clean(words);
     for (v->words = 0; good && rest && v->words < UINT8_MAX; v->words++)

@@ -103,8 +103,9 @@ bool results_trajectory(const struct results *r, size_t place, uint64_t index,
     t->time = rows ? malloc(rows * sizeof *t->time) : NULL;
     bool good = t->time && t->coordinates > 0 &&
                 results_numbers(r, "trajectory/time", t->time, rows) == rows;
-    good = (good || results_damaged(r, "the trajectories lack a dimension", message)) &&
-           read_tracks(r, t, place, rows, message);
+    if (!good)
+        results_damaged(r, "the trajectories lack a dimension", message);
+    good = good && read_tracks(r, t, place, rows, message) && t->position; /* it saw to that */
     if (good)
         t->rows = count_rows(t, rows);
     else

@@ -48,23 +48,23 @@ static const struct {
 /* Attributes: texts, and numbers with the type of the file and of memory. */
 static const struct {
     const char *name;
-    enum store_kind kind;
     size_t offset;
+    enum store_kind kind;
     bool whole; /* a text of lines, taken as it is */
 } attributes[] = {
 #define MEMBER(member) offsetof(struct search_file, member)
-    {"title", KIND_text, MEMBER(title), false},
-    {"git_revision", KIND_text, MEMBER(revision), false},
-    {"date", KIND_text, MEMBER(date), false},
-    {"scenario", KIND_text, MEMBER(scenario), true},
-    {"first_scenario", KIND_text, MEMBER(first_scenario), true},
-    {"note", KIND_text, MEMBER(note), false},
-    {"chosen", KIND_int64_t, MEMBER(chosen), false},
-    {"most_generations", KIND_int64_t, MEMBER(most_generations), false},
-    {"most_cases", KIND_double, MEMBER(most_cases), false},
-    {"finished", KIND_int32_t, MEMBER(finished), false},
-    {"linear_limit", KIND_double, MEMBER(linear_limit), false},
-    {"wall_time", KIND_double, MEMBER(seconds), false},
+    {"title", MEMBER(title), KIND_text, false},
+    {"git_revision", MEMBER(revision), KIND_text, false},
+    {"date", MEMBER(date), KIND_text, false},
+    {"scenario", MEMBER(scenario), KIND_text, true},
+    {"first_scenario", MEMBER(first_scenario), KIND_text, true},
+    {"note", MEMBER(note), KIND_text, false},
+    {"chosen", MEMBER(chosen), KIND_int64_t, false},
+    {"most_generations", MEMBER(most_generations), KIND_int64_t, false},
+    {"most_cases", MEMBER(most_cases), KIND_double, false},
+    {"finished", MEMBER(finished), KIND_int32_t, false},
+    {"linear_limit", MEMBER(linear_limit), KIND_double, false},
+    {"wall_time", MEMBER(seconds), KIND_double, false},
 #undef MEMBER
 };
 enum { ATTRIBUTES = sizeof attributes / sizeof *attributes };
