@@ -22,11 +22,18 @@ static void point_text(const struct axis_reader *a, const struct tree_node *node
     add_text(text, size, "%s", row ? "]" : "");
 }
 
+/* A point of a list. (Pages have no qsort_r.) */
+struct listed {
+    const struct scenario_axis *axis;
+    size_t place;
+};
+
 /* By their values, then by their place in the list. */
-static int compare_points(const void *left, const void *right, void *of)
+static int compare_points(const void *left, const void *right)
 {
-    const struct scenario_axis *const axis = of;
-    const size_t a = *(const size_t *)left, b = *(const size_t *)right;
+    const struct scenario_axis *const axis = ((const struct listed *)left)->axis;
+    const size_t a = ((const struct listed *)left)->place,
+                 b = ((const struct listed *)right)->place;
     for (int k = 0; k < axis->paths; k++) {
         const double x = scenario_axis_value(axis, a, k), y = scenario_axis_value(axis, b, k);
         if (x != y) /* 0 and -0 are the same */
@@ -46,19 +53,19 @@ static bool same_point(const struct scenario_axis *axis, size_t a, size_t b)
 bool axis_check_values(struct axis_reader *a, const struct tree_node *values)
 {
     const size_t n = a->axis->count;
-    size_t *const order = malloc(n * sizeof *order), at = 1;
+    struct listed *const order = malloc(n * sizeof *order);
+    size_t at = 1;
     if (!order)
         return problem_no_memory(&a->r->problems);
     for (size_t i = 0; i < n; i++)
-        order[i] = i;
-    qsort_r(order, n, sizeof *order, compare_points, a->axis);
-    while (at < n && !same_point(a->axis, order[at - 1], order[at]))
+        order[i] = (struct listed){a->axis, i};
+    qsort(order, n, sizeof *order, compare_points);
+    while (at < n && !same_point(a->axis, order[at - 1].place, order[at].place))
         at++;
     const bool good = at >= n;
     if (!good) {
-        const struct tree_node *const one = values->item[order[at - 1]], *const other =
-                                                                             values
-                                                                                 ->item[order[at]];
+        const struct tree_node *const one = values->item[order[at - 1].place];
+        const struct tree_node *const other = values->item[order[at].place];
         char first[128], second[128];
         point_text(a, one, first, sizeof first);
         point_text(a, other, second, sizeof second);
