@@ -46,12 +46,6 @@ static inline double matrix_dot(int n, const double *a, const double *b)
     return sum;
 }
 
-/* Room for `count` numbers, zero; count may be 0. */
-static inline double *matrix_room(size_t count)
-{
-    return calloc(count ? count : 1, sizeof(double));
-}
-
 /* Its Frobenius norm. */
 static inline double matrix_norm(int count, const double *x)
 {

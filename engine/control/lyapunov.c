@@ -87,7 +87,7 @@ stance_error stance_sublevel(int n, const double *P, const stance_bounds *bounds
     double factor[N * N];
     if (n < 1 || n > N || count < 0 || !matrix_finite((size_t)n * (size_t)n, P))
         return STANCE_BAD_ARGUMENT;
-    double *const solved = matrix_room((size_t)n * (size_t)(count + n));
+    double *const solved = calloc((size_t)n * (size_t)(count + n), sizeof *solved);
     if (!solved)
         return STANCE_NO_MEMORY;
     /* Columns P^-1 a_k, then P^-1 e_i; row-major [count][n] is column-major [n][count]. */

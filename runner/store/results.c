@@ -268,19 +268,30 @@ bool results_column_read(const struct results *r, const struct results_column *c
     return true;
 }
 
+/* A variable of one number a case, and room for all of `size` bytes each; NULL where it is not
+ * stored (column->id < 0), or for the reason in the message (not *good). */
+static void *open_single(const struct results *r, const char *name, struct results_column *column,
+                         size_t size, bool *good, stance_message *message)
+{
+    void *room = NULL;
+    *good = results_column_open(r, name, column, message);
+    if (!*good || column->id < 0)
+        return NULL;
+    if (column->width != 1)
+        *good = results_damaged(r, "a variable is not as its axes say", message);
+    else if (!(room = malloc(r->cases * size)))
+        *good = results_no_memory(r, message);
+    return room;
+}
+
 bool results_answer(const struct results *r, const char *name, double **values,
                     stance_message *message)
 {
     struct results_column column;
-    *values = NULL;
-    if (!results_column_open(r, name, &column, message))
-        return false;
+    bool good;
+    *values = open_single(r, name, &column, sizeof **values, &good, message);
     if (column.id < 0)
-        return true;
-    bool good =
-        column.width == 1 || results_damaged(r, "a variable is not as its axes say", message);
-    if (good && !(*values = malloc(r->cases * sizeof **values)))
-        good = results_no_memory(r, message);
+        return good;
     good = good && results_column_read(r, &column, 0, r->cases, *values, message);
     results_column_close(&column);
     for (uint64_t i = 0; good && i < r->cases; i++)
@@ -302,15 +313,10 @@ static bool read_codes(const struct results *r, const char *name, bool failures,
 {
     uint8_t now[UINT8_MAX + 1] = {0};
     struct results_column column;
-    *codes = NULL;
-    if (!results_column_open(r, name, &column, message))
-        return false;
+    bool good;
+    *codes = open_single(r, name, &column, sizeof **codes, &good, message);
     if (column.id < 0)
-        return true;
-    bool good =
-        column.width == 1 || results_damaged(r, "a variable is not as its axes say", message);
-    if (good && !(*codes = malloc(r->cases)))
-        good = results_no_memory(r, message);
+        return good;
     good = good &&
            (hdf_read((hid_t)column.id, KIND_uint8_t, *codes) || results_failed(r, name, message));
     char *rest = failures ? column.words : NULL;
