@@ -147,7 +147,6 @@ HOT void solve_contacts(const struct contact_problem *p, mask where, lanes (*r)[
     solve_rest(p, unsure, many, r, v);
 #else
     /* Copies, because what is passed by address has to stay in memory. */
-    struct contact_problem own = *p;
     lanes D[CONTACTS][CONTACTS][2][2], uf[CONTACTS][2], r1[CONTACTS][2];
     lanes sliding[CONTACTS], shift[CONTACTS][2], last[CONTACTS][2];
     mask part[CONTACTS];
@@ -168,10 +167,17 @@ HOT void solve_contacts(const struct contact_problem *p, mask where, lanes (*r)[
         EACH_IN (k, p->touching)
             memcpy(D[c][k], p->D[c][k], sizeof D[c][k]);
     }
-    own.D = D, own.uf = uf, own.active = part;
-    own.sliding = p->sliding ? sliding : NULL;
-    own.shift = p->shift ? shift : NULL;
-    own.last = p->last ? last : NULL;
+    const struct contact_problem own = {.D = D,
+                                        .uf = uf,
+                                        .touching = p->touching,
+                                        .active = part,
+                                        .friction = p->friction,
+                                        .prefer = p->prefer,
+                                        .sliding = p->sliding ? sliding : NULL,
+                                        .shift = p->shift ? shift : NULL,
+                                        .indefinite = p->indefinite,
+                                        .last = p->last ? last : NULL,
+                                        .known = p->known};
     solve_rest(&own, unsure, many, r1, &verdict);
     EACH_CONTACT (c, 0)
         EACH (a, 0, 2)

@@ -190,7 +190,8 @@ HOT mask ordinary_newton(const struct ordinary *q, const struct step *step, mask
 #ifdef CONTACT_LISTS
         there |= ordinary_more(q, step, full, running, touching, it);
 #else /* with copies: what is passed on by address stays in memory */
-        const struct step same = *step;
+        const struct step same = {step->set, step->from,         step->torque, step->coupled,
+                                  step->h,   step->freeze_after, step->corner};
         struct iterate copy = *it;
         there |= ordinary_more(q, &same, full, running, touching, &copy);
         *it = copy;

@@ -239,48 +239,42 @@ HOT mask project_position(const struct step *step, contact_set touching, bool im
     return run & LANES_NOT(todo) & mask_less(turned, lanes_of(STEP_FARTHEST));
 }
 
-/* What holds contacts in `touching` at one place: the operator that takes impulses to velocities,
- * in the rows that are held, factored. */
-struct grip {
+/* Contacts in `touching` at one place. Pointers alone: beside numbers, in memory, they would keep
+ * there what they point to. */
+struct held {
     const struct setting *set;
     const scene_trig *trig;
     contact_set touching;
     const lanes (*response)[2][SCENE_COORDINATES]; /* to a unit impulse at a contact */
     const lanes (*rebound)[2]; /* NULL, or minus the velocities that restitution asks for */
-    mask rows[CONTACTS][2];    /* normal, tangential of each contact */
+};
+/* What holds them: the operator that takes impulses to velocities, in the rows that are held. */
+struct grip {
+    mask rows[CONTACTS][2]; /* normal, tangential of each contact */
     struct contact_factors factors;
 };
 
-/* At the end of a step, without restitution. */
-HOT void grip_of(const struct step *step, contact_set touching, const struct iterate *it,
-                 struct grip *g)
-{
-    g->set = step->set;
-    g->trig = &it->end;
-    g->touching = touching;
-    g->response = it->response;
-    g->rebound = NULL;
-}
 /* Fills in the factors from the rows. */
-HOT void grip_factor(struct grip *g)
+HOT void grip_factor(const struct held *of, struct grip *g)
 {
     lanes D[CONTACTS][CONTACTS][2][2], M[CONTACTS][CONTACTS][2][2];
-    motion_operator(&g->set->body, g->trig, g->touching, g->response, D);
-    contact_matrix(g->touching, D, g->rows, NULL, M);
-    contact_factor(g->touching, CONTACT_CAREFUL, M, &g->factors);
+    motion_operator(&of->set->body, of->trig, of->touching, of->response, D);
+    contact_matrix(of->touching, D, g->rows, NULL, M);
+    contact_factor(of->touching, CONTACT_CAREFUL, M, &g->factors);
 }
 
 /* What is wrong with the velocities u of the contacts, in the rows that are held. Returns the lanes
  * where it matters. */
-HOT mask project_wrong(const struct grip *g, const lanes (*u)[2], lanes (*wrong)[2])
+HOT mask project_wrong(const struct held *of, const struct grip *g, const lanes (*u)[2],
+                       lanes (*wrong)[2])
 {
     const lanes none = lanes_of(0);
     mask off = MASK_NONE;
-    EACH_IN (c, g->touching) {
+    EACH_IN (c, of->touching) {
         wrong[c][0] = wrong[c][1] = none;
         lanes normal = u[c][0], along = u[c][1];
-        if (g->rebound)
-            normal = normal + g->rebound[c][0], along = along + g->rebound[c][1];
+        if (of->rebound)
+            normal = normal + of->rebound[c][0], along = along + of->rebound[c][1];
         wrong[c][0] = choose(g->rows[c][0], normal, none);
         if (contact_unknowns(c) == 2)
             wrong[c][1] = choose(g->rows[c][1], along, none);
@@ -293,20 +287,20 @@ HOT mask project_wrong(const struct grip *g, const lanes (*u)[2], lanes (*wrong)
 
 /* Takes that away by moving the velocity w along the responses, in the lanes of `where`; u follows.
  * Returns what that adds to the energy. */
-HOT lanes project_move_velocity(const struct grip *g, mask where, const lanes (*wrong)[2], lanes *w,
-                                lanes (*u)[2])
+HOT lanes project_move_velocity(const struct held *of, const struct grip *g, mask where,
+                                const lanes (*wrong)[2], lanes *w, lanes (*u)[2])
 {
     lanes x[CONTACTS][2], energy = lanes_of(0);
-    contact_back(g->touching, &g->factors, wrong, x);
-    EACH_IN (c, g->touching)
+    contact_back(of->touching, &g->factors, wrong, x);
+    EACH_IN (c, of->touching)
         EACH (a, 0, 2)
             if (a < contact_unknowns(c))
                 EACH (i, 0, SCENE_COORDINATES)
                     w[i] = choose(g->rows[c][a] & where,
-                                  lanes_fma(g->response[c][a][i], x[c][a], w[i]), w[i]);
-    EACH_IN (c, g->touching) {
+                                  lanes_fma(of->response[c][a][i], x[c][a], w[i]), w[i]);
+    EACH_IN (c, of->touching) {
         const lanes before[2] = {u[c][0], u[c][1]};
-        scene_contact_velocity(&g->set->body, g->trig, c, w, u[c]);
+        scene_contact_velocity(&of->set->body, of->trig, c, w, u[c]);
         EACH (a, 0, 2)
             if (a < contact_unknowns(c))
                 energy =
@@ -316,46 +310,46 @@ HOT lanes project_move_velocity(const struct grip *g, mask where, const lanes (*
 }
 
 /* Once more, and again, in the lanes of `off`. */
-COLD lanes project_again(const struct grip *g, mask off, lanes *w, lanes (*u)[2])
+COLD lanes project_again(const struct held *of, const struct grip *g, mask off, lanes *w,
+                         lanes (*u)[2])
 {
     lanes energy = lanes_of(0), wrong[CONTACTS][2];
     for (int round = 1; round < PROJECT_ROUNDS && mask_any(off); round++) {
-        project_wrong(g, u, wrong);
-        const lanes added = project_move_velocity(g, off, wrong, w, u);
+        project_wrong(of, g, u, wrong);
+        const lanes added = project_move_velocity(of, g, off, wrong, w, u);
         energy += choose(off, added, lanes_of(0));
-        off &= project_wrong(g, u, wrong);
+        off &= project_wrong(of, g, u, wrong);
     }
     return energy;
 }
 
 /* Moves the velocity w along the responses until the contacts' velocities u (out) are what the laws
  * ask for, in the rows that are held. *energy: the sum of what that adds. */
-HOT void project_along(const struct grip *g, lanes *w, lanes (*u)[2], lanes *energy)
+HOT void project_along(const struct held *of, const struct grip *g, lanes *w, lanes (*u)[2],
+                       lanes *energy)
 {
     lanes wrong[CONTACTS][2];
-    EACH_IN (c, g->touching)
-        scene_contact_velocity(&g->set->body, g->trig, c, w, u[c]);
-    project_wrong(g, u, wrong);
-    *energy += project_move_velocity(g, LANES_ALL, wrong, w, u);
-    const mask off = project_wrong(g, u, wrong);
+    EACH_IN (c, of->touching)
+        scene_contact_velocity(&of->set->body, of->trig, c, w, u[c]);
+    project_wrong(of, g, u, wrong);
+    *energy += project_move_velocity(of, g, LANES_ALL, wrong, w, u);
+    const mask off = project_wrong(of, g, u, wrong);
     if (!mask_any(off))
         return;
 #ifdef CONTACT_LISTS
-    *energy += project_again(g, off, w, u);
+    *energy += project_again(of, g, off, w, u);
 #else /* with copies: what is passed by address has to stay in memory */
     lanes moved[SCENE_COORDINATES], v[CONTACTS][2], response[CONTACTS][2][SCENE_COORDINATES];
     lanes rebound[CONTACTS][2];
-    const scene_trig trig = *g->trig;
-    struct grip same = *g;
+    const scene_trig trig = *of->trig;
+    const struct grip same = *g;
+    const struct held copy = {of->set, &trig, of->touching, response, of->rebound ? rebound : NULL};
     memcpy(moved, w, sizeof moved);
     memcpy(v, u, sizeof v);
-    memcpy(response, g->response, sizeof response);
-    same.trig = &trig, same.response = response;
-    if (g->rebound) {
-        memcpy(rebound, g->rebound, sizeof rebound);
-        same.rebound = rebound;
-    }
-    *energy += project_again(&same, off, moved, v);
+    memcpy(response, of->response, sizeof response);
+    if (of->rebound)
+        memcpy(rebound, of->rebound, sizeof rebound);
+    *energy += project_again(&copy, &same, off, moved, v);
     memcpy(w, moved, sizeof moved);
     memcpy(u, v, sizeof v);
 #endif
@@ -436,9 +430,8 @@ static inline mask project_far(const struct step *step, contact_set touching, ma
 {
     const struct setting *const set = step->set;
     lanes response[CONTACTS][2][SCENE_COORDINATES], rebound[CONTACTS][2];
+    const struct held of = {set, &it->end, touching, response, rebound};
     struct grip g;
-    grip_of(step, touching, it, &g);
-    g.response = response, g.rebound = rebound;
     memset(g.rows, 0, sizeof g.rows);
     for (int c = 0; c < OWN_CONTACTS; c++) {
         it->brought[c] = MASK_NONE;
@@ -452,8 +445,8 @@ static inline mask project_far(const struct step *step, contact_set touching, ma
     mask where = run; /* a lane in which nothing is left to do has done with it */
     for (int round = 0; round < 2 + OWN_CONTACTS; round++) {
         mask falls[CONTACTS], turns[CONTACTS], any = MASK_NONE;
-        grip_factor(&g);
-        project_along(&g, it->w, u, energy);
+        grip_factor(&of, &g);
+        project_along(&of, &g, it->w, u, energy);
         EACH_IN (c, touching) {
             falls[c] = project_falls(set, where, &g, c, it, u[c]);
             it->brought[c] |= falls[c] & LANES_NOT(it->active[c]);
@@ -478,8 +471,8 @@ static inline mask project_far(const struct step *step, contact_set touching, ma
 HOT mask project_near(const struct step *step, contact_set touching, bool full, mask run,
                       struct iterate *it, lanes (*u)[2], lanes *energy)
 {
+    const struct held of = {step->set, &it->end, touching, it->response, NULL};
     struct grip g;
-    grip_of(step, touching, it, &g);
     mask good = run, slides = MASK_NONE;
     project_rows(step->set, touching, run, it, &g);
     EACH_IN (c, touching)
@@ -490,14 +483,14 @@ HOT mask project_near(const struct step *step, contact_set touching, bool full, 
     if (stands) { /* with rows that are known to the compiler */
         EACH_IN (c, touching)
             g.rows[c][0] = g.rows[c][1] = LANES_ALL;
-        grip_factor(&g);
+        grip_factor(&of, &g);
         good &= project_position(step, touching, false, run, it, energy);
-        project_along(&g, it->w, u, energy);
+        project_along(&of, &g, it->w, u, energy);
         return good;
     }
-    grip_factor(&g);
+    grip_factor(&of, &g);
     good &= project_position(step, touching, false, run, it, energy);
-    project_along(&g, it->w, u, energy);
+    project_along(&of, &g, it->w, u, energy);
     /* Of contacts that are active: others may be in `touching` for a neighbour's sake. */
     EACH_IN (c, touching) {
         good &= LANES_NOT(project_falls(step->set, run & it->active[c], &g, c, it, u[c]));

@@ -219,7 +219,7 @@ HOT mask step_finish(const struct step *step, contact_set touching, enum step_ki
         EACH_IN (c, touching)
             report_friction(&report->impact_friction, c, struck, it->r);
     }
-    if (step->freeze_after < STEP_MAX_ITERATIONS)
+    if (impacts && step->freeze_after < STEP_MAX_ITERATIONS)
         converged &= step_obeys(step, it);
     lanes u[CONTACTS][2];
     mask part[CONTACTS], lands = MASK_NONE, rebounds = MASK_NONE;

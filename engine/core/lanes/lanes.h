@@ -156,6 +156,8 @@ typedef int64_t mask __attribute__((vector_size(16)));
 #define ISA_FMA(a, b, c) vfmaq_f64(c, a, b)
 #define ISA_FMS(a, b, c) vfmaq_f64(-(c), a, b)
 #define ISA_FNMA(a, b, c) vfmsq_f64(c, a, b)
+#else
+#error "no lanes of this width for these compiler flags"
 #endif
 #endif
 
