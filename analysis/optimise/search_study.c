@@ -169,7 +169,7 @@ bool search_allowed(const struct search_study *study, double *allowed)
     }
     memset(allowed, 0, starts * sizeof *allowed);
     for (size_t c = from; good && c < to; c++)
-        good = linear_limit_add(fresh, c, allowed);
+        good = !isnan(linear_limit_add(fresh, c, allowed));
     for (size_t i = 0; good && i < starts; i++)
         allowed[i] /= (double)(to - from);
     free(fresh);
