@@ -1,11 +1,8 @@
-/* search_front.c - see search_front.h. */
-#include "search_front.h"
-#include "search_summary.h"
+/* search_front.c - several searches: what differs in their scenarios. */
+#include "search_study.h"
 
 #include "runner/base/message.h"
 #include "runner/base/words.h"
-#include "runner/plan/allowed.h"
-#include "runner/scenario/schema.h"
 #include "runner/scenario/tree.h"
 
 #include <math.h>
@@ -183,6 +180,7 @@ bool search_front_open(struct search_front *front, const char *const *file, size
         struct search_study *const study = &front->study[front->count];
         good = search_study_open(study, file[front->count], message);
         front->count += good;
+        front->glued = front->glued || (good && study->glued);
         if (good && !study->done)
             good = complain(message, "%.150s: not finished: stance optimise --resume goes on",
                             study->file);
@@ -206,59 +204,4 @@ void search_front_close(struct search_front *front)
     free(front->study);
     free(front->at);
     *front = (struct search_front){0};
-}
-
-/* ---- the table ---------------------------------------------------------------------------- */
-
-static void make_table(struct table *t, const struct search_front *front)
-{
-    for (size_t i = 0; i < front->count; i++) {
-        const struct search_study *const study = &front->study[i];
-        const struct search_file *const f = &study->f;
-        const size_t chosen = (size_t)f->chosen, circumstances = f->length[SEARCH_CIRCUMSTANCE];
-        const double allowed = search_limit(study, chosen, NULL);
-        TABLE_FACTS(
-            t,
-            {{front->against.name, schema_last_name(front->against.name), .width = 10},
-             as_number(front->at[i])},
-            SEARCH_SHARE("first", "first %", 8, search_share(study, 0, SEARCH_OVERALL)),
-            SEARCH_INTERVAL("first_low", "first_high", search_interval(study, 0, SEARCH_OVERALL)),
-            SEARCH_SHARE("chosen", "chosen %", 8, search_share(study, chosen, SEARCH_OVERALL)),
-            SEARCH_INTERVAL("chosen_low", "chosen_high",
-                            search_interval(study, chosen, SEARCH_OVERALL)),
-            SEARCH_SHARE("allowed", "allowed %", 9, allowed),
-            {{"of_allowed", "of that", "%.1f", .width = 7, .percent = true},
-             as_number(search_share(study, chosen, SEARCH_OVERALL) / allowed)},
-            {{"glued", .hidden = TABLE_NO_CSV}, as_truth(study->glued)},
-            {{"critical_chosen", "T* chosen (s)", "%.4g", .width = 13},
-             as_number(f->confirmed_critical[chosen * circumstances])},
-            {{"file", "file", .width = 4, .left = true, .before = "  "}, as_text(study->file)});
-        table_end_row(t);
-    }
-}
-
-bool search_front_print(const struct search_front *front, enum table_form form)
-{
-    static const char text[] =
-        "{title}\n{.count} searches against {against}[unit: ({unit})][.text:: {.text}]\n"
-        "[also:also different: {also}\n]\n{.searches}"
-        "(of fresh starts, with 95 % intervals; allowed: by linear theory to any controller)\n"
-        "[.glued:(" ALLOWED_GLUED ")\n]";
-    const struct results_axis *const axis = &front->against;
-    struct table t = {0};
-    char view[300];
-    bool glued = false;
-    for (size_t i = 0; i < front->count; i++)
-        glued = glued || front->study[i].glued;
-    json_t *const facts = TABLE_OBJECT(
-        {"title", as_text(front->study[0].f.title)}, {"against", as_text(axis->name)},
-        {"unit", as_text(axis->unit[0] ? axis->unit : NULL)},
-        {"also", as_text(front->also[0] ? front->also : NULL)}, {".count", as_whole(front->count)},
-        {".text", as_text(axis->text)}, {".glued", as_truth(glued)});
-    make_table(&t, front);
-    snprintf(view, sizeof view,
-             "%s first first_low first_high chosen chosen_low chosen_high allowed of_allowed "
-             "critical_chosen file",
-             axis->name);
-    return table_say(form, table_show(facts, "searches", &t, view, 0), text, &t);
 }

@@ -70,7 +70,7 @@ size_t search_worst(const struct search_study *study, size_t k)
     if (!counts_worst(study))
         return circumstances > 1 ? SEARCH_OVERALL : 0;
     for (size_t c = 1; c < circumstances; c++)
-        if (search_share(study, k, c) < search_share(study, k, worst))
+        if (search_share(study, k, c).share < search_share(study, k, worst).share)
             worst = c;
     return worst;
 }
@@ -83,8 +83,7 @@ void search_circumstances(const struct search_study *study, size_t circumstance,
     *to = all ? study->f.length[SEARCH_CIRCUMSTANCE] : circumstance + 1;
 }
 
-static struct interval_draws draws_of(const struct search_study *study, size_t k,
-                                      size_t circumstance)
+struct search_share search_share(const struct search_study *study, size_t k, size_t circumstance)
 {
     struct interval_draws draws = {0};
     size_t from, to;
@@ -97,19 +96,7 @@ static struct interval_draws draws_of(const struct search_study *study, size_t k
             recovered += search_recovers(study, k, c, i);
         interval_add(&draws, recovered, (double)(to - from));
     }
-    return draws;
-}
-
-double search_share(const struct search_study *study, size_t k, size_t circumstance)
-{
-    const struct interval_draws draws = draws_of(study, k, circumstance);
-    return draws.k / draws.m;
-}
-
-struct interval search_interval(const struct search_study *study, size_t k, size_t circumstance)
-{
-    const struct interval_draws draws = draws_of(study, k, circumstance);
-    return interval_of(&draws, 0.95);
+    return (struct search_share){draws.k / draws.m, interval_of(&draws, 0.95)};
 }
 
 struct search_gain search_gain(const struct search_study *study, size_t circumstance)
@@ -140,10 +127,10 @@ struct search_gain search_gain(const struct search_study *study, size_t circumst
     return gain;
 }
 
-double search_limit(const struct search_study *study, size_t k, const char **circumstance)
+double search_limit(const struct search_study *study, size_t k, const char **where)
 {
-    const char *where;
-    return search_limit_of(&study->f, counts_worst(study), k, circumstance ? circumstance : &where);
+    const char *ignored;
+    return search_limit_of(&study->f, counts_worst(study), k, where ? where : &ignored);
 }
 
 bool search_chosen_apart(const struct search_study *study)
@@ -182,7 +169,7 @@ bool search_allowed(const struct search_study *study, double *allowed)
     }
     memset(allowed, 0, starts * sizeof *allowed);
     for (size_t c = from; good && c < to; c++)
-        good = linear_limit_add(fresh, c, allowed);
+        good = !isnan(linear_limit_add(fresh, c, allowed));
     for (size_t i = 0; good && i < starts; i++)
         allowed[i] /= (double)(to - from);
     free(fresh);
@@ -254,12 +241,12 @@ void search_describe(const struct search_study *study, struct results_axis *axis
     free(schema);
 }
 
-size_t search_stages(const struct search_study *study, size_t *generation, size_t room)
+size_t search_stages(const struct search_study *study, size_t generation[SEARCH_STAGES])
 {
     const struct search_file *const f = &study->f;
     const size_t generations = f->length[SEARCH_GENERATION];
     size_t stages = 0;
-    for (size_t g = 0; g < generations && stages < room; g++)
+    for (size_t g = 0; g < generations && stages < SEARCH_STAGES; g++)
         if (g + 1 == generations || f->stage[g + 1] != f->stage[g] ||
             f->restart[g + 1] != f->restart[g])
             generation[stages++] = g;

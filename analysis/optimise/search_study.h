@@ -1,5 +1,5 @@
 /* search_study.h - what the file of a search says: shares of the fresh starts, how sure they are,
- * how much the chosen candidate gains, and its loop.
+ * how much the chosen candidate gains, and its loop; what is printed and drawn of it.
  *
  * The search file has a byte for each fresh start of each confirmed candidate. Shares have the
  * intervals of analysis/statistics/intervals.h, whose blocks are the starts. What a candidate gains
@@ -12,7 +12,9 @@
 #ifndef STANCE_ANALYSIS_SEARCH_STUDY_H
 #define STANCE_ANALYSIS_SEARCH_STUDY_H
 
+#include "analysis/draw/look.h"
 #include "analysis/statistics/intervals.h"
+#include "analysis/table/report.h"
 #include "runner/optimise/trials.h"
 #include "runner/store/search_file.h"
 
@@ -35,8 +37,11 @@ bool search_study_open(struct search_study *study, const char *file, stance_mess
 void search_study_close(struct search_study *study);
 
 /* Of confirmed candidate k in a circumstance, or overall. */
-double search_share(const struct search_study *study, size_t k, size_t circumstance);
-struct interval search_interval(const struct search_study *study, size_t k, size_t circumstance);
+struct search_share {
+    double share;
+    struct interval interval;
+};
+struct search_share search_share(const struct search_study *study, size_t k, size_t circumstance);
 /* Whether a fresh start is recovered. */
 static inline bool search_recovers(const struct search_study *study, size_t k, size_t circumstance,
                                    size_t start)
@@ -61,9 +66,9 @@ void search_circumstances(const struct search_study *study, size_t circumstance,
                           size_t *to);
 
 /* Share from which linear theory allows any controller to recover, about the equilibrium of
- * confirmed candidate k, overall: no more than in the worst circumstance, which *circumstance
- * names, or the mean, NULL. NAN: it sets no bound. `circumstance` may be NULL. */
-double search_limit(const struct search_study *study, size_t k, const char **circumstance);
+ * confirmed candidate k, overall: no more than in the worst circumstance, which *where names, or
+ * the mean, NULL. NAN: it sets no bound. `where` may be NULL. */
+double search_limit(const struct search_study *study, size_t k, const char **where);
 /* Whether the chosen one was chosen by other starts than the fresh ones; by these in files of
  * earlier versions, whose share of it is too large. */
 bool search_chosen_apart(const struct search_study *study);
@@ -79,11 +84,53 @@ void search_aim(const struct search_study *study, char *text, size_t size);
 void search_describe(const struct search_study *study, struct results_axis *axis);
 
 /* Stages, over all beginnings: the last generation of each, in their order. */
-size_t search_stages(const struct search_study *study, size_t *generation, size_t room);
+enum { SEARCH_STAGES = SCENARIO_MAX_STAGES * (SCENARIO_MAX_RESTARTS + 1) };
+size_t search_stages(const struct search_study *study, size_t generation[SEARCH_STAGES]);
 /* First candidate of a generation. */
 static inline int64_t search_first(const struct search_file *f, size_t generation)
 {
     return generation > 0 ? f->candidates[generation - 1] : 0;
 }
+
+/* ---- several searches that differ in a number of their scenarios ------------------------------
+ */
+
+/* A front of the domain against that number. */
+struct search_front {
+    size_t count;
+    struct search_study *study;  /* [count], by what differs, rising */
+    double *at;                  /* [count] what differs */
+    struct results_axis against; /* its path, unit and text; value is `at` */
+    char also[400];              /* other paths that differ, "a, b"; "" */
+    bool glued;                  /* of some study */
+};
+
+/* Reads the files and finds what differs: of the numbers that all scenarios have the one with most
+ * values, of several the first in the scenario; the seed and what a search may cost are none.
+ * False: one line in *message, also where nothing differs or a search is not finished. */
+bool search_front_open(struct search_front *front, const char *const *file, size_t count,
+                       stance_message *message);
+void search_front_close(struct search_front *front);
+
+/* ---- `stance summary` and `stance plot` of the file of a search, or of several: their front ----
+ */
+
+/* The work of a `struct report`, and keys of its JSON. */
+int search_summarise(struct report *report, stance_message *message);
+extern const struct say_key search_keys[];
+
+/* An exit code. */
+int search_draw(struct look *look, const char *const *file, size_t files);
+/* What it draws, for -h. */
+#define SEARCH_PICTURES                                                                            \
+    "  a search            NAME-convergence: the objective of every candidate, the best so\n"      \
+    "  (stance optimise)   far, what fresh starts said of the first and the chosen one, and\n"     \
+    "                      what linear theory allows any controller; under it the mean of\n"       \
+    "                      the distribution, and its width\n"                                      \
+    "  ... that is         NAME-starts: the share of fresh starts that the first and the\n"        \
+    "  finished            chosen one recover, and that linear theory allows, along each\n"        \
+    "                      coordinate of the starts\n"                                             \
+    "  several searches    NAME-front of the first: shares of fresh starts against the number\n"   \
+    "                      that differs in their scenarios (stance summary has its table)\n"
 
 #endif

@@ -1,6 +1,5 @@
-/* search_summary.c - see search_summary.h: what the file of a search says, as facts and a text. */
-#include "search_summary.h"
-#include "search_front.h"
+/* search_summary.c - what the file of a search says, and several, as facts and a text. */
+#include "search_study.h"
 
 #include "runner/base/units.h"
 #include "runner/plan/allowed.h"
@@ -69,8 +68,8 @@ static json_t *limit(const struct search_study *study)
         return NULL;
     return TABLE_OBJECT(
         {"allowed", as_number(allowed)}, {"where", as_text(where)},
-        {"chosen", as_number(search_share(study, chosen, SEARCH_OVERALL) / allowed)},
-        {"first", as_number(search_share(study, 0, SEARCH_OVERALL) / before)},
+        {"chosen", as_number(search_share(study, chosen, SEARCH_OVERALL).share / allowed)},
+        {"first", as_number(search_share(study, 0, SEARCH_OVERALL).share / before)},
         {"before", as_number(before)}, {"differs", as_truth(before != allowed)});
 }
 
@@ -162,33 +161,63 @@ static json_t *chosen(const struct search_study *study)
     return facts;
 }
 
-/* ---- stages ------------------------------------------------------------------------------- */
+/* ---- tables ------------------------------------------------------------------------------- */
+
+/* A share, of which people see per cent. */
+#define SHARE(X, name, heading, wide, share)                                                       \
+    X(name, "", as_number(share), heading, "%.2f", wide, .percent = true)
+/* Its interval, which people see as one cell: "(22.3 ... 23.6)". */
+#define INTERVAL(X, least, most, interval)                                                         \
+    X(least, "", as_number((interval).low), "", "(%.2f", .before = " ", .left = true, .empty = "", \
+      .percent = true)                                                                             \
+    X(most, "", as_number((interval).high), .format = "%.2f)", .joined = true, .before = " ... ",  \
+      .percent = true)
+
+/* What the tables say of a row; names that are no members are of the functions behind. */
+#define STAGE(X)                                                                                   \
+    X("beginning", "", as_whole((uint64_t)f->restart[g] + 1), "beginning", .width = 9)             \
+    X("stage", "", as_whole((uint64_t)f->stage[g] + 1), "stage", .width = 5)                       \
+    X("starts", "", as_whole((uint64_t)f->starts[g]), "starts", .width = 8)                        \
+    X("generations", "", as_whole(g + 1 - first), "generations", .width = 9)                       \
+    X("candidates", "", as_whole((uint64_t)(f->candidates[g] - search_first(f, first))),           \
+      "candidates", .width = 9)                                                                    \
+    X("best", "", as_number(f->objective[f->best[g]]), "best",                                     \
+      .format = study->plain ? "%.2f %%" : NULL, .width = 9, .percent = study->plain)              \
+    X("best_candidate", "", as_whole((uint64_t)f->best[g]), "candidate", .width = 9)               \
+    X("step", "", as_number(f->step[g]), "last step", "%.3g", .width = 9)
+static const struct say_key stage_keys[] = {STAGE(TABLE_KEY){0}};
 
 static void put_stages(struct table *t, const struct search_study *study)
 {
     const struct search_file *const f = &study->f;
-    size_t last[SCENARIO_MAX_STAGES * (SCENARIO_MAX_RESTARTS + 1)], first = 0;
-    const size_t stages = search_stages(study, last, sizeof last / sizeof *last);
+    size_t last[SEARCH_STAGES], first = 0;
+    const size_t stages = search_stages(study, last);
     for (size_t i = 0; i < stages; i++) {
         const size_t g = last[i];
-        TABLE_FACTS(t,
-                    {{"beginning", "beginning", .width = 9}, as_whole((uint64_t)f->restart[g] + 1)},
-                    {{"stage", "stage", .width = 5}, as_whole((uint64_t)f->stage[g] + 1)},
-                    {{"starts", "starts", .width = 8}, as_whole((uint64_t)f->starts[g])},
-                    {{"generations", "generations", .width = 9}, as_whole(g + 1 - first)},
-                    {{"candidates", "candidates", .width = 9},
-                     as_whole((uint64_t)(f->candidates[g] - search_first(f, first)))},
-                    {{"best", "best", .format = study->plain ? "%.2f %%" : NULL, .width = 9,
-                      .percent = study->plain},
-                     as_number(f->objective[f->best[g]])},
-                    {{"best_candidate", "candidate", .width = 9}, as_whole((uint64_t)f->best[g])},
-                    {{"step", "last step", "%.3g", .width = 9}, as_number(f->step[g])});
+        TABLE_FACTS(t, STAGE(TABLE_FACT));
         table_end_row(t);
         first = g + 1;
     }
 }
 
-/* ---- fresh starts ------------------------------------------------------------------------- */
+#define CONFIRMED(X)                                                                               \
+    X("mark", NULL, as_text(chosen ? "*" : " "), "", .hidden = TABLE_VIEW_ONLY, .width = 1)        \
+    X("which", "", as_text(name), "", .left = true)                                                \
+    X("candidate", "null: a mean",                                                                 \
+      f->confirmed_candidate[k] < 0 ? as_nothing(NULL)                                             \
+                                    : as_whole((uint64_t)f->confirmed_candidate[k]),               \
+      "candidate", .width = 9)                                                                     \
+    SHARE(X, "share", study->plain ? "share %" : "recovered %", 7, share.share)                    \
+    INTERVAL(X, "low", "high", share.interval)                                                     \
+    X("objective", "", as_number(f->confirmed_objective[k]), "objective", .width = 9)              \
+    X("training", "", as_number(f->confirmed_training[k]), "training", format, .width = 8,         \
+      .percent = study->plain)                                                                     \
+    X("gap", "", as_number(f->confirmed_training[k] - f->confirmed_objective[k]), "gap",           \
+      study->plain ? "%+.2f" : "%+.6g", .width = 6, .percent = study->plain)                       \
+    X("choice", "", as_number(f->choice_objective[k]), "choice", format, .width = 7,               \
+      .percent = study->plain)                                                                     \
+    X("chosen", "", as_truth(chosen), .hidden = TABLE_NO_CSV)
+static const struct say_key confirmed_keys[] = {CONFIRMED(TABLE_KEY){0}};
 
 static void put_confirmed(struct table *t, const struct search_study *study)
 {
@@ -197,72 +226,108 @@ static void put_confirmed(struct table *t, const struct search_study *study)
     char name[80];
     for (size_t k = 0; study->done && k < f->length[SEARCH_CONFIRMED]; k++) {
         const bool chosen = (int64_t)k == f->chosen;
+        const struct search_share share = search_share(study, k, SEARCH_OVERALL);
         search_name(study, k, name, sizeof name);
-        TABLE_FACTS(
-            t, {{"mark", "", .hidden = TABLE_VIEW_ONLY, .width = 1}, as_text(chosen ? "*" : " ")},
-            {{"which", "", .left = true}, as_text(name)},
-            {{"candidate", "candidate", .width = 9},
-             f->confirmed_candidate[k] < 0 ? as_nothing(NULL)
-                                           : as_whole((uint64_t)f->confirmed_candidate[k])},
-            SEARCH_SHARE("share", study->plain ? "share %" : "recovered %", 7,
-                         search_share(study, k, SEARCH_OVERALL)),
-            SEARCH_INTERVAL("low", "high", search_interval(study, k, SEARCH_OVERALL)),
-            {{"objective", "objective", .width = 9}, as_number(f->confirmed_objective[k])},
-            {{"training", "training", .format = format, .width = 8, .percent = study->plain},
-             as_number(f->confirmed_training[k])},
-            {{"gap", "gap", study->plain ? "%+.2f" : "%+.6g", .width = 6, .percent = study->plain},
-             as_number(f->confirmed_training[k] - f->confirmed_objective[k])},
-            {{"choice", "choice", .format = format, .width = 7, .percent = study->plain},
-             as_number(f->choice_objective[k])},
-            {{"chosen", .hidden = TABLE_NO_CSV}, as_truth(chosen)});
+        TABLE_FACTS(t, CONFIRMED(TABLE_FACT));
         table_end_row(t);
     }
 }
 
-/* ---- circumstances ------------------------------------------------------------------------ */
+#define CIRCUMSTANCE(X)                                                                            \
+    X("circumstance", "", as_text(f->circumstance[c]), "", .left = true)                           \
+    SHARE(X, "first", "first %", 7, search_share(study, 0, c).share)                               \
+    SHARE(X, "chosen", "chosen %", 8, chosen.share)                                                \
+    INTERVAL(X, "chosen_low", "chosen_high", chosen.interval)                                      \
+    X("gain", "", as_number(gain.share), "gained", "%+.2f", .width = 7, .percent = true)           \
+    INTERVAL(X, "gain_low", "gain_high", gain.interval)                                            \
+    X("won", "", as_whole(gain.won), .heading = NULL)                                              \
+    X("lost", "", as_whole(gain.lost), .heading = NULL)                                            \
+    SHARE(X, "allowed", "allowed %", 9, allowed)                                                   \
+    X("of_allowed", "", as_number(chosen.share / allowed), "of that", "%.1f", .width = 7,          \
+      .percent = true)                                                                             \
+    X("critical_first", "", as_number(f->confirmed_critical[c]), "T* first (s)", "%.4g",           \
+      .width = 12)                                                                                 \
+    X("critical_chosen", "", as_number(f->confirmed_critical[of_chosen + c]), "T* chosen (s)",     \
+      "%.4g", .width = 13)
+static const struct say_key circumstance_keys[] = {CIRCUMSTANCE(TABLE_KEY){0}};
 
 static void put_circumstances(struct table *t, const struct search_study *study)
 {
     const struct search_file *const f = &study->f;
-    const size_t circumstances = f->length[SEARCH_CIRCUMSTANCE], chosen = (size_t)f->chosen;
+    const size_t circumstances = f->length[SEARCH_CIRCUMSTANCE],
+                 of_chosen = (size_t)f->chosen * circumstances;
     for (size_t c = 0; study->done && c < circumstances; c++) {
         const struct search_gain gain = search_gain(study, c);
-        const double share = search_share(study, chosen, c),
-                     allowed = f->confirmed_allowed[chosen * circumstances + c];
-        TABLE_FACTS(
-            t, {{"circumstance", "", .left = true}, as_text(f->circumstance[c])},
-            SEARCH_SHARE("first", "first %", 7, search_share(study, 0, c)),
-            SEARCH_SHARE("chosen", "chosen %", 8, share),
-            SEARCH_INTERVAL("chosen_low", "chosen_high", search_interval(study, chosen, c)),
-            {{"gain", "gained", "%+.2f", .width = 7, .percent = true}, as_number(gain.share)},
-            SEARCH_INTERVAL("gain_low", "gain_high", gain.interval),
-            {{"won", .heading = NULL}, as_whole(gain.won)},
-            {{"lost", .heading = NULL}, as_whole(gain.lost)},
-            SEARCH_SHARE("allowed", "allowed %", 9, allowed),
-            {{"of_allowed", "of that", "%.1f", .width = 7, .percent = true},
-             as_number(share / allowed)},
-            {{"critical_first", "T* first (s)", "%.4g", .width = 12},
-             as_number(f->confirmed_critical[c])},
-            {{"critical_chosen", "T* chosen (s)", "%.4g", .width = 13},
-             as_number(f->confirmed_critical[chosen * circumstances + c])});
+        const struct search_share chosen = search_share(study, (size_t)f->chosen, c);
+        const double allowed = f->confirmed_allowed[of_chosen + c];
+        TABLE_FACTS(t, CIRCUMSTANCE(TABLE_FACT));
         table_end_row(t);
     }
 }
 
-/* ---- elsewhere ---------------------------------------------------------------------------- */
+#define ELSEWHERE(X)                                                                               \
+    X("where", "", as_text(f->elsewhere[e]), "", .left = true)                                     \
+    SHARE(X, "first", "first %", 8, f->elsewhere_first[e])                                         \
+    SHARE(X, "chosen", "chosen %", 9, f->elsewhere_chosen[e])
+static const struct say_key elsewhere_keys[] = {ELSEWHERE(TABLE_KEY){0}};
 
 static void put_elsewhere(struct table *t, const struct search_study *study)
 {
     const struct search_file *const f = &study->f;
     for (size_t e = 0; study->done && e < f->length[SEARCH_ELSEWHERE]; e++) {
-        TABLE_FACTS(t, {{"where", "", .left = true}, as_text(f->elsewhere[e])},
-                    SEARCH_SHARE("first", "first %", 8, f->elsewhere_first[e]),
-                    SEARCH_SHARE("chosen", "chosen %", 9, f->elsewhere_chosen[e]));
+        TABLE_FACTS(t, ELSEWHERE(TABLE_FACT));
         table_end_row(t);
     }
 }
 
 /* ---- all of it ---------------------------------------------------------------------------- */
+
+#define HEAD(X)                                                                                    \
+    X("file", "", as_text(study->file))                                                            \
+    X("title", "", as_text(f->title))                                                              \
+    X("revision", "", as_text(f->revision))                                                        \
+    X("date", "", as_text(f->date))                                                                \
+    X("seconds", "", as_number(f->seconds))                                                        \
+    X("finished", "", as_truth(f->finished))                                                       \
+    X("note", "why it ended", as_text(f->finished ? f->note : NULL))                               \
+    X("generations", "", as_whole(last + 1))                                                       \
+    X("most_generations", "", as_whole((uint64_t)f->most_generations))                             \
+    X("candidates", "", as_whole(f->length[SEARCH_CANDIDATE]))                                     \
+    X("best", "", as_whole((uint64_t)best))                                                        \
+    X("best_objective", "of the last stage, of the starts of the search",                          \
+      as_number(f->objective[best]))                                                               \
+    X("maximised", "", as_text(aim))                                                               \
+    X("varied", "paths",                                                                           \
+      as_tree(table_list((const char *const *)f->parameter, f->length[SEARCH_PARAMETER])))         \
+    X("starts_over", "paths",                                                                      \
+      as_tree(table_list((const char *const *)f->varied, f->length[SEARCH_VARIED])))
+#define LIMIT(X)                                                                                   \
+    X("linear_limit",                                                                              \
+      "share of the fresh starts from which linear theory allows any controller to recover, "      \
+      "counted like share",                                                                        \
+      as_number(allowed))                                                                          \
+    X("linear_limit_in", "the circumstance", as_text(where))                                       \
+    X("linear_limit_glued",                                                                        \
+      "several contacts carry, and the bound does not know where their centre of pressure may be", \
+      as_truth(study->glued))
+
+static const struct say_key own_keys[] = {
+    HEAD(TABLE_KEY){"stages", "", stage_keys},
+    {"fresh_starts", "how many", NULL},
+    {"confirmed",
+     "share: of fresh starts that are stabilised, in the worst circumstance or the mean of them, "
+     "as the search counts; choice: the objective of as many other starts, by which one is chosen",
+     confirmed_keys},
+    LIMIT(TABLE_KEY){"circumstances",
+                     "gain: chosen - first, start by start, of which so many were won and lost; "
+                     "critical: sample time, s",
+                     circumstance_keys},
+    {"elsewhere", "", elsewhere_keys},
+    {"chosen",
+     "{which, starts: {what became of them: count}, gain, gain_low, gain_high, won, lost, values: "
+     "{path: value}, gains: [[...]], poles: [[re, im]]}",
+     NULL},
+    {0}};
 
 static bool give(json_t *facts, const char *key, const struct search_study *study,
                  void (*make)(struct table *, const struct search_study *), const char *view)
@@ -291,9 +356,7 @@ static bool add_tables(const struct search_study *study, json_t *facts)
              study->plain ? "" : " objective", apart ? " choice" : "");
     good = give(facts, "confirmed", study, put_confirmed, view) && good;
     const double allowed = study->done ? search_limit(study, (size_t)f->chosen, &where) : NAN;
-    TABLE_PUT(facts, {"linear_limit", as_number(allowed)}, {"linear_limit_in", as_text(where)},
-              {"linear_limit_glued", as_truth(study->glued)},
-              {".limit", as_tree(study->done ? limit(study) : NULL)},
+    TABLE_PUT(facts, LIMIT(TABLE_MEMBER){".limit", as_tree(study->done ? limit(study) : NULL)},
               {".limited", as_truth(limited)}, {".apart", as_truth(apart)},
               {".several", as_truth(circumstances > 1)});
     snprintf(view, sizeof view,
@@ -307,24 +370,14 @@ static bool add_tables(const struct search_study *study, json_t *facts)
 static bool add_facts(const struct search_study *study, json_t *facts)
 {
     const struct search_file *const f = &study->f;
-    const size_t last = f->length[SEARCH_GENERATION] - 1, n = f->length[SEARCH_PARAMETER];
+    const size_t last = f->length[SEARCH_GENERATION] - 1;
     const int64_t best = f->best[last];
     char aim[600], time[32];
     search_aim(study, aim, sizeof aim);
     text_of_seconds(time, sizeof time, f->seconds);
-    TABLE_PUT(facts, {"file", as_text(study->file)}, {"title", as_text(f->title)},
-              {"revision", as_text(f->revision)}, {"date", as_text(f->date)},
-              {"seconds", as_number(f->seconds)}, {"finished", as_truth(f->finished)},
-              {"note", as_text(f->finished ? f->note : NULL)}, {"generations", as_whole(last + 1)},
-              {"most_generations", as_whole((uint64_t)f->most_generations)},
-              {"candidates", as_whole(f->length[SEARCH_CANDIDATE])},
-              {"best", as_whole((uint64_t)best)}, {"best_objective", as_number(f->objective[best])},
-              {"maximised", as_text(aim)},
-              {"varied", as_tree(table_list((const char *const *)f->parameter, n))},
-              {"starts_over",
-               as_tree(table_list((const char *const *)f->varied, f->length[SEARCH_VARIED]))},
-              {".name", as_text(f->title[0] ? f->title : study->name)}, {".time", as_text(time)},
-              {".numbers", as_whole(n)}, {".varied", as_tree(families(study))},
+    TABLE_PUT(facts, HEAD(TABLE_MEMBER){".name", as_text(f->title[0] ? f->title : study->name)},
+              {".time", as_text(time)}, {".numbers", as_whole(f->length[SEARCH_PARAMETER])},
+              {".varied", as_tree(families(study))},
               {".starts", as_whole((uint64_t)f->starts[last])}, {".done", as_truth(study->done)});
     say_add(facts, ".best", study->plain ? "%.2f %%" : "%.6g",
             (study->plain ? 100 : 1) * f->objective[best]);
@@ -390,14 +443,70 @@ static int summarise(const struct report *report, stance_message *message)
     return table_say(report->form, facts, text, &t) && made ? EXIT_DONE : EXIT_IO;
 }
 
+/* ---- several ------------------------------------------------------------------------------ */
+
+/* Of a search, behind the number that differs, under its path. */
+#define FRONT(X)                                                                                   \
+    SHARE(X, "first", "first %", 8, first.share)                                                   \
+    INTERVAL(X, "first_low", "first_high", first.interval)                                         \
+    SHARE(X, "chosen", "chosen %", 8, chosen.share)                                                \
+    INTERVAL(X, "chosen_low", "chosen_high", chosen.interval)                                      \
+    SHARE(X, "allowed", "allowed %", 9, allowed)                                                   \
+    X("of_allowed", "", as_number(chosen.share / allowed), "of that", "%.1f", .width = 7,          \
+      .percent = true)                                                                             \
+    X("glued", "as linear_limit_glued", as_truth(study->glued), .hidden = TABLE_NO_CSV)            \
+    X("critical_chosen", "",                                                                       \
+      as_number(f->confirmed_critical[(size_t)f->chosen * f->length[SEARCH_CIRCUMSTANCE]]),        \
+      "T* chosen (s)", "%.4g", .width = 13)                                                        \
+    X("file", "", as_text(study->file), "file", .width = 4, .left = true, .before = "  ")
+#define FRONT_HEAD(X)                                                                              \
+    X("title", "", as_text(front.study[0].f.title))                                                \
+    X("against", "", as_text(axis->name))                                                          \
+    X("unit", "", as_text(axis->unit[0] ? axis->unit : NULL))                                      \
+    X("also", "other paths that differ", as_text(front.also[0] ? front.also : NULL))
+
+static const struct say_key front_row_keys[] = {{"PATH", "", NULL}, FRONT(TABLE_KEY){0}},
+                            front_keys[] = {FRONT_HEAD(TABLE_KEY){"searches", "", front_row_keys},
+                                            {0}};
+const struct say_key search_keys[] = {
+    {NULL, "of a search", own_keys}, {NULL, "of several", front_keys}, {0}};
+
+static const char front_text[] =
+    "{title}\n{.count} searches against {against}[unit: ({unit})][.text:: {.text}]\n"
+    "[also:also different: {also}\n]\n{.searches}"
+    "(of fresh starts, with 95 % intervals; allowed: by linear theory to any controller)\n"
+    "[.glued:(" ALLOWED_GLUED ")\n]";
+
 int search_summarise(struct report *report, stance_message *message)
 {
     struct search_front front;
+    struct table t = {0};
+    char view[300];
     if (report->files.count < 2)
         return summarise(report, message);
     if (!search_front_open(&front, report->files.text, report->files.count, message))
         return EXIT_IO;
-    const bool good = search_front_print(&front, report->form);
+    const struct results_axis *const axis = &front.against;
+    for (size_t i = 0; i < front.count; i++) {
+        const struct search_study *const study = &front.study[i];
+        const struct search_file *const f = &study->f;
+        const struct search_share first = search_share(study, 0, SEARCH_OVERALL),
+                                  chosen = search_share(study, (size_t)f->chosen, SEARCH_OVERALL);
+        const double allowed = search_limit(study, (size_t)f->chosen, NULL);
+        TABLE_FACTS(
+            &t, {{axis->name, schema_last_name(axis->name), .width = 10}, as_number(front.at[i])},
+            FRONT(TABLE_FACT));
+        table_end_row(&t);
+    }
+    json_t *const facts =
+        TABLE_OBJECT(FRONT_HEAD(TABLE_MEMBER){".count", as_whole(front.count)},
+                     {".text", as_text(axis->text)}, {".glued", as_truth(front.glued)});
+    snprintf(view, sizeof view,
+             "%s first first_low first_high chosen chosen_low chosen_high allowed of_allowed "
+             "critical_chosen file",
+             axis->name);
+    const bool good =
+        table_say(report->form, table_show(facts, "searches", &t, view, 0), front_text, &t);
     search_front_close(&front);
     return good ? EXIT_DONE : EXIT_IO;
 }

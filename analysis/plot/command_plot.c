@@ -1,7 +1,7 @@
 /* command_plot.c - `stance plot FILE`: chooses the pictures that a file calls for. */
 #include "plot_case.h"
 
-#include "analysis/optimise/search_pictures.h"
+#include "analysis/optimise/search_study.h"
 #include "analysis/sensitivity/sensitivity_study.h"
 #include "runner/base/problem.h"
 #include "runner/base/sandbox.h"
@@ -225,7 +225,7 @@ static const struct option options[] = {
     {"FILE...", TO(files), .low = 1, .high = MOST_FILES, .text = "a results file"},
     {.text =
 #define HELP(name, help) help
-         PLOT_PICTURES(HELP) SEARCH_PICTURES(HELP) SEARCH_FRONT_HELP
+         PLOT_PICTURES(HELP) SEARCH_PICTURES
 #undef HELP
      "  sampled factors     NAME-sensitivity: which factor decides (stance sensitivity -h)\n"
      "  one case with a     NAME-coordinates, -forces, -torques, -gaps against time, and -strip:\n"

@@ -1,7 +1,7 @@
 /* command_summary.c - `stance summary FILE`: what came out, as text, JSON or CSV. */
 #include "summary.h"
 
-#include "analysis/optimise/search_summary.h"
+#include "analysis/optimise/search_study.h"
 #include "analysis/statistics/statistics.h"
 #include "analysis/table/report.h"
 
@@ -133,7 +133,8 @@ static const struct option options[] = {
          "stabilised cases (with stop.walks those that walk, else without a controller that has a "
          "target rested ones) with its interval low ... high (of a grid empty); `stance table` has "
          "the cases themselves"},
-    {REPORT_JSON, .text = "the same as JSON; what does not apply is left out or null. Keys"},
+    {REPORT_JSON, .keys = search_keys,
+     .text = "the same as JSON; what does not apply is left out or null. Keys"},
     {0},
 };
 
@@ -184,5 +185,14 @@ const struct command command_summary = {
     "degraded_cases, ambiguous_steps, ambiguous_cases, wall_time (s, of the slowest rank), "
     "total_time (s, all ranks), cases_per_second\n"
     "    case         of a file of one case: index, outcome, failure, end_time, settle_time, "
-    "fall_time, final_state {name: value}\n" SEARCH_SUMMARY_HELP,
+    "fall_time, final_state {name: value}\n"
+    "\n"
+    "Of the file of a search (stance optimise): what was varied and maximised, its stages; the "
+    "first, the best and the means from fresh starts, with 95 % intervals and the gap to the "
+    "starts by which they were chosen; circumstances, and what the chosen one costs elsewhere; "
+    "its gains, as a scenario takes them, poles and critical sample time. A search that is not "
+    "finished tells how far it is. Of several searches of a scenario, up to 12, the front: a row "
+    "for each against the number that differs, of several the one with most values (stance plot "
+    "draws it). --csv has a row for each candidate that was tried from fresh starts, or search; "
+    "--json\n",
 };

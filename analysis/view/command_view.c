@@ -36,32 +36,14 @@ static int failed(const char *file, const char *what)
     return EXIT_IO;
 }
 
-/* A page that takes its name when it is complete. */
-struct writing {
-    const char *name;
-    char unfinished[NAME + 20];
-    FILE *out;
-};
-
-static bool begin(struct writing *w, const char *name)
-{
-    w->name = name;
-    snprintf(w->unfinished, sizeof w->unfinished, "%s.unfinished", name);
-    w->out = fopen(w->unfinished, "wb");
-    return w->out || !failed(name, "write");
-}
-
 /* The whole page, or nothing; `good`: what is written is right, else message says why not. */
-static int end(struct writing *w, bool good, const stance_message *message)
+static int end(struct whole_file *w, bool good, const stance_message *message)
 {
-    const bool wrote = !ferror(w->out), closed = fclose(w->out) == 0;
-    if (good && wrote && closed && rename(w->unfinished, w->name) == 0)
+    if (whole_file_end(w, good))
         return EXIT_DONE;
     if (good)
-        failed(w->name, "write");
-    else
-        fprintf(stderr, "%s\n", message->text);
-    unlink(w->unfinished);
+        return failed(w->name, "write");
+    fprintf(stderr, "%s\n", message->text);
     return EXIT_IO;
 }
 
@@ -85,15 +67,15 @@ static int write_page(const struct request *request, const struct results *r)
     const char *const template = page_template(), *const data = strstr(template, PAGE_DATA),
                       *const more = strstr(template, PAGE_MORE);
     stance_message message = {""};
-    struct writing w;
+    struct whole_file w;
     FILE *const rest = tmpfile(); /* what stands behind the script, told of in the head before it */
     if (!rest) {
         failed("a temporary file", "write");
         return EXIT_IO;
     }
-    if (!begin(&w, request->out)) {
+    if (!whole_file_begin(&w, request->out)) {
         fclose(rest);
-        return EXIT_IO;
+        return failed(w.name, "write");
     }
     const char *const script = data + strlen(PAGE_DATA);
     fwrite(template, 1, (size_t)(data - template), w.out);
@@ -139,9 +121,9 @@ static int write_index(void *context)
 {
     struct request *const request = context;
     stance_message message = {""};
-    struct writing w;
-    if (!begin(&w, request->name[request->files.count]))
-        return EXIT_IO;
+    struct whole_file w;
+    if (!whole_file_begin(&w, request->name[request->files.count]))
+        return failed(w.name, "write");
     bool good = true;
     page_index_begin(w.out);
     for (size_t i = 0; good && i < request->files.count; i++)

@@ -263,11 +263,11 @@ static void put_confirmed(json_t *charts, const struct search_study *study, doub
                       study->plain ? add_curve(series, "the search's own starts", false) : NULL;
     for (size_t k = 0; k < f->length[SEARCH_CONFIRMED]; k++) {
         char name[80];
-        const struct interval own = search_interval(study, k, SEARCH_OVERALL);
+        const struct search_share share = search_share(study, k, SEARCH_OVERALL);
         search_name(study, k, name, sizeof name);
         table_append(names, as_text(name));
-        add_point(fresh, (double)k, 100 * search_share(study, k, SEARCH_OVERALL),
-                  (struct interval){100 * own.low, 100 * own.high});
+        add_point(fresh, (double)k, 100 * share.share,
+                  (struct interval){100 * share.interval.low, 100 * share.interval.high});
         if (training)
             add_point(training, (double)k, scale * f->confirmed_training[k], no_interval);
     }

@@ -621,3 +621,24 @@ int command_begin(const struct command *command, int argc, char **argv, void *re
     free(given);
     return !good ? EXIT_USAGE : asked ? EXIT_DONE : COMMAND_GOES_ON;
 }
+
+/* ---- files -------------------------------------------------------------------------------- */
+
+bool whole_file_begin(struct whole_file *whole, const char *name)
+{
+    whole->name = name;
+    snprintf(whole->part, sizeof whole->part, "%.1190s.part", name);
+    whole->out = fopen(whole->part, "wb");
+    return whole->out != NULL;
+}
+
+bool whole_file_end(struct whole_file *whole, bool good)
+{
+    good = !ferror(whole->out) && good;
+    good = fclose(whole->out) == 0 && good && rename(whole->part, whole->name) == 0;
+    const int why = errno;
+    if (!good)
+        unlink(whole->part);
+    errno = why;
+    return good;
+}

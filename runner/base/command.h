@@ -5,6 +5,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdio.h>
 
 enum exit_code {
     EXIT_DONE = 0,
@@ -113,5 +114,15 @@ void command_print_rows(const struct command *command);
  * nearest one where there are many. */
 size_t command_word(const struct command *command, const char *option, const char *word,
                     const char *const *known, size_t count);
+
+/* A file that takes its name when it is whole. Each false: errno says why; end with `good` false
+ * takes back what was written, and is false. */
+struct whole_file {
+    const char *name;
+    char part[1200];
+    FILE *out;
+};
+bool whole_file_begin(struct whole_file *whole, const char *name);
+bool whole_file_end(struct whole_file *whole, bool good);
 
 #endif

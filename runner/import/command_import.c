@@ -82,18 +82,13 @@ static bool read_file(struct request *r, spatial_message *message)
 /* At once, or not at all. */
 static int put(const struct request *r)
 {
-    char part[1200];
+    struct whole_file whole;
     if (!r->output)
         return fwrite(r->text, 1, r->size, stdout) == r->size ? EXIT_DONE : EXIT_IO;
-    snprintf(part, sizeof part, "%.1100s.part", r->output);
-    FILE *const out = fopen(part, "w");
-    bool good = out && fwrite(r->text, 1, r->size, out) == r->size;
-    good = out && fclose(out) == 0 && good && rename(part, r->output) == 0;
-    if (good)
+    if (whole_file_begin(&whole, r->output) &&
+        whole_file_end(&whole, fwrite(r->text, 1, r->size, whole.out) == r->size))
         return EXIT_DONE;
     fprintf(stderr, "stance import: cannot write %s: %s\n", r->output, strerror(errno));
-    if (out)
-        unlink(part);
     return EXIT_IO;
 }
 

@@ -7,6 +7,7 @@
  */
 #include "candidate.h"
 
+#include "runner/base/command.h"
 #include "runner/base/message.h"
 #include "runner/plan/design.h"
 
@@ -15,7 +16,6 @@
 #include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 static const double usual[2] = {0.1, 0.5}; /* rad, rad/s */
 
@@ -209,27 +209,19 @@ char *best_text(const struct search_file *f)
 
 bool best_write(const struct search_file *f, const char *file, stance_message *message)
 {
-    char part[1200];
+    struct whole_file whole;
     char *const text = best_text(f);
     if (!text)
         return no_memory(message);
-    snprintf(part, sizeof part, "%.1100s.part", file);
-    FILE *const out = fopen(part, "w");
-    bool good = out != NULL;
+    bool good = whole_file_begin(&whole, file);
     if (good) {
-        fprintf(out,
+        fprintf(whole.out,
                 "# The best of %zu candidates of stance optimise: its objective, of fresh starts,\n"
                 "# is %.6g; that of the first candidate %.6g.\n%s",
                 f->length[SEARCH_CANDIDATE], f->confirmed_objective[f->chosen],
                 f->confirmed_objective[0], text);
-        good = !ferror(out);
-        good = fclose(out) == 0 && good;
-    }
-    good = good && rename(part, file) == 0;
-    if (!good) {
-        complain(message, "%.150s: cannot write: %s", file, strerror(errno));
-        unlink(part);
+        good = whole_file_end(&whole, true);
     }
     free(text);
-    return good;
+    return good || complain(message, "%.150s: cannot write: %s", file, strerror(errno));
 }

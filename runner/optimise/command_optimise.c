@@ -19,7 +19,6 @@
 
 extern const struct command command_optimise; /* below */
 
-#define SAVE_INTERVAL 1.0 /* s */
 static const double most_undecided = 1e-3;
 
 struct optimise {
@@ -28,9 +27,6 @@ struct optimise {
     char best[1100];
     struct search_file origin; /* of a search that is gone on with, on rank 0; else all 0 */
     struct search search;
-    double before; /* s that earlier parts of the search took */
-    double save_at;
-    char doing[80];
 };
 
 static struct optimise *of(struct run *run)
@@ -169,53 +165,6 @@ static void stage_claim(struct run *run)
         look_into_file(o);
 }
 
-/* ---- signs of life -------------------------------------------------------------------------- */
-
-/* Rank 0, about every millisecond. */
-static bool attend(void *context, double now)
-{
-    struct optimise *const o = context;
-    struct heartbeat *const h = &o->run.heartbeat;
-    const struct search_file *const f = &o->search.record;
-    const size_t g = f->length[SEARCH_GENERATION], candidates = f->length[SEARCH_CANDIDATE];
-    const bool says = progress_due(&o->run.progress, now);
-    if (now < h->due && !says)
-        return false;
-    if (o->search.confirming)
-        snprintf(o->doing, sizeof o->doing, "fresh starts");
-    else if (g == 0)
-        snprintf(o->doing, sizeof o->doing, "first generation");
-    else
-        snprintf(o->doing, sizeof o->doing, "generation %zu of at most %zu, best %.4g", g + 1,
-                 o->search.generations, f->objective[f->best[g - 1]]);
-    h->doing = o->doing;
-    h->left = outlook_left(&o->search.outlook);
-    if (!heartbeat_beat(h, now, candidates, candidates, 0, &o->run.message))
-        return !run_fail_io(&o->run);
-    char time[32] = "", left[64] = "";
-    text_of_seconds(time, sizeof time, h->left);
-    if (h->left >= 0)
-        snprintf(left, sizeof left, "; at most about %s left", time);
-    if (says)
-        progress_say(&o->run.progress, "%s%s", o->doing, left);
-    return false;
-}
-
-static bool save(void *context, bool last, stance_message *message)
-{
-    struct optimise *const o = context;
-    const double now = clock_seconds();
-    if (!last && now < o->save_at)
-        return true;
-    o->search.record.seconds = o->before + now - o->run.start;
-    if (!search_file_write(&o->search.record, o->run.file, message))
-        return false;
-    heartbeat_guard(&o->run.heartbeat, o->run.file);
-    const double end = clock_seconds();
-    o->save_at = end + fmax(SAVE_INTERVAL, 20 * (end - now)); /* 5 % of the time at most */
-    return true;
-}
-
 /* ---- the search ----------------------------------------------------------------------------- */
 
 static void stage_make(struct run *run)
@@ -223,19 +172,10 @@ static void stage_make(struct run *run)
     struct optimise *const o = of(run);
     const char *const text = run->parallel.rank == 0 ? o->asked->text : "";
     const bool good = parallel_share(&run->parallel) || no_memory(&run->message);
-    if (!good || !search_make(&o->search, run->scenario, text, &run->parallel,
-                              o->origin.scenario ? &o->origin : NULL, &run->message)) {
+    if (!good || !search_make(&o->search, run, text, o->origin.scenario ? &o->origin : NULL)) {
         run_fail_io(run);
         return;
     }
-    struct trials *const trials = &o->search.trials;
-    trials->quiet = run->options.quiet;
-    trials->until = run->start + run->options.time_limit;
-    trials->attend = attend;
-    trials->context = o;
-    o->search.save = save;
-    o->search.context = o;
-    o->before = o->search.record.seconds;
     const int lambda = o->search.stage[o->search.stages - 1].lambda;
     if (run->parallel.rank == 0 && run->scenario->search.candidates < (uint64_t)lambda) {
         char line[120];
@@ -250,7 +190,7 @@ static void stage_make(struct run *run)
 static void stage_search(struct run *run)
 {
     struct optimise *const o = of(run);
-    const enum trials_end end = search_run(&o->search, &run->message);
+    const enum trials_end end = search_run(&o->search);
     progress_end(&run->progress);
     if (run->failure.code != EXIT_DONE) /* the file is not ours any more */
         return;
@@ -313,7 +253,7 @@ static void warn_of_bound(const struct scenario_varied *v, const char *path, dou
 static void warn(const struct search *search)
 {
     const struct search_file *const f = &search->record;
-    const struct scenario_search *const sought = &search->scenario->search;
+    const struct scenario_search *const sought = &search->run->scenario->search;
     const size_t n = f->length[SEARCH_PARAMETER];
     const double untried = refused(f), undecided = most_ending(f, STANCE_UNDECIDED),
                  recovered = most_ending(f, STANCE_STABILISED) + most_ending(f, STANCE_WALKS);
@@ -329,7 +269,7 @@ static void warn(const struct search *search)
         WARN("%.2f %% of the best one's starts are undecided when stop.time is up and do not "
              "count: a longer one would tell",
              100 * undecided);
-    if (f->objective[f->best[0]] < 0.01 && scenario_search_plain(search->scenario))
+    if (f->objective[f->best[0]] < 0.01 && scenario_search_plain(search->run->scenario))
         WARN("hardly a start recovers in the first generation: begin with another controller, or "
              "with restarts");
     if (untried > 0.5)
@@ -347,13 +287,13 @@ static void print_limit(const struct search *search)
     const struct search_file *const f = &search->record;
     const char *where;
     const double limit =
-        search_limit_of(f, search->scenario->search.worst, (size_t)f->chosen, &where);
+        search_limit_of(f, search->run->scenario->search.worst, (size_t)f->chosen, &where);
     if (!isfinite(limit))
         return;
     printf(", linear theory allows any %.2f %%", 100 * limit);
     if (where)
         printf(" in its worst circumstance (%s)", where);
-    if (allowed_glued_in(search->scenario))
+    if (allowed_glued_in(search->run->scenario))
         fputs(" (" ALLOWED_GLUED ")", stdout);
 }
 

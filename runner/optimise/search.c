@@ -26,7 +26,14 @@ enum {
     MOST_ALLOWED = 16384, /* starts that are held against linear theory */
 };
 
+#define SAVE_INTERVAL 1.0             /* s */
 static const double remembered = 0.6; /* of what was known, each time more is */
+
+/* run->message becomes that of the first rank that failed. */
+static bool agree(struct run *run, bool good)
+{
+    return parallel_agree(&run->parallel, good, run->message.text, sizeof run->message.text);
+}
 
 /* ---- words of the record -------------------------------------------------------------------- */
 
@@ -58,7 +65,7 @@ static char *circumstance_text(const struct scenario *s, size_t c)
 /* Once all generations are through: the best, to choose and to report. */
 static double cases_at_end(const struct search *search)
 {
-    const struct scenario *const s = search->scenario;
+    const struct scenario *const s = search->run->scenario;
     double elsewhere = 0;
     for (int e = 0; e < ELSEWHERE_MOST; e++)
         elsewhere += elsewhere_name(s, e) ? 1 : 0;
@@ -70,7 +77,7 @@ static double cases_at_end(const struct search *search)
 
 static void plan_stages(struct search *search)
 {
-    const struct scenario *const s = search->scenario;
+    const struct scenario *const s = search->run->scenario;
     for (int r = 0; r <= s->search.restarts; r++) {
         const int lambda = cma_default_lambda(search->space.n) << r;
         const double all = (double)s->search.candidates / lambda;
@@ -99,13 +106,63 @@ static void outlook_begin(struct outlook *outlook, double cases)
     outlook->begun = clock_seconds();
 }
 
-double outlook_left(const struct outlook *outlook)
+/* s; negative: not known yet. */
+static double outlook_left(const struct outlook *outlook)
 {
     if (!(outlook->cases > 0))
         return -1;
     const double each = outlook->seconds / outlook->cases;
     return outlook->ahead * each +
            fmax(0, outlook->now * each - (clock_seconds() - outlook->begun));
+}
+
+/* ---- signs of life -------------------------------------------------------------------------- */
+
+/* Rank 0, about every millisecond. */
+static bool attend(void *context, double now)
+{
+    struct search *const search = context;
+    struct run *const run = search->run;
+    struct heartbeat *const h = &run->heartbeat;
+    const struct search_file *const f = &search->record;
+    const size_t g = f->length[SEARCH_GENERATION], candidates = f->length[SEARCH_CANDIDATE];
+    const bool says = progress_due(&run->progress, now);
+    if (now < h->due && !says)
+        return false;
+    if (search->confirming)
+        snprintf(search->doing, sizeof search->doing, "fresh starts");
+    else if (g == 0)
+        snprintf(search->doing, sizeof search->doing, "first generation");
+    else
+        snprintf(search->doing, sizeof search->doing, "generation %zu of at most %zu, best %.4g",
+                 g + 1, search->generations, f->objective[f->best[g - 1]]);
+    h->doing = search->doing;
+    h->left = outlook_left(&search->outlook);
+    if (!heartbeat_beat(h, now, candidates, candidates, 0, &run->message))
+        return !run_fail_io(run);
+    char time[32] = "", left[64] = "";
+    text_of_seconds(time, sizeof time, h->left);
+    if (h->left >= 0)
+        snprintf(left, sizeof left, "; at most about %s left", time);
+    if (says)
+        progress_say(&run->progress, "%s%s", search->doing, left);
+    return false;
+}
+
+/* Rank 0, after each generation and at the end. */
+static bool save(struct search *search, bool last)
+{
+    struct run *const run = search->run;
+    const double now = clock_seconds();
+    if (!last && now < search->save_at)
+        return true;
+    search->record.seconds = search->before + now - run->start;
+    if (!search_file_write(&search->record, run->file, &run->message))
+        return false;
+    heartbeat_guard(&run->heartbeat, run->file);
+    const double end = clock_seconds();
+    search->save_at = end + fmax(SAVE_INTERVAL, 20 * (end - now)); /* 5 % of the time at most */
+    return true;
 }
 
 /* ---- making --------------------------------------------------------------------------------- */
@@ -121,7 +178,7 @@ static char **words_of(const struct scenario_axis *axis)
 static bool make_record(struct search *search, const char *text)
 {
     struct search_file *const f = &search->record;
-    const struct scenario *const s = search->scenario;
+    const struct scenario *const s = search->run->scenario;
     const struct scenario_axis *const sample = &s->axis[s->axes - 1];
     const size_t n = (size_t)search->space.n, compared = 1 + 2 * (size_t)search->stages;
     char date[40];
@@ -164,27 +221,26 @@ static bool make_record(struct search *search, const char *text)
 /* The generations that an earlier part left. */
 static bool take_over(struct search *search, const struct search_file *from)
 {
-    static const enum search_dimension grows[] = {SEARCH_CANDIDATE, SEARCH_GENERATION},
-                                       stays[] = {SEARCH_PARAMETER, SEARCH_CIRCUMSTANCE,
+    static const enum search_dimension stays[] = {SEARCH_PARAMETER, SEARCH_CIRCUMSTANCE,
                                                   SEARCH_KIND};
     struct search_file *const f = &search->record;
     bool same = from->length[SEARCH_CANDIDATE] <= search->candidates &&
                 from->length[SEARCH_GENERATION] <= search->generations;
     for (size_t i = 0; i < sizeof stays / sizeof *stays; i++)
         same = same && from->length[stays[i]] == f->length[stays[i]];
-    for (size_t i = 0; same && i < sizeof grows / sizeof *grows; i++) {
-        search_file_copy(f, from, grows[i]);
-        f->length[grows[i]] = from->length[grows[i]];
+    if (same) {
+        search_file_copy(f, from, SEARCH_CANDIDATE);
+        search_file_copy(f, from, SEARCH_GENERATION);
     }
-    f->seconds = from->seconds;
+    search->before = from->seconds;
     return same;
 }
 
 /* What may differ between machines, and what only rank 0 has, all ranks take from it. */
 static void share(struct search *search)
 {
-    const struct scenario *const s = search->scenario;
-    const struct parallel *const parallel = search->parallel;
+    const struct scenario *const s = search->run->scenario;
+    const struct parallel *const parallel = &search->run->parallel;
     struct search_file *const f = &search->record;
     const size_t paths = (size_t)s->axis[s->axes - 1].paths;
     for (int k = 0; k < TRIALS_STARTS; k++) {
@@ -198,11 +254,8 @@ static void share(struct search *search)
             parallel_broadcast(parallel, axis->value,
                                axis->count * (size_t)axis->paths * sizeof *axis->value);
     }
-    struct space *const space = &search->space; /* logarithms differ between machines */
-    parallel_broadcast(parallel, space->unit, sizeof space->unit);
-    parallel_broadcast(parallel, space->first, sizeof space->first);
-    parallel_broadcast(parallel, space->low, sizeof space->low);
-    parallel_broadcast(parallel, space->high, sizeof space->high);
+    parallel_broadcast(parallel, &search->space, sizeof search->space); /* of logarithms */
+    search->space.search = &s->search;
     parallel_broadcast(parallel, f->length, sizeof f->length);
     const size_t known = f->length[SEARCH_CANDIDATE];
     parallel_broadcast(parallel, f->score, known * sizeof *f->score);
@@ -210,18 +263,21 @@ static void share(struct search *search)
                        known * f->length[SEARCH_PARAMETER] * sizeof *f->coordinate);
 }
 
-bool search_make(struct search *search, const struct scenario *scenario, const char *text,
-                 const struct parallel *parallel, const struct search_file *origin,
-                 stance_message *message)
+bool search_make(struct search *search, struct run *run, const char *text,
+                 const struct search_file *origin)
 {
-    *search = (struct search){.scenario = scenario, .parallel = parallel};
-    bool good = trials_make(&search->trials, scenario, parallel);
-    space_make(&search->space, scenario);
+    *search = (struct search){.run = run};
+    bool good = trials_make(&search->trials, run->scenario, &run->parallel);
+    search->trials.quiet = run->options.quiet;
+    search->trials.until = run->start + run->options.time_limit;
+    search->trials.attend = attend;
+    search->trials.context = search;
+    space_make(&search->space, run->scenario);
     plan_stages(search);
-    good = (good && make_record(search, text)) || no_memory(message);
+    good = (good && make_record(search, text)) || no_memory(&run->message);
     if (good && origin && !take_over(search, origin))
-        good = complain(message, "the file is of a search with other numbers");
-    good = parallel_agree(parallel, good, message->text, sizeof message->text);
+        good = complain(&run->message, "the file is of a search with other numbers");
+    good = agree(run, good);
     if (good)
         share(search);
     return good;
@@ -238,20 +294,19 @@ void search_free(struct search *search)
 
 /* Coordinates, which rank 0's become, and their values. */
 static enum trials_end try(struct search *search, size_t candidates, double *coordinate,
-                           double *value, enum trials_starts which, uint64_t starts,
-                           stance_message *message)
+                           double *value, enum trials_starts which, uint64_t starts)
 {
     const size_t n = (size_t)search->space.n, size = candidates * n * sizeof *value;
     struct outlook *const outlook = &search->outlook;
     const struct trials *const t = &search->trials;
     const double before = (double)t->cases, compiling = t->compiling;
-    parallel_broadcast(search->parallel, coordinate, size);
+    parallel_broadcast(&search->run->parallel, coordinate, size);
     for (size_t i = 0; i < candidates * n; i++)
         value[i] = space_value(&search->space, (int)(i % n), coordinate[i]);
-    parallel_broadcast(search->parallel, value, size);
+    parallel_broadcast(&search->run->parallel, value, size);
     outlook_begin(outlook, (double)candidates * (double)t->circumstances * (double)starts);
     const enum trials_end end =
-        trials_run(&search->trials, candidates, value, which, starts, message);
+        trials_run(&search->trials, candidates, value, which, starts, &search->run->message);
     const double taken = clock_seconds() - outlook->begun - (t->compiling - compiling);
     outlook->seconds = remembered * outlook->seconds + taken;
     outlook->cases = remembered * outlook->cases + (double)t->cases - before;
@@ -267,7 +322,7 @@ static int64_t nearest_score(const struct search *search, size_t candidate, uint
                              double *objective)
 {
     const struct trials *const t = &search->trials;
-    const struct scenario *const s = search->scenario;
+    const struct scenario *const s = search->run->scenario;
     size_t stride = 1; /* so many circumstances lie between two scales */
     int k;
     const struct scenario_axis *const scale =
@@ -306,7 +361,8 @@ static int64_t refusal(const struct search *search, size_t candidate)
         refused += !loop->tried;
         sum += loop->tried ? 0 : loop->short_of;
     }
-    const bool all = search->scenario->search.aim == AIM_NEAREST || search->scenario->search.worst;
+    const bool all =
+        search->run->scenario->search.aim == AIM_NEAREST || search->run->scenario->search.worst;
     return refused > 0 && (all || refused == t->circumstances)
                ? INT64_MIN / 2 - llround(TRIALS_WORTH * sum)
                : 0;
@@ -315,7 +371,7 @@ static int64_t refusal(const struct search *search, size_t candidate)
 static int64_t score_of(const struct search *search, size_t candidate, const double *coordinate,
                         enum trials_starts which, uint64_t starts, double *objective)
 {
-    const struct scenario_search *const s = &search->scenario->search;
+    const struct scenario_search *const s = &search->run->scenario->search;
     const struct trials *const t = &search->trials;
     const size_t circumstances = t->circumstances;
     int64_t whole = 0, score = s->worst ? INT64_MAX : 0;
@@ -367,19 +423,18 @@ struct course {
     const char *why;   /* the last stage is over */
 };
 
-static enum trials_end try_generation(struct search *search, const struct course *at,
-                                      stance_message *message)
+static enum trials_end try_generation(struct search *search, const struct course *at)
 {
     struct search_file *const f = &search->record;
     const size_t n = (size_t)search->space.n, lambda = (size_t)at->stage->lambda;
-    const uint64_t starts = search->scenario->search.grow[at->stage->stage];
+    const uint64_t starts = search->run->scenario->search.grow[at->stage->stage];
     const size_t kinds = search->trials.circumstances * TRIAL_LABELS;
     double *const x = &f->coordinate[at->first * n];
     cma_ask(at->cma, x);
     if (at->cma->generation == 0) /* what it begins with is a candidate, too */
         memcpy(x, at->cma->mean, n * sizeof *x);
     const enum trials_end end =
-        try(search, lambda, x, &f->value[at->first * n], TRIALS_SEARCH, starts, message);
+        try(search, lambda, x, &f->value[at->first * n], TRIALS_SEARCH, starts);
     if (end != TRIALS_DONE)
         return end;
     for (size_t i = 0; i < lambda; i++) {
@@ -406,11 +461,11 @@ static void note_generation(struct search *search, struct course *at)
     at->stale = at->best != before ? 0 : at->stale + 1;
     at->first = (size_t)end;
     at->generation++;
-    if (search->parallel->rank != 0)
+    if (search->run->parallel.rank != 0)
         return; /* the record is rank 0's: others need no memory for it */
     f->stage[g] = at->stage->stage;
     f->restart[g] = at->stage->restart;
-    f->starts[g] = (int64_t)search->scenario->search.grow[at->stage->stage];
+    f->starts[g] = (int64_t)search->run->scenario->search.grow[at->stage->stage];
     f->candidates[g] = end;
     f->best[g] = at->best;
     f->step[g] = at->cma->step;
@@ -420,7 +475,7 @@ static void note_generation(struct search *search, struct course *at)
 
 static bool is_over(const struct search *search, struct course *at)
 {
-    const bool last = at->stage->stage + 1 == search->scenario->search.stages;
+    const bool last = at->stage->stage + 1 == search->run->scenario->search.stages;
     const enum cma_stop stop = cma_stop(at->cma);
     /* Without a better candidate for so long there is no use in more. */
     const bool stale = last && at->stale >= 10 + (size_t)(30 * search->space.n / at->stage->lambda);
@@ -429,7 +484,7 @@ static bool is_over(const struct search *search, struct course *at)
     else if (stale)
         at->why = "the best candidate stayed the same";
     bool over = stale || stop != CMA_GOES_ON;
-    parallel_broadcast(search->parallel, &over, sizeof over);
+    parallel_broadcast(&search->run->parallel, &over, sizeof over);
     return over;
 }
 
@@ -448,10 +503,9 @@ static void compare_later(struct search *search, int64_t candidate, int64_t gene
     search->compared++;
 }
 
-static enum trials_end run_stage(struct search *search, struct course *at, stance_message *message)
+static enum trials_end run_stage(struct search *search, struct course *at)
 {
     struct search_file *const f = &search->record;
-    const struct parallel *const parallel = search->parallel;
     const size_t n = (size_t)search->space.n, most = at->stage->generations;
     bool over = false;
     at->best = -1;
@@ -461,15 +515,16 @@ static enum trials_end run_stage(struct search *search, struct course *at, stanc
         const bool new = at->generation >= at->known;
         search->outlook.ahead =
             at->stage->behind + at->stage->cases * (double)(most - i) / (double)most;
-        const enum trials_end end = new ? try_generation(search, at, message) : TRIALS_DONE;
+        const enum trials_end end = new ? try_generation(search, at) : TRIALS_DONE;
         if (end != TRIALS_DONE)
             return end;
-        bool good = cma_tell(at->cma, &f->coordinate[at->first * n], &f->score[at->first]) ||
-                    complain(message, "a generation is out of the numbers that can be");
+        bool good =
+            cma_tell(at->cma, &f->coordinate[at->first * n], &f->score[at->first]) ||
+            complain(&search->run->message, "a generation is out of the numbers that can be");
         note_generation(search, at);
-        if (good && new && parallel->rank == 0 && search->save)
-            good = search->save(search->context, false, message);
-        if (!parallel_agree(parallel, good, message->text, sizeof message->text))
+        if (good && new && search->run->parallel.rank == 0)
+            good = save(search, false);
+        if (!agree(search->run, good))
             return TRIALS_BROKEN;
         over = is_over(search, at);
     }
@@ -480,7 +535,7 @@ static enum trials_end run_stage(struct search *search, struct course *at, stanc
 }
 
 /* Each beginning but the first begins with the best of the one before. */
-static enum trials_end run_stages(struct search *search, struct course *at, stance_message *message)
+static enum trials_end run_stages(struct search *search, struct course *at)
 {
     const struct space *const space = &search->space;
     struct cma_start start = {space->n,
@@ -488,8 +543,8 @@ static enum trials_end run_stages(struct search *search, struct course *at, stan
                               space->first,
                               space->low,
                               space->high,
-                              search->scenario->search.step,
-                              .seed = search->scenario->seed};
+                              search->run->scenario->search.step,
+                              .seed = search->run->scenario->seed};
     enum trials_end end = TRIALS_DONE;
     for (int k = 0; k < search->stages && end == TRIALS_DONE; k++) {
         at->stage = &search->stage[k];
@@ -500,12 +555,11 @@ static enum trials_end run_stages(struct search *search, struct course *at, stan
             start.restart = (uint64_t)at->stage->restart;
             cma_free(at->cma);
             at->cma = cma_make(&start);
-            const bool good = at->cma || no_memory(message);
-            if (!parallel_agree(search->parallel, good, message->text, sizeof message->text) ||
-                !good)
+            const bool good = at->cma || no_memory(&search->run->message);
+            if (!agree(search->run, good) || !good)
                 return TRIALS_BROKEN;
         }
-        end = run_stage(search, at, message);
+        end = run_stage(search, at);
     }
     return end;
 }
@@ -514,7 +568,7 @@ static enum trials_end run_stages(struct search *search, struct course *at, stan
 
 /* The largest of several shares is too large as the share of what has it: one is chosen by starts
  * of its own, and what all of them recover is told of others. */
-static enum trials_end confirm(struct search *search, stance_message *message)
+static enum trials_end confirm(struct search *search)
 {
     struct search_file *const f = &search->record;
     const struct {
@@ -528,9 +582,9 @@ static enum trials_end confirm(struct search *search, stance_message *message)
     search->confirming = true;
     search->outlook.ahead = cases_at_end(search);
     for (int b = 0; b < 2; b++) {
-        starts = trials_count(search->scenario, by[b].which);
-        const enum trials_end end = try(search, search->compared, search->compare,
-                                        f->confirmed_value, by[b].which, starts, message);
+        starts = trials_count(search->run->scenario, by[b].which);
+        const enum trials_end end =
+            try(search, search->compared, search->compare, f->confirmed_value, by[b].which, starts);
         if (end != TRIALS_DONE)
             return end;
         for (size_t i = 0; i < search->compared; i++)
@@ -555,7 +609,7 @@ static enum trials_end confirm(struct search *search, stance_message *message)
 }
 
 /* The first and the chosen one. */
-static enum trials_end try_elsewhere(struct search *search, stance_message *message)
+static enum trials_end try_elsewhere(struct search *search)
 {
     struct search_file *const f = &search->record;
     const size_t n = (size_t)search->space.n;
@@ -565,11 +619,12 @@ static enum trials_end try_elsewhere(struct search *search, stance_message *mess
     memcpy(value, f->confirmed_value, n * sizeof *value);
     memcpy(value + n, &f->confirmed_value[(size_t)f->chosen * n], n * sizeof *value);
     for (int e = 0; e < ELSEWHERE_MOST && end == TRIALS_DONE; e++) {
-        const char *const name = elsewhere_name(search->scenario, e);
+        const char *const name = elsewhere_name(search->run->scenario, e);
         if (!name)
             continue;
-        outlook_begin(&search->outlook, (double)(COMPARED * elsewhere_starts(search->scenario)));
-        end = elsewhere_run(&search->trials, e, COMPARED, value, share, message);
+        outlook_begin(&search->outlook,
+                      (double)(COMPARED * elsewhere_starts(search->run->scenario)));
+        end = elsewhere_run(&search->trials, e, COMPARED, value, share, &search->run->message);
         f->elsewhere[*places] = strdup(name);
         f->elsewhere_first[*places] = share[0];
         f->elsewhere_chosen[*places] = share[1];
@@ -602,7 +657,7 @@ double search_limit_of(const struct search_file *f, bool worst, size_t k, const 
 static void finish(struct search *search, const char *why)
 {
     struct search_file *const f = &search->record;
-    const uint64_t confirm = search->scenario->search.confirm;
+    const uint64_t confirm = search->run->scenario->search.confirm;
     const uint64_t starts = confirm < MOST_ALLOWED ? confirm : MOST_ALLOWED;
     const size_t n = (size_t)search->space.n, circumstances = search->trials.circumstances;
     const size_t which[COMPARED] = {0, (size_t)f->chosen};
@@ -610,7 +665,7 @@ static void finish(struct search *search, const char *why)
     for (int i = 0; i < COMPARED; i++)
         linear_limit_shares(&search->trials, &f->confirmed_value[which[i] * n], starts,
                             &f->confirmed_allowed[which[i] * circumstances]);
-    f->linear_limit = search_limit_of(f, search->scenario->search.worst, which[1], &where);
+    f->linear_limit = search_limit_of(f, search->run->scenario->search.worst, which[1], &where);
     f->length[SEARCH_CONFIRMED] = search->compared;
     f->length[SEARCH_START] = confirm;
     f->finished = 1;
@@ -619,25 +674,24 @@ static void finish(struct search *search, const char *why)
 
 /* ---- the whole ------------------------------------------------------------------------------ */
 
-enum trials_end search_run(struct search *search, stance_message *message)
+enum trials_end search_run(struct search *search)
 {
     struct search_file *const f = &search->record;
     struct course at = {.known = f->length[SEARCH_GENERATION], .best = -1, .why = ""};
     compare_later(search, 0, -1, search->space.first);
-    enum trials_end end = run_stages(search, &at, message);
+    enum trials_end end = run_stages(search, &at);
     cma_free(at.cma);
     if (end == TRIALS_DONE)
-        end = confirm(search, message);
+        end = confirm(search);
     if (end == TRIALS_DONE)
-        end = try_elsewhere(search, message);
-    if (search->parallel->rank != 0)
+        end = try_elsewhere(search);
+    if (search->run->parallel.rank != 0)
         return end;
     if (end == TRIALS_DONE)
         finish(search, at.why);
     else
         f->chosen = -1;
-    if (end != TRIALS_BROKEN && f->length[SEARCH_GENERATION] > 0 && search->save &&
-        !search->save(search->context, true, message))
+    if (end != TRIALS_BROKEN && f->length[SEARCH_GENERATION] > 0 && !save(search, true))
         end = TRIALS_BROKEN;
     return end;
 }

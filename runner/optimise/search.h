@@ -13,6 +13,7 @@
 #include "candidate.h"
 #include "trials.h"
 
+#include "runner/run/run.h"
 #include "runner/store/search_file.h"
 
 /* Kinds of `count`: refused, the outcomes, failed. */
@@ -26,8 +27,6 @@ struct outlook {
     double now, begun;     /* cases in hand, and when they were taken */
     double seconds, cases; /* of late: what so many simulated ones took */
 };
-/* s; negative: not known yet. */
-double outlook_left(const struct outlook *outlook);
 
 /* A stage of a beginning: so many generations of so many candidates at most. */
 struct search_stage {
@@ -38,8 +37,7 @@ struct search_stage {
 
 /* The same on every rank, but for what the record has beside scores and coordinates. */
 struct search {
-    const struct scenario *scenario; /* the first candidate, gains written out */
-    const struct parallel *parallel;
+    struct run *run; /* whose scenario is the first candidate, gains written out */
     struct trials trials;
     struct space space;
     int stages; /* of all beginnings */
@@ -50,18 +48,16 @@ struct search {
     double *compare; /* [compared][paths], their coordinates */
     bool confirming; /* these are being tried */
     struct outlook outlook;
-    /* On rank 0, after each generation and (`last`) at the end, may be NULL: false, and *message
-     * says why. */
-    bool (*save)(void *context, bool last, stance_message *message);
-    void *context;
+    double before;  /* s that earlier parts of the search took */
+    double save_at; /* of clock_seconds() */
+    char doing[80];
 };
 
 /* Collective. `origin`: what an earlier part of the search left, on rank 0, which is taken over;
- * NULL: none. text: the scenario as it was read. false: *message says why. search_free is for it
- * either way. */
-bool search_make(struct search *search, const struct scenario *scenario, const char *text,
-                 const struct parallel *parallel, const struct search_file *origin,
-                 stance_message *message);
+ * NULL: none. text: the scenario as it was read. false: run->message says why. search_free is for
+ * it either way. */
+bool search_make(struct search *search, struct run *run, const char *text,
+                 const struct search_file *origin);
 void search_free(struct search *search);
 
 /* Of confirmed candidate k, the share of fresh starts from which linear theory allows any
@@ -69,7 +65,8 @@ void search_free(struct search *search);
  * least, if it is of the worst of several; else the mean, *where is NULL. NAN: it sets no bound. */
 double search_limit_of(const struct search_file *f, bool worst, size_t k, const char **where);
 
-/* Collective, with counters. */
-enum trials_end search_run(struct search *search, stance_message *message);
+/* Collective, with counters; rank 0 writes run->file, and says how far it is. BROKEN: run->message
+ * says why, or the run has failed. */
+enum trials_end search_run(struct search *search);
 
 #endif

@@ -311,35 +311,31 @@ enum trials_end trials_run(struct trials *t, size_t candidates, double *value,
 
 /* ---- the denominator ------------------------------------------------------------------------ */
 
-bool linear_limit_add(const struct scenario *s, size_t circumstance, double *inside)
+double linear_limit_add(const struct scenario *s, size_t circumstance, double *inside)
 {
     const size_t starts = s->axis[s->axes - 1].count;
     struct allowed allowed;
     stance_message ignored;
+    uint64_t count = 0;
     if (!scenario_law(&s->base)->designed ||
         !allowed_make(&allowed, s, circumstance * starts, &ignored))
-        return false;
+        return NAN;
     const bool exists = allowed.set != NULL;
-    for (size_t i = 0; exists && i < starts; i++)
-        inside[i] += allowed_case(&allowed, s, circumstance * starts + i);
+    for (size_t i = 0; exists && i < starts; i++) {
+        const bool in = allowed_case(&allowed, s, circumstance * starts + i);
+        count += in;
+        if (inside)
+            inside[i] += in;
+    }
     allowed_free(&allowed);
-    return exists;
+    return exists ? (double)count / (double)starts : NAN;
 }
 
 void linear_limit_shares(struct trials *t, double *value, uint64_t starts, double *share)
 {
-    double *const inside = malloc(starts * sizeof *inside);
     take_points(t, 1, value, TRIALS_FRESH, starts);
-    for (size_t c = 0; c < t->circumstances; c++) {
-        double sum = 0;
-        if (inside)
-            memset(inside, 0, starts * sizeof *inside);
-        const bool known = inside && linear_limit_add(t->at, c, inside);
-        for (uint64_t i = 0; known && i < starts; i++)
-            sum += inside[i];
-        share[c] = known ? sum / (double)starts : NAN;
-    }
-    free(inside);
+    for (size_t c = 0; c < t->circumstances; c++)
+        share[c] = linear_limit_add(t->at, c, NULL);
 }
 
 /* ---- elsewhere ------------------------------------------------------------------------------- */

@@ -90,10 +90,10 @@ static inline uint64_t trials_seed(const struct scenario *s, enum trials_starts 
 }
 
 /* The denominator of a search, from which starts linear theory allows any controller to recover
- * (engine/control/null_controllable.c). Adds 1 to inside[starts] of each of these, the points of
- * the scenario's last axis, in a circumstance, a point of the axes before it; false: linear theory
- * sets no bound there. */
-bool linear_limit_add(const struct scenario *s, size_t circumstance, double *inside);
+ * (engine/control/null_controllable.c). Adds 1 to inside[starts], or NULL, of each of these, the
+ * points of the scenario's last axis, in a circumstance, a point of the axes before it; returns
+ * their share, NAN: linear theory sets no bound there. */
+double linear_limit_add(const struct scenario *s, size_t circumstance, double *inside);
 /* Share of the first `starts` fresh starts of the candidate value[paths] in each circumstance,
  * share[circumstances]; NAN: linear theory sets no bound there. */
 void linear_limit_shares(struct trials *trials, double *value, uint64_t starts, double *share);

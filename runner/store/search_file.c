@@ -18,32 +18,32 @@
 #define VERSION 1
 enum { MOST_OVER = 3 };
 
+/* Dimensions, then variables over them. */
 static const struct entry {
     const char *name, *unit, *text;
-    size_t offset; /* of the pointer in struct search_file */
+    size_t
+        offset; /* of the pointer in struct search_file; 0: of numbered points, which need none */
     enum store_kind kind;
-    int over[MOST_OVER];
+    int over[MOST_OVER]; /* a dimension: itself */
 } table[] = {
+#define NUMBERS 0
+#define WORDS(field) offsetof(struct search_file, field)
+#define DIMENSION(NAME, name, words, text)                                                         \
+    {name,                                                                                         \
+     words ? NULL : "1",                                                                           \
+     text,                                                                                         \
+     words,                                                                                        \
+     words ? KIND_text : KIND_double,                                                              \
+     {SEARCH_##NAME, SEARCH_NO, SEARCH_NO}},
+    SEARCH_DIMENSIONS(DIMENSION)
 #define ENTRY(name, type, a, b, c, unit, text)                                                     \
     {#name,       unit,                                                                            \
      text,        offsetof(struct search_file, name),                                              \
      KIND_##type, {SEARCH_##a, SEARCH_##b, SEARCH_##c}},
-    SEARCH_VARIABLES(ENTRY)
-#undef ENTRY
-};
+        SEARCH_VARIABLES(ENTRY)};
 enum { ENTRIES = sizeof table / sizeof *table };
-
-static const struct {
-    const char *name;
-    size_t words; /* offset of them; 0: points are numbered */
-    const char *text;
-} dimensions[SEARCH_DIMENSION_COUNT] = {
-#define NUMBERS 0
-#define WORDS(field) offsetof(struct search_file, field)
-#define DIMENSION(NAME, name, words, text) {name, words, text},
-    SEARCH_DIMENSIONS(DIMENSION)
-#undef DIMENSION
-};
+static const struct entry *const variables = table + SEARCH_DIMENSION_COUNT,
+                                 *const end = table + ENTRIES, *const other = table + SEARCH_OTHER;
 
 /* Attributes: texts, and numbers with the type of the file and of memory. */
 static const struct {
@@ -80,11 +80,6 @@ static void **place_of(const struct search_file *f, const struct entry *e)
     return member_of(f, e->offset);
 }
 
-static char ***words_of(const struct search_file *f, int d)
-{
-    return member_of(f, dimensions[d].words);
-}
-
 static size_t elements_of(const struct search_file *f, const struct entry *e)
 {
     size_t n = 1;
@@ -98,29 +93,28 @@ static size_t elements_of(const struct search_file *f, const struct entry *e)
 bool search_file_room(struct search_file *f)
 {
     bool good = true;
-    for (const struct entry *e = table; e < table + ENTRIES && good; e++)
-        good = (*place_of(f, e) = calloc(elements_of(f, e) + 1, hdf_size(e->kind))) != NULL;
-    for (int d = 0; d < SEARCH_DIMENSION_COUNT && good; d++)
-        if (dimensions[d].words && !*words_of(f, d))
-            good = (*words_of(f, d) = calloc(f->length[d] + 1, sizeof(char *))) != NULL;
+    for (const struct entry *e = table; e < end && good; e++)
+        if (e->offset && !*place_of(f, e))
+            good = (*place_of(f, e) = calloc(elements_of(f, e) + 1, hdf_size(e->kind))) != NULL;
     return good;
 }
 
 void search_file_copy(struct search_file *f, const struct search_file *from,
                       enum search_dimension first)
 {
-    for (const struct entry *e = table; e < table + ENTRIES; e++)
+    for (const struct entry *e = variables; e < end; e++)
         if (e->over[0] == (int)first)
             memcpy(*place_of(f, e), *place_of(from, e), elements_of(from, e) * hdf_size(e->kind));
+    f->length[first] = from->length[first];
 }
 
 void search_file_free(struct search_file *f)
 {
-    for (int d = 0; d < SEARCH_DIMENSION_COUNT; d++)
-        if (dimensions[d].words && d != SEARCH_OTHER)
-            hdf_free_words(*words_of(f, d), f->length[d]);
-    for (const struct entry *e = table; e < table + ENTRIES; e++)
-        free(*place_of(f, e));
+    for (const struct entry *e = table; e < end; e++)
+        if (e->kind == KIND_text && e != other)
+            hdf_free_words(*place_of(f, e), elements_of(f, e));
+        else if (e >= variables)
+            free(*place_of(f, e));
     for (int i = 0; i < ATTRIBUTES; i++)
         if (attributes[i].kind == KIND_text)
             free(*(char **)member_of(f, attributes[i].offset));
@@ -129,29 +123,18 @@ void search_file_free(struct search_file *f)
 
 /* ---- writing -------------------------------------------------------------------------------- */
 
-static void put_variables(struct maker *m, const struct search_file *f)
+static void put_entries(struct maker *m, const struct search_file *f)
 {
     struct dimension over[SEARCH_DIMENSION_COUNT];
-    for (int d = 0; d < SEARCH_DIMENSION_COUNT; d++) {
-        const bool words = dimensions[d].words > 0;
-        const struct dataset dataset = {dimensions[d].name,
-                                        words ? KIND_text : KIND_double,
-                                        false,
-                                        words ? NULL : "1",
-                                        dimensions[d].text,
-                                        .values = words ? *words_of(f, d) : NULL,
-                                        .value = make_place,
-                                        .length = f->length[d]};
-        if (f->length[d] > 0)
-            make(m, &dataset, &over[d]);
-    }
-    for (const struct entry *e = table; e < table + ENTRIES; e++) {
-        struct dataset dataset = {e->name, e->kind, false,
-                                  e->unit, e->text, .values = *place_of(f, e)};
-        for (int d = 0; d < MOST_OVER && e->over[d] != SEARCH_NO; d++)
+    for (const struct entry *e = table; e < end; e++) {
+        struct dataset dataset = {e->name, e->kind, false, e->unit, e->text, .value = make_place};
+        dataset.values = e->offset ? *place_of(f, e) : NULL;
+        if (e < variables)
+            dataset.length = elements_of(f, e);
+        for (int d = 0; e >= variables && d < MOST_OVER && e->over[d] != SEARCH_NO; d++)
             dataset.over[d] = &over[e->over[d]];
         if (elements_of(f, e) > 0)
-            make(m, &dataset, NULL);
+            make(m, &dataset, e < variables ? &over[e - table] : NULL);
     }
 }
 
@@ -169,14 +152,6 @@ static void put_attributes_of(struct maker *m, const struct search_file *f)
     put_attributes(m, m->file, list, ATTRIBUTES + 2);
 }
 
-/* So that the name never stands for less than what has come to the disk. */
-static bool sync_file(const char *file)
-{
-    const int descriptor = open(file, O_RDWR | O_CLOEXEC);
-    const bool good = descriptor >= 0 && fsync(descriptor) == 0;
-    return (descriptor < 0 || close(descriptor) == 0) && good;
-}
-
 bool search_file_write(const struct search_file *f, const char *file, stance_message *message)
 {
     char part[PATH_MAX];
@@ -188,14 +163,13 @@ bool search_file_write(const struct search_file *f, const char *file, stance_mes
     make_file(&m, part);
     if (m.failed)
         return store_failed(message, file, "write");
-    put_variables(&m, f);
+    put_entries(&m, f);
     m.failed = m.failed || !file_checksums_put(m.file);
     put_attributes_of(&m, f);
     bool good = !m.failed || store_failed(message, file, "write");
     if (H5Fclose(m.file) < 0 && good)
         good = store_failed(message, file, "write");
-    good = good && ((sync_file(part) && rename(part, file) == 0) ||
-                    store_system_failed(message, file, "write", errno));
+    good = good && store_take_place(part, file, message);
     if (!good)
         unlink(part);
     return good;
@@ -213,45 +187,35 @@ bool search_file_is(const char *file)
     return is;
 }
 
-/* The length of a dimension; 0: it is not there. */
-static bool read_length(hid_t file, struct search_file *f, int d)
+/* A dimension that is not there has length 0; what files of before have not is nothing. */
+static bool read_entry(hid_t file, struct search_file *f, const struct entry *e)
 {
     hsize_t length[H5S_MAX_RANK];
-    if (!hdf_exists(file, dimensions[d].name))
+    if (e >= variables && elements_of(f, e) == 0)
         return true;
-    const hid_t dataset = H5Dopen2(file, dimensions[d].name, H5P_DEFAULT);
-    bool good =
-        dataset >= 0 && hdf_shape(dataset, length) == 1 && hdf_elements(dataset) == length[0];
-    f->length[d] = good ? (size_t)length[0] : 0;
-    if (good && dimensions[d].words && d != SEARCH_OTHER) {
-        char **const words = *words_of(f, d) = hdf_words(dataset, 0, f->length[d]);
-        for (size_t i = 0; words && i < f->length[d]; i++)
-            results_clean(words[i]);
-        good = words != NULL;
-    }
-    hdf_close(dataset);
-    return good;
-}
-
-static bool read_variable(hid_t file, struct search_file *f, const struct entry *e)
-{
-    hsize_t length[H5S_MAX_RANK];
-    const size_t elements = elements_of(f, e);
-    if (elements == 0)
-        return true;
-    if (e >= table + ENTRIES - SEARCH_ADDED && !hdf_exists(file, e->name)) {
+    if ((e < variables || e >= end - SEARCH_ADDED) && !hdf_exists(file, e->name)) {
         double *const number = *place_of(f, e);
-        for (size_t i = 0; e->kind == KIND_double && i < elements; i++)
+        for (size_t i = 0; e->kind == KIND_double && i < elements_of(f, e); i++)
             number[i] = NAN;
         return true;
     }
     const hid_t dataset = H5Dopen2(file, e->name, H5P_DEFAULT);
     const int rank = hdf_shape(dataset, length);
+    if (e < variables && rank == 1)
+        f->length[e - table] = (size_t)length[0];
+    const size_t elements = elements_of(f, e);
     bool good = rank > 0 && rank <= MOST_OVER && hdf_elements(dataset) == elements;
     for (int d = 0; d < MOST_OVER && good; d++)
         good = d < rank ? e->over[d] != SEARCH_NO && length[d] == f->length[e->over[d]]
                         : e->over[d] == SEARCH_NO;
-    good = good && hdf_read(dataset, e->kind, *place_of(f, e));
+    if (good && e >= variables) {
+        good = hdf_read(dataset, e->kind, *place_of(f, e));
+    } else if (good && e->offset && e != other) {
+        char **const words = *place_of(f, e) = hdf_words(dataset, 0, elements);
+        for (size_t i = 0; words && i < elements; i++)
+            results_clean(words[i]);
+        good = words != NULL;
+    }
     hdf_close(dataset);
     return good;
 }
@@ -289,13 +253,13 @@ static bool places_exist(const struct search_file *f)
 static bool read_all(hid_t file, struct search_file *f)
 {
     bool good = true;
-    for (int d = 0; d < SEARCH_DIMENSION_COUNT && good; d++)
-        good = read_length(file, f, d);
+    for (const struct entry *e = table; e < variables && good; e++)
+        good = read_entry(file, f, e);
     for (int i = 0; i < ATTRIBUTES && good; i++)
         good = read_attribute(file, f, i);
     good = good && search_file_room(f);
-    for (const struct entry *e = table; e < table + ENTRIES && good; e++)
-        good = read_variable(file, f, e);
+    for (const struct entry *e = variables; e < end && good; e++)
+        good = read_entry(file, f, e);
     return good && places_exist(f);
 }
 

@@ -108,7 +108,7 @@ struct search_file {
 /* Room for the lengths that *f has, all zeros, and for words that it has not; what is written later
  * has at most these. false: no memory. */
 bool search_file_room(struct search_file *f);
-/* Variables over candidates or generations, of a file that has as many of all else. */
+/* Length and variables of candidates or generations, of a file that has as many of all else. */
 void search_file_copy(struct search_file *f, const struct search_file *from,
                       enum search_dimension first);
 void search_file_free(struct search_file *f);
