@@ -190,7 +190,7 @@ static bool attend(void *context, double now)
                  o->search.generations, f->objective[f->best[g - 1]]);
     h->doing = o->doing;
     h->left = outlook_left(&o->search.outlook);
-    if (!heartbeat_beat(h, now, candidates, candidates, 0, &o->run.message))
+    if (!heartbeat_beat(h, now, candidates, 0, &o->run.message))
         return !run_fail_io(&o->run);
     char time[32] = "", left[64] = "";
     text_of_seconds(time, sizeof time, h->left);
@@ -222,9 +222,9 @@ static void stage_make(struct run *run)
 {
     struct optimise *const o = of(run);
     const char *const text = run->parallel.rank == 0 ? o->asked->text : "";
-    const bool good = parallel_share(&run->parallel) || no_memory(&run->message);
-    if (!good || !search_make(&o->search, run->scenario, text, &run->parallel,
-                              o->origin.scenario ? &o->origin : NULL, &run->message)) {
+    parallel_share(&run->parallel);
+    if (!search_make(&o->search, run->scenario, text, &run->parallel,
+                     o->origin.scenario ? &o->origin : NULL, &run->message)) {
         run_fail_io(run);
         return;
     }
