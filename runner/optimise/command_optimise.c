@@ -171,8 +171,8 @@ static void stage_make(struct run *run)
 {
     struct optimise *const o = of(run);
     const char *const text = run->parallel.rank == 0 ? o->asked->text : "";
-    const bool good = parallel_share(&run->parallel) || no_memory(&run->message);
-    if (!good || !search_make(&o->search, run, text, o->origin.scenario ? &o->origin : NULL)) {
+    parallel_share(&run->parallel);
+    if (!search_make(&o->search, run, text, o->origin.scenario ? &o->origin : NULL)) {
         run_fail_io(run);
         return;
     }

@@ -138,7 +138,7 @@ static bool attend(void *context, double now)
                  g + 1, search->generations, f->objective[f->best[g - 1]]);
     h->doing = search->doing;
     h->left = outlook_left(&search->outlook);
-    if (!heartbeat_beat(h, now, candidates, candidates, 0, &run->message))
+    if (!heartbeat_beat(h, now, candidates, 0, &run->message))
         return !run_fail_io(run);
     char time[32] = "", left[64] = "";
     text_of_seconds(time, sizeof time, h->left);

@@ -8,23 +8,11 @@
 
 typedef int MPI_Win, MPI_Request, MPI_Comm;
 typedef ptrdiff_t MPI_Aint;
-enum {
-    MPI_COMM_WORLD,
-    MPI_COMM_TYPE_SHARED,
-    MPI_BYTE,
-    MPI_INT,
-    MPI_INT64_T,
-    MPI_UINT64_T,
-    MPI_UINT8_T
-};
+enum { MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, MPI_THREAD_FUNNELED };
+enum { MPI_BYTE, MPI_INT, MPI_INT64_T, MPI_UINT64_T, MPI_UINT8_T };
 enum { MPI_SUM, MPI_MAX, MPI_MIN, MPI_REPLACE, MPI_NO_OP };
-enum {
-    MPI_THREAD_FUNNELED,
-    MPI_IN_PLACE,
-    MPI_INFO_NULL,
-    MPI_STATUS_IGNORE,
-    MPI_MAX_LIBRARY_VERSION_STRING = 64
-};
+enum { MPI_IN_PLACE, MPI_INFO_NULL, MPI_STATUS_IGNORE };
+enum { MPI_MAX_LIBRARY_VERSION_STRING = 64 };
 
 static inline void never_called(int ignored, ...)
 {

@@ -5,7 +5,7 @@
  */
 #include "parallel.h"
 
-#include "deadline.h"
+#include "crash.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -19,10 +19,10 @@
 #include "no_mpi.h"
 #endif
 
-struct parallel_shared {
-    int64_t *counter; /* [COUNTERS], then [ranks] numbers of theirs; on rank 0, else none */
-    MPI_Win window;   /* when there are several ranks */
-};
+/* [COUNTERS], then [ranks] numbers of theirs; of several ranks in a window, on rank 0, else none.
+ */
+static int64_t alone[COUNTERS + 1], *counter = alone;
+static MPI_Win window;
 
 struct parallel parallel_alone(void)
 {
@@ -226,90 +226,71 @@ bool parallel_on_one_host(const struct parallel *parallel)
     return here == parallel->size;
 }
 
-bool parallel_share(struct parallel *parallel)
+void parallel_share(struct parallel *parallel)
 {
-    struct parallel_shared *shared = calloc(1, sizeof *shared);
-    char none[1] = "";
-    if (shared && parallel->size == 1)
-        shared->counter = calloc(COUNTERS + 1, sizeof *shared->counter);
-    const bool made = shared && (parallel->size > 1 || shared->counter);
-    if (!parallel_agree(parallel, made, none, sizeof none) || !made) {
-        free(shared);
-        return false;
+    const size_t size = (COUNTERS + (size_t)parallel->size) * sizeof *counter;
+    parallel->shared = true;
+    if (parallel->size > 1) {
+        MPI_Win_allocate(parallel->rank == 0 ? (MPI_Aint)size : 0, sizeof *counter, MPI_INFO_NULL,
+                         MPI_COMM_WORLD, &counter, &window);
+        MPI_Win_lock_all(0, window);
     }
-    parallel->shared = shared;
-    if (parallel->size == 1)
-        return true;
-    const MPI_Aint numbers = COUNTERS + (MPI_Aint)parallel->size;
-    MPI_Aint size = parallel->rank == 0 ? numbers * (MPI_Aint)sizeof(int64_t) : 0;
-    MPI_Win_allocate(size, sizeof(int64_t), MPI_INFO_NULL, MPI_COMM_WORLD, &shared->counter,
-                     &shared->window);
-    MPI_Win_lock_all(0, shared->window);
-    if (parallel->rank == 0) {
-        memset(shared->counter, 0, (size_t)size);
-        MPI_Win_sync(shared->window);
-    }
-    MPI_Barrier(MPI_COMM_WORLD);
-    return true;
+    if (parallel->rank == 0)
+        memset(counter, 0, size);
+    if (parallel->size > 1)
+        MPI_Win_sync(window);
+    barrier(parallel);
 }
 
 void parallel_unshare(struct parallel *parallel)
 {
-    if (!parallel->shared)
-        return;
-    if (parallel->size == 1) {
-        free(parallel->shared->counter);
-    } else {
-        MPI_Win_unlock_all(parallel->shared->window);
-        MPI_Win_free(&parallel->shared->window);
+    if (parallel->shared && parallel->size > 1) {
+        MPI_Win_unlock_all(window);
+        MPI_Win_free(&window);
+        counter = alone;
     }
-    free(parallel->shared);
-    parallel->shared = NULL;
+    parallel->shared = false;
 }
 
 /* One-sided, so nobody serves the counters. Some networks move them on only while rank 0 is
  * inside MPI: rank 0 must come here often, too. Should rank 0's machine be cut off, this never
- * returns: see deadline.h. (Open MPI 4's request for the same, which could be given up, is not
+ * returns: see crash.h. (Open MPI 4's request for the same, which could be given up, is not
  * atomic in windows made of messages: two ranks got the same number.) */
-int64_t parallel_add(const struct parallel *parallel, enum parallel_counter counter, int64_t value)
+int64_t parallel_add(const struct parallel *parallel, enum parallel_counter which, int64_t value)
 {
     int64_t before = 0;
-    if (parallel->size == 1) {
-        before = parallel->shared->counter[counter];
-        parallel->shared->counter[counter] += value;
-        return before;
-    }
-    deadline_waits();
-    MPI_Fetch_and_op(&value, &before, MPI_INT64_T, 0, (MPI_Aint)counter, MPI_SUM,
-                     parallel->shared->window);
-    MPI_Win_flush(0, parallel->shared->window);
-    deadline_comes();
+    if (parallel->size == 1)
+        return (counter[which] += value) - value;
+    deadline_waits(true);
+    MPI_Fetch_and_op(&value, &before, MPI_INT64_T, 0, (MPI_Aint)which, MPI_SUM, window);
+    MPI_Win_flush(0, window);
+    deadline_waits(false);
     return before;
 }
 
 void parallel_beat(const struct parallel *parallel, int64_t number)
 {
     if (parallel->size == 1) {
-        parallel->shared->counter[COUNTERS] = number;
+        counter[COUNTERS] = number;
         return;
     }
-    deadline_waits();
+    deadline_waits(true);
     MPI_Accumulate(&number, 1, MPI_INT64_T, 0, COUNTERS + (MPI_Aint)parallel->rank, 1, MPI_INT64_T,
-                   MPI_REPLACE, parallel->shared->window);
-    MPI_Win_flush(0, parallel->shared->window);
-    deadline_comes();
+                   MPI_REPLACE, window);
+    MPI_Win_flush(0, window);
+    deadline_waits(false);
 }
 
 void parallel_beats(const struct parallel *parallel, int64_t *number)
 {
     const int n = parallel->size;
     if (n == 1) {
-        number[0] = parallel->shared->counter[COUNTERS];
+        number[0] = counter[COUNTERS];
         return;
     }
     MPI_Get_accumulate(NULL, 0, MPI_INT64_T, number, n, MPI_INT64_T, 0, COUNTERS, n, MPI_INT64_T,
-                       MPI_NO_OP, parallel->shared->window);
-    MPI_Win_flush(0, parallel->shared->window);
+                       MPI_NO_OP, window);
+    MPI_Win_flush(0, window);
 }
 
 void parallel_meet(const struct parallel *parallel, void (*wait)(void *context), void *context)
@@ -342,8 +323,8 @@ void parallel_library(char *text, size_t size)
 void parallel_restart(const struct parallel *parallel)
 {
     barrier(parallel); /* every rank has drawn its last */
-    for (int counter = 0; parallel->rank == 0 && counter < COUNTERS; counter++)
-        if (counter != COUNTER_STOP)
-            parallel_add(parallel, counter, -parallel_add(parallel, counter, 0));
+    for (int which = 0; parallel->rank == 0 && which < COUNTERS; which++)
+        if (which != COUNTER_STOP)
+            parallel_add(parallel, which, -parallel_add(parallel, which, 0));
     barrier(parallel);
 }

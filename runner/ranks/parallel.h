@@ -21,11 +21,9 @@ enum parallel_counter {
     COUNTERS
 };
 
-struct parallel_shared; /* the counters' memory, private to parallel.c */
-
 struct parallel {
     int rank, size;
-    struct parallel_shared *shared;
+    bool shared; /* the counters are in use */
 };
 
 /* One rank, without starting MPI. */
@@ -59,11 +57,11 @@ void parallel_largest(const struct parallel *parallel, uint8_t *byte, size_t n);
  * rank) becomes that of the lowest rank that said false. */
 bool parallel_agree(const struct parallel *parallel, bool good, char *text, size_t size);
 
-/* Collective: begin and end the use of the counters, all zero at first. false: no memory. */
-bool parallel_share(struct parallel *parallel);
+/* Collective: begin and end the use of the counters, all zero at first; one use at a time. */
+void parallel_share(struct parallel *parallel);
 void parallel_unshare(struct parallel *parallel);
 /* Not collective: adds to a counter and returns what it held before; adding 0 reads it. */
-int64_t parallel_add(const struct parallel *parallel, enum parallel_counter counter, int64_t value);
+int64_t parallel_add(const struct parallel *parallel, enum parallel_counter which, int64_t value);
 /* Collective: all counters but COUNTER_STOP are zero again. */
 void parallel_restart(const struct parallel *parallel);
 

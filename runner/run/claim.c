@@ -6,7 +6,6 @@
 #include "runner/plan/instruction_set.h"
 #include "runner/plan/law.h"
 #include "runner/ranks/crash.h"
-#include "runner/ranks/deadline.h"
 #include "runner/store/build_info.h"
 
 #include <errno.h>
@@ -231,9 +230,9 @@ static bool take_ranks(struct run *run)
     }
     store_prepare();
     run->parallel = parallel_start();
-    if (run->parallel.size > 1)
-        deadline_prepare(run->parallel.rank);
     crash_watch(run->parallel.rank);
+    if (run->parallel.size > 1)
+        deadline_prepare();
     work_catch_signals();
     return true;
 }

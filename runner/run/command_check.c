@@ -1,7 +1,6 @@
 /* command_check.c - `stance check`: is the scenario sound, and what would running it take? */
-#include "report.h"
+#include "run.h"
 
-#include "runner/plan/asked.h"
 #include "runner/plan/warnings.h"
 
 #include <stdio.h>

@@ -25,7 +25,7 @@ struct state {
     bool searches;
     bool refined; /* a map whose boundary is being sought: the cases left are not all simulated */
     struct shard shard;      /* whose cases alone are counted; count 0: none */
-    double rate, mean, left; /* cases/s of late, since the job's start, and s; negative: unknown */
+    double rate, mean, left; /* cases/s of late, since the job's start, and s; NAN: unknown */
 };
 
 static uint64_t count_pending(const struct state *state)
@@ -52,9 +52,15 @@ static void read_origin(const char *file, struct state *state)
     }
 }
 
+/* What a note has as a negative number is unknown. */
+static double known(double number)
+{
+    return number >= 0 ? number : NAN;
+}
+
 static bool read_state(const char *file, struct state *state, stance_message *message)
 {
-    *state = (struct state){.rate = -1, .mean = -1, .left = -1};
+    *state = (struct state){.rate = NAN, .mean = NAN, .left = NAN};
     heartbeat_read(file, &state->note);
     const struct heartbeat_note *note = &state->note;
     if (note->here && access(file, F_OK) != 0) {
@@ -64,16 +70,16 @@ static bool read_state(const char *file, struct state *state, stance_message *me
     if (search_file_is(file)) {
         state->searches = search_file_read(&state->search, file, message);
         if (state->searches && note->running)
-            state->left = note->left;
+            state->left = known(note->left);
         return state->searches;
     }
     if (!store_count(file, &state->counts, message) || !store_check(file, false, message))
         return false;
     read_origin(file, state);
     if (note->running && note->exists) {
-        state->rate = note->rate;
-        state->mean =
-            note->spent > 0 && note->computed > 0 ? (double)note->computed / note->spent : -1;
+        state->rate = known(note->rate);
+        if (note->spent > 0 && note->computed > 0)
+            state->mean = (double)note->computed / note->spent;
         if (!state->refined && state->rate > 0)
             state->left = (double)count_pending(state) / state->rate;
     }
@@ -84,19 +90,14 @@ static bool read_state(const char *file, struct state *state, stance_message *me
 
 static json_t *number_or_null(double number)
 {
-    return number < 0 ? json_null() : json_real(number);
-}
-
-static json_t *objective_or_null(double objective)
-{
-    return isfinite(objective) ? json_real(objective) : json_null();
+    return isfinite(number) ? json_real(number) : json_null();
 }
 
 static json_t *seconds_text(double seconds)
 {
     char text[32];
     text_of_seconds(text, sizeof text, seconds);
-    return seconds < 0 ? json_null() : json_string(text);
+    return isnan(seconds) ? json_null() : json_string(text);
 }
 
 static json_t *run_facts(const char *file, const struct state *state)
@@ -106,12 +107,11 @@ static json_t *run_facts(const char *file, const struct state *state)
     char shard[SHARD_TEXT];
     shard_text(&state->shard, shard);
     return json_pack(
-        "{s:o, s:o, s:I, s:I, s:I, s:o, s:o, s:o, s:o, s:b, s:b, s:s}", "file",
-        json_string_nocheck(file), "shard",
-        state->shard.count > 0 ? json_string(shard) : json_null(), "cases", (json_int_t)c->cases,
-        "done", (json_int_t)c->done, "failed", (json_int_t)c->failed, "pending",
-        state->refined ? json_null() : json_integer((json_int_t)count_pending(state)), "rate",
-        number_or_null(state->rate), "mean_rate", number_or_null(state->mean), "round",
+        "{s:o, s:s?, s:I, s:I, s:I, s:o, s:o, s:o, s:o, s:b, s:b, s:s}", "file",
+        json_string_nocheck(file), "shard", state->shard.count > 0 ? shard : NULL, "cases",
+        (json_int_t)c->cases, "done", (json_int_t)c->done, "failed", (json_int_t)c->failed,
+        "pending", state->refined ? json_null() : json_integer((json_int_t)count_pending(state)),
+        "rate", number_or_null(state->rate), "mean_rate", number_or_null(state->mean), "round",
         note->running && note->exists && note->round > 0 ? json_integer(note->round) : json_null(),
         ".refined", state->refined, ".complete", count_pending(state) == 0, ".command", "run");
 }
@@ -126,15 +126,15 @@ static json_t *search_facts(const char *file, const struct state *state)
     const size_t last = f->length[SEARCH_GENERATION] - 1;
     const double best = f->objective[f->best[last]],
                  chosen = f->chosen < 0 ? NAN : f->confirmed_objective[f->chosen];
-    return json_pack(
-        "{s:o, s:b, s:I, s:I, s:I, s:I, s:I, s:o, s:o, s:o, s:b, s:I, s:s, s:b, s:s}", "file",
-        json_string_nocheck(file), "finished", f->finished, "generations", (json_int_t)last + 1,
-        "most_generations", (json_int_t)f->most_generations, "candidates",
-        (json_int_t)f->length[SEARCH_CANDIDATE], "starts", (json_int_t)f->starts[last], "best",
-        (json_int_t)f->best[last], "best_objective", objective_or_null(best), "chosen_objective",
-        objective_or_null(chosen), ".best", objective_or_null(f->chosen < 0 ? best : chosen),
-        ".chosen", f->chosen >= 0, ".fresh", (json_int_t)f->length[SEARCH_START], ".note", f->note,
-        ".complete", f->finished, ".command", "optimise");
+    return json_pack("{s:o, s:b, s:I, s:I, s:I, s:I, s:I, s:o, s:o, s:o, s:b, s:I, s:s, s:b, s:s}",
+                     "file", json_string_nocheck(file), "finished", f->finished, "generations",
+                     (json_int_t)last + 1, "most_generations", (json_int_t)f->most_generations,
+                     "candidates", (json_int_t)f->length[SEARCH_CANDIDATE], "starts",
+                     (json_int_t)f->starts[last], "best", (json_int_t)f->best[last],
+                     "best_objective", number_or_null(best), "chosen_objective",
+                     number_or_null(chosen), ".best", number_or_null(f->chosen < 0 ? best : chosen),
+                     ".chosen", f->chosen >= 0, ".fresh", (json_int_t)f->length[SEARCH_START],
+                     ".note", f->note, ".complete", f->finished, ".command", "optimise");
 }
 
 static const char search_text[] =
@@ -145,20 +145,21 @@ static const char search_text[] =
 static json_t *job_facts(const struct state *state)
 {
     const struct heartbeat_note *note = &state->note;
-    const bool known = note->exists && note->running, silent = note->age >= HEARTBEAT_SILENCE;
+    const bool silent = note->age >= HEARTBEAT_SILENCE;
+    const double age = note->exists ? note->age : NAN;
     const bool usual =
         strcmp(note->doing, "computing") == 0 || strncmp(note->doing, "generation", 10) == 0;
-    return json_pack("{s:b, s:o, s:o, s:o, s:o, s:o, s:o, s:b, s:b, s:b, s:i, s:i, s:o, s:b, s:o}",
-                     "running", note->running, "seconds_left", number_or_null(state->left), "ranks",
-                     known ? json_integer(note->ranks) : json_null(), "ranks_alive",
-                     known ? json_integer(note->alive) : json_null(), "host",
-                     note->exists ? json_string(note->host) : json_null(), "doing",
-                     known ? json_string(note->doing) : json_null(), "last_sign",
-                     number_or_null(note->exists ? note->age : -1), ".here", note->here, ".silent",
-                     silent, ".unusual", !usual, ".lost", silent ? 0 : note->ranks - note->alive,
-                     ".patience", (int)HEARTBEAT_SILENCE, ".age",
-                     seconds_text(note->exists ? note->age : -1), ".rated", state->rate >= 0,
-                     ".left", seconds_text(state->left));
+    json_t *const facts = json_pack(
+        "{s:b, s:o, s:n, s:n, s:s?, s:n, s:o, s:b, s:b, s:b, s:i, s:i, s:o, s:b, s:o}", "running",
+        note->running, "seconds_left", number_or_null(state->left), "ranks", "ranks_alive", "host",
+        note->exists ? note->host : NULL, "doing", "last_sign", number_or_null(age), ".here",
+        note->here, ".silent", silent, ".unusual", !usual, ".lost",
+        silent ? 0 : note->ranks - note->alive, ".patience", (int)HEARTBEAT_SILENCE, ".age",
+        seconds_text(age), ".rated", !isnan(state->rate), ".left", seconds_text(state->left));
+    if (note->exists && note->running)
+        json_object_update_new(facts, json_pack("{s:i, s:i, s:s}", "ranks", note->ranks,
+                                                "ranks_alive", note->alive, "doing", note->doing));
+    return facts;
 }
 
 /* A job that ended by itself took its note along. */

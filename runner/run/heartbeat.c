@@ -4,7 +4,7 @@
 #include "runner/base/message.h"
 #include "runner/base/units.h"
 #include "runner/plan/plan.h"
-#include "runner/ranks/deadline.h"
+#include "runner/ranks/crash.h"
 
 #include <jansson.h>
 #include <math.h>
@@ -79,12 +79,11 @@ static void write_note(const struct heartbeat *heartbeat, uint64_t computed, int
     char host[80];
     const double now = wall_clock();
     parallel_host(host, sizeof host);
-    json_t *note =
-        json_pack("{s:s, s:i, s:s, s:f, s:f, s:i, s:i, s:i, s:I, s:I, s:f, s:f}", "host", host,
-                  "pid", (int)getpid(), "doing", heartbeat->doing, "start", heartbeat->start,
-                  "time", now, "ranks", heartbeat->parallel->size, "alive", heartbeat->alive,
-                  "round", round, "kept", (json_int_t)heartbeat->kept, "computed",
-                  (json_int_t)computed, "rate", recent_rate(heartbeat), "left", heartbeat->left);
+    json_t *note = json_pack(
+        "{s:s, s:i, s:s, s:f, s:f, s:i, s:i, s:i, s:I, s:f, s:f}", "host", host, "pid",
+        (int)getpid(), "doing", heartbeat->doing, "start", heartbeat->start, "time", now, "ranks",
+        heartbeat->parallel->size, "alive", heartbeat->alive, "round", round, "computed",
+        (json_int_t)computed, "rate", recent_rate(heartbeat), "left", heartbeat->left);
     char *text = note ? json_dumps(note, JSON_COMPACT | JSON_REAL_PRECISION(15)) : NULL;
     if (text)
         lock_write_note(heartbeat->lock, text);
@@ -129,8 +128,8 @@ void heartbeat_guard(struct heartbeat *heartbeat, const char *file)
     }
 }
 
-bool heartbeat_beat(struct heartbeat *heartbeat, double now, uint64_t finished, uint64_t computed,
-                    int round, stance_message *message)
+bool heartbeat_beat(struct heartbeat *heartbeat, double now, uint64_t computed, int round,
+                    stance_message *message)
 {
     if (now < heartbeat->due)
         return true;
@@ -143,7 +142,6 @@ bool heartbeat_beat(struct heartbeat *heartbeat, double now, uint64_t finished, 
                         heartbeat->file);
     if (!lock_keep(heartbeat->lock, message))
         return false;
-    heartbeat->kept = finished - computed;
     heartbeat->sample[heartbeat->samples++ % HEARTBEAT_SAMPLES] =
         (struct heartbeat_sample){now, computed};
     heartbeat->alive = count_alive(heartbeat, now);
@@ -166,14 +164,13 @@ static void take_note(struct heartbeat_note *note, const char *text)
 {
     const char *host, *doing;
     double start, time;
-    json_int_t kept, computed;
+    json_int_t computed;
     json_t *root = json_loads(text, JSON_DISABLE_EOF_CHECK, NULL);
     note->exists =
-        root &&
-        json_unpack(root, "{s:s, s:s, s:F, s:F, s:i, s:i, s:i, s:I, s:I, s:F, s?F}", "host", &host,
-                    "doing", &doing, "start", &start, "time", &time, "ranks", &note->ranks, "alive",
-                    &note->alive, "round", &note->round, "kept", &kept, "computed", &computed,
-                    "rate", &note->rate, "left", &note->left) == 0;
+        root && json_unpack(root, "{s:s, s:s, s:F, s:F, s:i, s:i, s:i, s:I, s:F, s?F}", "host",
+                            &host, "doing", &doing, "start", &start, "time", &time, "ranks",
+                            &note->ranks, "alive", &note->alive, "round", &note->round, "computed",
+                            &computed, "rate", &note->rate, "left", &note->left) == 0;
     if (note->exists) {
         copy_word(note->host, sizeof note->host, host);
         copy_word(note->doing, sizeof note->doing, doing);
@@ -181,7 +178,6 @@ static void take_note(struct heartbeat_note *note, const char *text)
         note->age = note->age > 0 ? note->age : 0;
         note->spent = time - start;
         note->left = note->left >= 0 ? fmax(0, note->left - note->age) : -1;
-        note->kept = (uint64_t)kept;
         note->computed = (uint64_t)computed;
     }
     json_decref(root);

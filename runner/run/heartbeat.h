@@ -32,7 +32,6 @@ struct heartbeat {
     double start;      /* s since 1970 */
     double due;        /* when to write next, of clock_seconds() */
     double left;       /* s until the end, where the job knows better than by its rate; negative */
-    uint64_t kept;     /* cases that were finished when the job began */
     char file[1024];   /* "": not there yet */
     dev_t device;      /* of that file */
     ino_t inode;
@@ -54,11 +53,10 @@ bool heartbeat_begin(struct heartbeat *heartbeat, struct lock *lock,
 void heartbeat_end(struct heartbeat *heartbeat);
 /* From now on the file must keep its name. */
 void heartbeat_guard(struct heartbeat *heartbeat, const char *file);
-/* Writes a note when it is time to (`now`: clock_seconds()). finished: cases with an answer, of
- * those computed by this job; round of a refined map, 0: none. false: the file is gone, or another
- * process writes it. */
-bool heartbeat_beat(struct heartbeat *heartbeat, double now, uint64_t finished, uint64_t computed,
-                    int round, stance_message *message);
+/* Writes a note when it is time to (`now`: clock_seconds()). computed: cases, by this job; round of
+ * a refined map, 0: none. false: the file is gone, or another process writes it. */
+bool heartbeat_beat(struct heartbeat *heartbeat, double now, uint64_t computed, int round,
+                    stance_message *message);
 
 /* The first rank that has neither beaten nor waited for DEADLINE_LOST; 0: none, or no heartbeat. */
 int heartbeat_lost(const struct heartbeat *heartbeat, double now);
@@ -75,8 +73,7 @@ struct heartbeat_note {
     double spent;      /* s from the job's start to that */
     double rate;       /* computed cases per second of late; negative: not known yet */
     double left;       /* s from now on, as the job reckons; negative: it does not */
-    uint64_t kept;     /* cases that were finished when the job began */
-    uint64_t computed; /* by this job */
+    uint64_t computed; /* cases, by this job */
     int ranks, alive, round;
 };
 

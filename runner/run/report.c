@@ -1,5 +1,5 @@
 /* report.c - cases, dimensions, designs, file size and cost of a plan. */
-#include "report.h"
+#include "run.h"
 
 #include "runner/base/checksum.h"
 #include "runner/base/say.h"
@@ -34,15 +34,11 @@ struct estimate {
 static void measure(struct estimate *e)
 {
     const struct plan *const plan = e->plan;
-    struct kernels *const kernels = calloc(1, sizeof *kernels);
-    struct kernels_outlook outlook = {0, 1, true};
+    struct kernels kernels = {.count = 0};
     e->seconds = e->searching = -1;
-    if (!plan_simulates(plan)) {
-        free(kernels);
+    if (!plan_simulates(plan))
         return;
-    }
-    if (kernels)
-        outlook = kernels_look(kernels, plan);
+    const struct kernels_outlook outlook = kernels_look(&kernels, plan);
     const double share = outlook.brief ? 1 : outlook.share;
     const double all = plan_cost(plan, PLAN_PATIENCE_COST, &e->bound);
     e->seconds = all * share * (double)plan_share(plan).count / (double)plan->rows;
@@ -52,9 +48,7 @@ static void measure(struct estimate *e)
         e->searching =
             all * outlook.share * scenario_search_cases(plan->scenario) / (double)plan->rows +
             outlook.compiling;
-    if (kernels)
-        kernels_give_back(kernels);
-    free(kernels);
+    kernels_give_back(&kernels);
     if (plan->scenario->refine.given && !plan->single) {
         const struct refine_map map = refine_map_of(plan->scenario);
         e->coarse = refine_coarse(&map);

@@ -4,7 +4,6 @@
  * error of any rank is printed once, and all leave together with its exit code.
  */
 #include "run.h"
-#include "report.h"
 
 #include "runner/base/command.h"
 #include "runner/base/message.h"
@@ -14,7 +13,6 @@
 #include "runner/plan/warnings.h"
 
 #include <errno.h>
-#include <fcntl.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
@@ -116,7 +114,7 @@ static bool out_of_time(void *context)
     bool stop = work_stop_asked() || now - run->start > run->options.time_limit;
 
     if (run->parallel.rank == 0 && run->heartbeat.lock)
-        stop = !heartbeat_beat(&run->heartbeat, now, 0, 0, 0, &run->message) || stop;
+        stop = !heartbeat_beat(&run->heartbeat, now, 0, 0, &run->message) || stop;
     if (stop || run->parallel.rank == 0 || now >= run->look_at) {
         run->look_at = now + schedule_look_interval(run->parallel.size);
         stop = parallel_add(&run->parallel, COUNTER_STOP, stop) != 0 || stop;
@@ -144,10 +142,9 @@ static void stage_plan(struct run *run)
             parallel_broadcast(&run->parallel, axis->value,
                                axis->count * (size_t)axis->paths * sizeof *axis->value);
     }
-    if (!parallel_share(&run->parallel))
-        run_fail(run, EXIT_IO, "stance run: not enough memory");
-    else if (!plan_make(&run->plan, run->scenario, o->single, o->single_case, o->trace, &error) ||
-             (o->shard.count > 0 && !plan_cut(&run->plan, &o->shard, &error)))
+    parallel_share(&run->parallel);
+    if (!plan_make(&run->plan, run->scenario, o->single, o->single_case, o->trace, &error) ||
+        (o->shard.count > 0 && !plan_cut(&run->plan, &o->shard, &error)))
         fail_scenario(run, &error);
     run->plan.ancestors = run->old.origin.ancestors + run->succeed;
     parallel_broadcast(&run->parallel, &run->plan.ancestors, sizeof run->plan.ancestors);
@@ -325,15 +322,9 @@ static void stage_close(struct run *run)
     struct store *store = run->store;
 
     run->store = NULL;
-    if (!store_close(store, &run->message)) {
+    if (!store_close(store, &run->message) ||
+        (run->parallel.rank == 0 && !store_bring(run->file, false, &run->message)))
         run_fail_io(run);
-    } else if (run->parallel.rank == 0) {
-        int descriptor = open(run->file, O_RDWR | O_CLOEXEC);
-        if (descriptor < 0 || fsync(descriptor) != 0 || close(descriptor) != 0) {
-            run_fail(run, EXIT_IO, "stance run: %.150s: cannot bring it to the disk: %s", run->file,
-                     strerror(errno));
-        }
-    }
 }
 
 /* ---- the end ------------------------------------------------------------------------------- */

@@ -121,6 +121,10 @@ void run_drop(struct run *run);
  * for run_drop after. */
 int run_all(struct run *run, int argc, char **argv, void (*stage_options)(struct run *));
 
+/* report.c: what `check` and `run --dry-run` print about a plan that has its designs. `file`: where
+ * the results would go. What is very much is said on standard error, by `who`. */
+void report_plan(const struct plan *plan, int ranks, const char *file, bool json, const char *who);
+
 extern const struct command command_run; /* run_options.c */
 int run_run(int argc, char **argv);
 

@@ -16,7 +16,6 @@
 #include "runner/base/message.h"
 #include "runner/base/units.h"
 #include "runner/ranks/crash.h"
-#include "runner/ranks/deadline.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -34,7 +33,7 @@ static const double at_once = 1; /* s: first rows do not wait, whoever needs the
 
 /* ---- blocks and tasks --------------------------------------------------------------------- */
 
-enum state { PENDING, RUNNING, ENDED, STORED };
+enum state { PENDING, RUNNING, ENDED, STORED }; /* at first all are pending */
 
 /* Rows that were drawn together. */
 struct block {
@@ -46,7 +45,7 @@ struct block {
     size_t cursor;           /* where the stream looks for its next case */
     double write_at;         /* when what has ended is written next */
     int writes;              /* so far */
-    uint8_t *state, *method; /* [capacity], behind it */
+    uint8_t *state, *method; /* [count], behind it */
 };
 
 /* A case in a lane. */
@@ -68,12 +67,12 @@ struct job {
     struct schedule schedule;
     uint8_t *label; /* [places of the schedule], or NULL */
     const stance_kernel *kernel[MAX_METHODS];
-    size_t capacity;             /* rows of a block */
-    struct block *oldest, *idle; /* open blocks in the order of drawing; blocks to be used again */
-    struct block *at;            /* the one that the stream takes from; NULL: none has any */
-    int method;                  /* of the stream */
-    uint64_t pending;            /* rows of open blocks in state PENDING */
-    int blocks;                  /* open */
+    size_t capacity;                /* rows of a block */
+    struct block *oldest;           /* open blocks in the order of drawing */
+    struct block *at;               /* the one that the stream takes from; NULL: none has any */
+    int method;                     /* of the stream */
+    uint64_t pending;               /* rows of open blocks in state PENDING */
+    int blocks;                     /* open */
     struct task *tasks, *idle_task; /* all; those that are in no lane */
     uint64_t ended, kept;           /* not yet told to the counters */
     double look_at;                 /* when next */
@@ -102,29 +101,27 @@ static void out_of_memory(struct job *job, const char *what)
     break_off(job);
 }
 
-static void free_blocks(struct block *list)
-{
-    for (struct block *block = list, *next; block; block = next) {
-        next = block->next;
-        free(block->rows);
-        free(block);
-    }
-}
-
-static struct block *block_make(const struct job *job)
+/* Of rows from a place of the schedule on; NULL: no memory. */
+static struct block *block_make(const struct job *job, uint64_t first, size_t count)
 {
     const struct store *const store = job->work->store;
-    struct block *block = calloc(1, sizeof *block + 2 * job->capacity);
-    if (block) {
-        block->rows = store ? store_block_make(store, job->capacity) : NULL;
-        block->state = (uint8_t *)(block + 1);
-        block->method = block->state + job->capacity;
-    }
-    if (block && store && !block->rows) {
+    struct block *block = calloc(1, sizeof *block + 2 * count);
+    struct store_block *const rows = block && store ? store_block_make(store, count) : NULL;
+    if (!block || (store && !rows)) {
         free(block);
         return NULL;
     }
+    *block = (struct block){.rows = rows, .first = first, .count = count, .open = count};
+    block->state = (uint8_t *)(block + 1);
+    block->method = block->state + count;
+    block->write_at = clock_seconds() + schedule_write_interval(job->work->parallel->size, 0);
     return block;
+}
+
+static void block_free(struct block *block)
+{
+    free(block->rows);
+    free(block);
 }
 
 static struct task *task_take(struct job *job)
@@ -226,8 +223,7 @@ static void close_block(struct job *job, struct block *block)
     *link = block->next;
     if (job->at == block)
         job->at = block->next;
-    block->next = job->idle;
-    job->idle = block;
+    block_free(block);
     job->blocks--;
 }
 
@@ -344,20 +340,11 @@ static bool open_block(struct job *job)
             return false;
         count = schedule_take(&job->schedule, job->capacity, &first);
     }
-    struct block *block = job->idle;
-    if (block) {
-        job->idle = block->next;
-    } else if (!(block = block_make(job))) {
+    struct block *const block = block_make(job, first, count);
+    if (!block) {
         out_of_memory(job, "the results");
         return false;
     }
-    block->next = NULL;
-    block->first = first;
-    block->count = block->open = count;
-    block->cursor = 0;
-    block->writes = 0;
-    block->write_at = clock_seconds() + schedule_write_interval(job->work->parallel->size, 0);
-    memset(block->state, PENDING, count);
     struct block **link = &job->oldest;
     while (*link)
         link = &(*link)->next;
@@ -483,6 +470,13 @@ static bool asked_to_stop(const struct work *work, double now)
     return work_stop_asked() || now - work->start > work->time_limit;
 }
 
+/* Cases that all ranks have computed in this round, as far as they have told. */
+static uint64_t count_computed(const struct work *work)
+{
+    const int64_t done = parallel_add(work->parallel, COUNTER_DONE, 0);
+    return (uint64_t)(done - parallel_add(work->parallel, COUNTER_KEPT, 0));
+}
+
 /* Rank 0's sign of life for the whole job. */
 static void keep_pulse(struct job *job, double now)
 {
@@ -493,10 +487,8 @@ static void keep_pulse(struct job *job, double now)
     }
     if (!work->heartbeat || now < work->heartbeat->due || job->broken || job->lost)
         return;
-    const uint64_t done = work->before + (uint64_t)parallel_add(work->parallel, COUNTER_DONE, 0);
-    const uint64_t kept =
-        work->kept_before + (uint64_t)parallel_add(work->parallel, COUNTER_KEPT, 0);
-    if (!heartbeat_beat(work->heartbeat, now, done, done - kept, work->round, job->message)) {
+    if (!heartbeat_beat(work->heartbeat, now, work->before + count_computed(work), work->round,
+                        job->message)) {
         job->lost = job->leaving = true;
         parallel_add(work->parallel, COUNTER_STOP, 1);
     }
@@ -582,10 +574,8 @@ static void meet(struct job *job)
     struct work *work = job->work;
     parallel_beat(work->parallel, HEARTBEAT_WAITS);
     parallel_meet(work->parallel, wait_for_others, job);
-    if (work->parallel->rank == 0) {
-        work->before += (uint64_t)parallel_add(work->parallel, COUNTER_DONE, 0);
-        work->kept_before += (uint64_t)parallel_add(work->parallel, COUNTER_KEPT, 0);
-    }
+    if (work->parallel->rank == 0)
+        work->before += count_computed(work);
 }
 
 /* ---- the whole ---------------------------------------------------------------------------- */
@@ -632,8 +622,10 @@ static bool await_kernels(struct job *job)
 
 static void job_free(struct job *job)
 {
-    free_blocks(job->oldest);
-    free_blocks(job->idle);
+    for (struct block *block = job->oldest, *next; block; block = next) {
+        next = block->next;
+        block_free(block);
+    }
     for (struct task *task = job->tasks, *next; task; task = next) {
         next = task->next;
         crash_leave(task->hand);

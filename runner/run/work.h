@@ -48,9 +48,8 @@ struct work {
     } sums;
     uint64_t damaged_case[WORK_NAMED]; /* the lowest of these, each as ~index; 0: none */
     double seconds;
-    int64_t beats; /* this rank's sign of life */
-    uint64_t before,
-        kept_before; /* all ranks' cases of earlier rounds, on rank 0; of these, kept */
+    int64_t beats;   /* this rank's sign of life */
+    uint64_t before; /* cases that all ranks have computed in earlier rounds, on rank 0 */
 };
 
 /* From now on SIGINT, SIGTERM and SIGUSR1 ask for a stop: cases in hand are given up, what has

@@ -36,16 +36,12 @@ static void translate(struct store_block *block, int64_t no_count, size_t rows)
 /* Checksums, which verify, say no more: what they are over may be said differently. */
 static bool same_row(const struct store_block *a, const struct store_block *b, size_t slot)
 {
-    for (int c = 0; c < COLUMNS; c++) {
-        const size_t size = a->store->size[c];
-        if (c == COLUMN_CHECKSUM)
-            continue;
-        if (a->column[c] && b->column[c] &&
-            memcmp((const char *)a->column[c] + slot * size,
-                   (const char *)b->column[c] + slot * size, size) != 0)
-            return false;
-    }
-    return true;
+    bool same = true;
+    for (int c = 0; c < COLUMNS; c++)
+        if (c != COLUMN_CHECKSUM && a->column[c] && b->column[c])
+            same = same &&
+                   memcmp(store_cell(a, c, slot), store_cell(b, c, slot), a->store->size[c]) == 0;
+    return same;
 }
 
 /* A slot of one file's block into one of the other's. */
@@ -54,18 +50,18 @@ static void take_row(const struct store_block *from, size_t slot, struct store_b
 {
     for (int c = 0; c < COLUMNS; c++) {
         const size_t size = to->store->size[c];
-        if (to->column[c] && from->column[c]) {
-            memcpy((char *)to->column[c] + to_slot * size,
-                   (const char *)from->column[c] + slot * size, size);
-        } else if (to->column[c]) { /* scenario_number, or an answer that is not known there */
-            memset((char *)to->column[c] + to_slot * size, 0, size);
+        void *const cell = to->column[c] ? store_cell(to, c, to_slot) : NULL;
+        if (cell && from->column[c]) {
+            memcpy(cell, store_cell(from, c, slot), size);
+        } else if (cell) { /* scenario_number, or an answer that is not known there */
+            memset(cell, 0, size);
             if (store_columns[c].kind == KIND_double)
-                ((double *)to->column[c])[to_slot] = NAN;
+                *(double *)cell = NAN;
             if (store_columns[c].kind == KIND_int64_t)
-                ((int64_t *)to->column[c])[to_slot] = to->store->no_count;
+                *(int64_t *)cell = to->store->no_count;
         }
     }
-    ((uint32_t *)to->column[COLUMN_CHECKSUM])[to_slot] = store_row_checksum(to, to_slot);
+    store_seal(to, to_slot);
 }
 
 /* The trajectory at one place of a file, which verifies, to a place of another. */
@@ -170,32 +166,22 @@ bool adopt_rows(const struct adopted *a, struct store *to, struct adopted_rows *
     return good && (count == 0 || copy_some(&m, count));
 }
 
-/* The times of one file to as many places of the other, which has none yet, from `rank` on, as it
- * has for them. */
-static bool copy_times(struct store *from, struct store *to, const char *name, int rank,
-                       size_t *count)
-{
-    const hid_t source = H5Dopen2(from->id, name, H5P_DEFAULT),
-                target = H5Dopen2(to->id, name, H5P_DEFAULT);
-    const size_t there = hdf_elements(source), room = hdf_elements(target);
-    const size_t left = room > (size_t)rank ? room - (size_t)rank : 0;
-    double *values = there > 0 ? calloc(there, sizeof *values) : NULL;
-    *count = there < left ? there : left;
-    const bool good = values && hdf_read(source, KIND_double, values) &&
-                      store_add_times(to, name, (size_t)rank, *count, values);
-    free(values);
-    hdf_close(source, target);
-    return good;
-}
-
 bool store_copy_timing(struct store *from, struct store *to, int *rank, stance_message *message)
 {
-    size_t count;
-    if (!copy_times(from, to, "timing/wall_time", *rank, &count) ||
-        !copy_times(from, to, "timing/cases", *rank, &count))
-        return store_failed(message, to->file, "copy the times");
-    *rank += (int)count;
-    return true;
+    static const char *const names[] = {"timing/wall_time", "timing/cases"};
+    bool good = true;
+    size_t there = 0;
+    for (int k = 0; good && k < 2; k++) {
+        const hid_t source = H5Dopen2(from->id, names[k], H5P_DEFAULT);
+        there = hdf_elements(source);
+        double *const values = there > 0 ? malloc(there * sizeof *values) : NULL;
+        good = values && hdf_read(source, KIND_double, values) &&
+               store_add_times(to, names[k], (size_t)*rank, there, values);
+        free(values);
+        hdf_close(source);
+    }
+    *rank += (int)there;
+    return good || store_failed(message, to->file, "copy the times");
 }
 
 bool store_annotate(struct store *store, const char *name, const char *text,

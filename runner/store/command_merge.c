@@ -5,6 +5,7 @@
 #include "runner/base/command.h"
 #include "runner/base/message.h"
 #include "runner/base/sandbox.h"
+#include "runner/base/words.h"
 
 #include <errno.h>
 #include <stdio.h>
@@ -27,6 +28,7 @@ static void name_missing_shards(const struct merge *m)
     enum { NAMED = 8 };
     const uint64_t count = m->kind == MERGE_EQUAL ? m->part[0].of.origin.shard.count : 0;
     uint64_t missing = 0;
+    char list[NAMED * 20] = "";
     for (size_t p = 0; p < m->parts; p++)
         if (m->part[p].of.origin.shard.count != count)
             return;
@@ -35,14 +37,13 @@ static void name_missing_shards(const struct merge *m)
         for (size_t p = 0; p < m->parts && !there; p++)
             there = m->part[p].of.origin.shard.number == k;
         if (!there && ++missing <= NAMED)
-            fprintf(stderr, "%s %llu/%llu",
-                    missing == 1 ? "stance merge: not among the files: shard" : ",",
-                    (unsigned long long)k, (unsigned long long)count);
+            words_add(list, sizeof list, "%s %llu/%llu", list[0] ? "," : "", (unsigned long long)k,
+                      (unsigned long long)count);
     }
     if (missing > NAMED)
-        fprintf(stderr, " and %llu more", (unsigned long long)(missing - NAMED));
+        words_add(list, sizeof list, " and %llu more", (unsigned long long)(missing - NAMED));
     if (missing > 0)
-        fputc('\n', stderr);
+        fprintf(stderr, "stance merge: not among the files: shard%s\n", list);
 }
 
 static void print_result(const struct request *request, const struct merge *m)

@@ -59,8 +59,8 @@ void compare_free(struct comparison *comparison)
 
 /* ---- elements in memory, in the widest type of their kind ---------------------------------- */
 
-/* Elements of a variable or an attribute in memory. */
-enum value_kind { VALUE_REAL, VALUE_INTEGER, VALUE_NATURAL, VALUE_TEXT, VALUE_OTHER };
+/* What is neither a number that fits nor a text. */
+enum { KIND_OTHER = KIND_text + 1 };
 
 union value {
     double real;
@@ -69,46 +69,46 @@ union value {
     char *text;
 };
 
+/* Elements of a variable or an attribute in memory. */
 struct values {
-    enum value_kind kind;
+    int kind; /* KIND_double, KIND_int64_t, KIND_uint64_t, KIND_text or KIND_OTHER */
     size_t count;
     union value *of;
 };
 
-static enum value_kind value_kind_of(hid_t type)
+static int value_kind_of(hid_t type)
 {
     const size_t size = H5Tget_size(type);
     const H5T_class_t class = H5Tget_class(type);
-    return class == H5T_STRING                 ? VALUE_TEXT
-           : size > sizeof(union value)        ? VALUE_OTHER
-           : class == H5T_FLOAT                ? VALUE_REAL
-           : class != H5T_INTEGER              ? VALUE_OTHER
-           : H5Tget_sign(type) == H5T_SGN_NONE ? VALUE_NATURAL
-                                               : VALUE_INTEGER;
+    return class == H5T_STRING                 ? KIND_text
+           : size > sizeof(union value)        ? KIND_OTHER
+           : class == H5T_FLOAT                ? KIND_double
+           : class != H5T_INTEGER              ? KIND_OTHER
+           : H5Tget_sign(type) == H5T_SGN_NONE ? KIND_uint64_t
+                                               : KIND_int64_t;
 }
 
 static void values_free(struct values *values)
 {
-    for (size_t i = 0; values->kind == VALUE_TEXT && values->of && i < values->count; i++)
-        free(values->of[i].text);
-    free(values->of);
+    if (values->kind == KIND_text)
+        hdf_free_words((char **)(void *)values->of, values->count);
+    else
+        free(values->of);
     values->of = NULL;
 }
 
 /* Reads elements [at, at + count) of a dataset, or the `count` ones of an attribute. Those of
- * VALUE_OTHER are left. False: nothing is left allocated. */
+ * KIND_OTHER are left. False: nothing is left allocated. */
 static bool values_read(hid_t object, hsize_t at, hid_t type, size_t count, struct values *values)
 {
     *values = (struct values){.kind = value_kind_of(type), .count = count};
-    if (values->kind == VALUE_OTHER)
+    if (values->kind == KIND_OTHER)
         return true;
-    if (values->kind == VALUE_TEXT) {
+    if (values->kind == KIND_text) {
         values->of = (union value *)(void *)hdf_words(object, at, count);
         return values->of != NULL;
     }
-    const hid_t native = values->kind == VALUE_REAL      ? H5T_NATIVE_DOUBLE
-                         : values->kind == VALUE_INTEGER ? H5T_NATIVE_INT64
-                                                         : H5T_NATIVE_UINT64;
+    const hid_t native = hdf_type((enum store_kind)values->kind);
     values->of = malloc(count * sizeof *values->of + 1);
     const bool good = values->of && hdf_move(object, native, at, count, HDF_READ, values->of);
     if (!good)
@@ -119,19 +119,19 @@ static bool values_read(hid_t object, hsize_t at, hid_t type, size_t count, stru
 /* NAN: it is none that has a distance from others. */
 static double number_of(const struct values *values, size_t i)
 {
-    return values->kind == VALUE_REAL      ? values->of[i].real
-           : values->kind == VALUE_INTEGER ? (double)values->of[i].integer
-                                           : NAN;
+    return values->kind == KIND_double    ? values->of[i].real
+           : values->kind == KIND_int64_t ? (double)values->of[i].integer
+                                          : NAN;
 }
 
 /* To the bit, so that 0 and -0 differ; of NANs alone the bits do not matter. Both are of the same
  * kind. */
 static bool values_same(const struct values *a, const struct values *b, size_t i)
 {
-    return a->kind == VALUE_OTHER ||
-           (a->kind == VALUE_TEXT ? strcmp(a->of[i].text, b->of[i].text) == 0
-                                  : a->of[i].natural == b->of[i].natural) ||
-           (a->kind == VALUE_REAL && isnan(a->of[i].real) && isnan(b->of[i].real));
+    return a->kind == KIND_OTHER ||
+           (a->kind == KIND_text ? strcmp(a->of[i].text, b->of[i].text) == 0
+                                 : a->of[i].natural == b->of[i].natural) ||
+           (a->kind == KIND_double && isnan(a->of[i].real) && isnan(b->of[i].real));
 }
 
 /* The beginning of a text in quotation marks, in whole letters; damaged bytes are no letters. */
@@ -154,7 +154,7 @@ static void values_quote(const char *before, const char *letters, char text[COMP
 static void show_values(const struct values values[2], size_t i, struct compare_place *place)
 {
     size_t from = 0;
-    if (values[0].kind == VALUE_TEXT) {
+    if (values[0].kind == KIND_text) {
         const char *const a = values[0].of[i].text, *const b = values[1].of[i].text;
         while (a[from] && a[from] == b[from])
             from++;
@@ -165,11 +165,11 @@ static void show_values(const struct values values[2], size_t i, struct compare_
     for (int f = 0; f < 2; f++) {
         char *const text = place->value[f];
         const union value value = values[f].of[i];
-        if (values[f].kind == VALUE_REAL)
+        if (values[f].kind == KIND_double)
             snprintf(text, COMPARE_TEXT, "%.17g", value.real);
-        else if (values[f].kind == VALUE_INTEGER)
+        else if (values[f].kind == KIND_int64_t)
             snprintf(text, COMPARE_TEXT, "%lld", (long long)value.integer);
-        else if (values[f].kind == VALUE_NATURAL)
+        else if (values[f].kind == KIND_uint64_t)
             snprintf(text, COMPARE_TEXT, "%llu", (unsigned long long)value.natural);
         else
             values_quote(from ? "..." : "", value.text + from, text);
@@ -258,7 +258,7 @@ static bool compare_values(struct compared *v)
     bool good = true;
     for (size_t at = 0; at < v->elements && good; at += BLOCK) {
         const size_t n = v->elements - at < BLOCK ? v->elements - at : BLOCK;
-        struct values values[2] = {{.kind = VALUE_OTHER}, {.kind = VALUE_OTHER}};
+        struct values values[2] = {{.kind = KIND_OTHER}, {.kind = KIND_OTHER}};
         for (int f = 0; f < 2 && good; f++)
             good = values_read(v->object[f], at, v->type[f], n, &values[f]) ||
                    unreadable(v->in, f, v->name);
@@ -273,9 +273,9 @@ static bool compare_values(struct compared *v)
 static const struct compare_tolerance *tolerance_of(const struct compared *v)
 {
     const struct compare_tolerances *all = v->in->out->tolerances;
-    const enum value_kind kind = value_kind_of(v->type[0]);
+    const int kind = value_kind_of(v->type[0]);
     const struct compare_tolerance *found = NULL;
-    if (!all || !(kind == VALUE_REAL || (kind == VALUE_INTEGER && store_is_column(v->name))))
+    if (!all || !(kind == KIND_double || (kind == KIND_int64_t && store_is_column(v->name))))
         return NULL;
     for (size_t i = 0; i < all->count; i++) {
         const struct compare_tolerance *tolerance = &all->tolerance[i];
@@ -301,14 +301,14 @@ static bool open_variable(struct compared *v, const char **differs)
     }
     v->elements = results_elements(c->r[0], rank[0], length[0]);
     const bool attribute = H5Iget_type(v->object[0]) == H5I_ATTR;
-    const enum value_kind kind = value_kind_of(v->type[0]), other = value_kind_of(v->type[1]);
-    const bool texts = kind == VALUE_TEXT && other == VALUE_TEXT;
+    const int kind = value_kind_of(v->type[0]), other = value_kind_of(v->type[1]);
+    const bool texts = kind == KIND_text && other == KIND_text;
     if (attribute && kind == other && v->elements == results_elements(c->r[1], rank[1], length[1]))
         return v->elements < BLOCK; /* they are read at once */
     if (!attribute && (rank[0] != rank[1] ||
                        memcmp(length[0], length[1], (size_t)rank[0] * sizeof length[0][0]) != 0))
         *differs = "shapes";
-    else if (!attribute && kind == VALUE_OTHER)
+    else if (!attribute && kind == KIND_OTHER)
         *differs = "types that stance does not write";
     else if (attribute || (!texts && H5Tequal(v->type[0], v->type[1]) <= 0))
         *differs = "types";

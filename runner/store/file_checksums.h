@@ -19,11 +19,9 @@
  * of whose variables exist. */
 bool file_checksums_put(int64_t file);
 
-/* Verifies them, and that `scenario` (the file's attribute of that name) has the SHA-256 `hash`
- * (`scenario_sha256`; NULL or "": there is none). False, with the one-line reason in *message,
+/* Verifies them, and the scenario's text by its own. False, with the one-line reason in *message,
  * which begins with `name`: something is damaged or cannot be read. `strict`: a variable without
  * checksum is damaged, and everything in the file must open. */
-bool file_checksums_verify(int64_t file, const char *name, const char *scenario, const char *hash,
-                           bool strict, stance_message *message);
+bool file_checksums_verify(int64_t file, const char *name, bool strict, stance_message *message);
 
 #endif

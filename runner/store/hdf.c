@@ -211,11 +211,6 @@ bool hdf_read(hid_t dataset, enum store_kind kind, void *data)
     return H5Dread(dataset, hdf_type(kind), H5S_ALL, H5S_ALL, H5P_DEFAULT, data) >= 0;
 }
 
-bool hdf_write(hid_t dataset, enum store_kind kind, const void *data)
-{
-    return H5Dwrite(dataset, hdf_type(kind), H5S_ALL, H5S_ALL, H5P_DEFAULT, data) >= 0;
-}
-
 /* Adds to a selection the flat, row-major range [first, last) below dimension `level` of a grid: a
  * part of a row, whole rows, and a part of a row again, each a hyperslab at its level. start[] is
  * fixed above `level`. */

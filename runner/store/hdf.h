@@ -61,7 +61,6 @@ size_t hdf_elements(hid_t dataset);
 
 /* All elements of a dataset, numbers. */
 bool hdf_read(hid_t dataset, enum store_kind kind, void *data);
-bool hdf_write(hid_t dataset, enum store_kind kind, const void *data);
 /* Elements [at, at + n) of a dataset in row-major order; of an attribute all its n. */
 enum hdf_direction { HDF_READ, HDF_WRITE };
 bool hdf_move(hid_t object, hid_t type, hsize_t at, hsize_t n, enum hdf_direction way, void *data);

@@ -15,11 +15,9 @@
 
 static bool failed(stance_message *message, const char *file, int error)
 {
-    if (error == EAGAIN || error == EACCES)
-        complain(message, "%.180s: another process is writing it", file);
-    else
-        complain(message, "%.100s: cannot write there: %s", file, strerror(error));
-    return false;
+    return error == EAGAIN || error == EACCES
+               ? complain(message, "%.180s: another process is writing it", file)
+               : complain(message, "%.100s: cannot write there: %s", file, strerror(error));
 }
 
 /* The name still stands for the file that is open. */
@@ -59,17 +57,15 @@ bool lock_take(struct lock *lock, const char *file, stance_message *message)
             /* EACCES means something else here than below. */
             return failed(message, file, errno == EACCES ? EPERM : errno);
         }
-        if (fcntl(descriptor, F_OFD_SETLK, &range) != 0) {
-            int error = errno;
-            close(descriptor);
-            return failed(message, file, error);
-        }
+        const int error = fcntl(descriptor, F_OFD_SETLK, &range) != 0 ? errno : 0;
         /* Its owner may have removed the file between our two calls: then the lock is worthless. */
-        if (has_name(lock, descriptor)) {
+        if (error == 0 && has_name(lock, descriptor)) {
             lock->descriptor = descriptor;
             return true;
         }
         close(descriptor);
+        if (error != 0)
+            return failed(message, file, error);
     }
 }
 

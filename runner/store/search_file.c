@@ -271,7 +271,7 @@ bool search_file_read(struct search_file *f, const char *file, stance_message *m
         return false;
     bool good = hdf_whole(id, "search_version", 0) == VERSION ||
                 complain(message, "%.150s: not the file of a search by stance optimise", file);
-    good = good && file_checksums_verify(id, file, NULL, NULL, true, message) &&
+    good = good && file_checksums_verify(id, file, true, message) &&
            (read_all(id, f) || complain(message, "%.150s: damaged, or not all of it there", file));
     H5Fclose(id);
     if (!good)

@@ -82,20 +82,22 @@ size_t store_width(const stance_scene *scene, const struct store_variable *v)
     return (size_t)lengths[v->over[0]] * (size_t)lengths[v->over[1]];
 }
 
+static bool is_in(const struct store_variable *table, int count, const char *path)
+{
+    int k = 0;
+    while (k < count && strcmp(path, table[k].name) != 0)
+        k++;
+    return k < count;
+}
+
 bool store_is_column(const char *path)
 {
-    bool found = false;
-    for (int c = 0; c < COLUMNS; c++)
-        found = found || strcmp(path, store_columns[c].name) == 0;
-    return found;
+    return is_in(store_columns, COLUMNS, path);
 }
 
 bool store_is_track(const char *path)
 {
-    bool found = false;
-    for (int v = 0; v <= TRACK_CHECKSUM; v++)
-        found = found || strcmp(path, store_tracks[v].name) == 0;
-    return found;
+    return is_in(store_tracks, TRACKS + 1, path);
 }
 
 bool store_has_column(const struct scenario *scenario, int column)
@@ -113,13 +115,6 @@ void store_prepare(void)
     H5dont_atexit();
     H5open();
     hdf_remember();
-}
-
-void store_library(char *text, size_t size)
-{
-    unsigned major = 0, minor = 0, release = 0;
-    H5get_libversion(&major, &minor, &release);
-    snprintf(text, size, "HDF5 %u.%u.%u", major, minor, release);
 }
 
 hid_t store_serial_access(void)
@@ -281,7 +276,7 @@ bool store_move_rows(const struct store *store, const struct store_block *block,
     for (int c = 0; good && c < COLUMNS; c++)
         good = store->column[c] < 0 ||
                hdf_move_rows(store->column[c], hdf_type(store_columns[c].kind), store->width[c],
-                             rows, way, (char *)block->column[c] + slot * store->size[c]);
+                             rows, way, store_cell(block, c, slot));
     return good || store_failed(message, store->file,
                                 way == HDF_WRITE ? "write the results" : "read the results");
 }
@@ -317,12 +312,9 @@ struct store_block *store_block_make(const struct store *store, size_t rows)
 uint32_t store_row_checksum(const struct store_block *block, size_t slot)
 {
     uint32_t crc = 0;
-    for (int c = 0; c < COLUMNS; c++) {
-        if (block->column[c] && c != COLUMN_CHECKSUM) {
-            const size_t size = block->store->size[c];
-            crc = checksum_crc32c(crc, (const char *)block->column[c] + slot * size, size);
-        }
-    }
+    for (int c = 0; c < COLUMNS; c++)
+        if (block->column[c] && c != COLUMN_CHECKSUM)
+            crc = checksum_crc32c(crc, store_cell(block, c, slot), block->store->size[c]);
     return crc;
 }
 
@@ -330,27 +322,25 @@ void store_put(struct store_block *block, size_t slot, const stance_result *resu
 {
     size_t n = (size_t)block->store->plan->scenario->scene->coordinates;
     for (int c = 0; c < STANCE_ANSWER_COUNT; c++) {
-        const size_t size = stance_answers[c].size;
-        if (block->column[c]) {
-            memcpy((char *)block->column[c] + slot * size,
-                   (const char *)result + stance_answers[c].offset, size);
-        }
+        if (block->column[c])
+            memcpy(store_cell(block, c, slot), (const char *)result + stance_answers[c].offset,
+                   stance_answers[c].size);
         if (block->column[c] && store_columns[c].kind == KIND_int64_t) {
-            int64_t *const count = (int64_t *)block->column[c] + slot;
+            int64_t *const count = store_cell(block, c, slot);
             *count = *count == STANCE_NO_COUNT ? block->store->no_count : *count;
         }
     }
     if (block->column[COLUMN_FINAL_STATE]) {
-        double *state = (double *)block->column[COLUMN_FINAL_STATE] + 2 * n * slot;
+        double *state = store_cell(block, COLUMN_FINAL_STATE, slot);
         memcpy(state, result->position, n * sizeof *state);
         memcpy(state + n, result->velocity, n * sizeof *state);
     }
-    if (block->column[COLUMN_SCENARIO_NUMBER]) {
-        ((uint8_t *)block->column[COLUMN_SCENARIO_NUMBER])[slot] =
-            (uint8_t)block->store->plan->ancestors;
-    }
-    ((uint8_t *)block->column[COLUMN_STATUS])[slot] = (uint8_t)result->status;
-    ((uint32_t *)block->column[COLUMN_CHECKSUM])[slot] = store_row_checksum(block, slot);
+    uint8_t *const number = block->column[COLUMN_SCENARIO_NUMBER], *const status =
+                                                                       block->column[COLUMN_STATUS];
+    if (number)
+        number[slot] = (uint8_t)block->store->plan->ancestors;
+    status[slot] = (uint8_t)result->status;
+    store_seal(block, slot);
 }
 
 /* Rows that are scattered are written with what lies between them, read before and written back: a
@@ -379,12 +369,10 @@ static bool write_span(struct store *store, const struct store_block *block, siz
     const struct rows span = {.first = first, .count = rows_at(rows, rows->count - 1) - first + 1};
     if (!store_move_rows(store, between, 0, &span, HDF_READ, message))
         return false;
-    for (int c = 0; c < COLUMNS; c++) {
-        const size_t size = store->size[c];
+    for (int c = 0; c < COLUMNS; c++)
         for (uint64_t k = 0; store->column[c] >= 0 && k < rows->count; k++)
-            memcpy((char *)between->column[c] + (rows_at(rows, k) - first) * size,
-                   (const char *)block->column[c] + (slot + k) * size, size);
-    }
+            memcpy(store_cell(between, c, rows_at(rows, k) - first), store_cell(block, c, slot + k),
+                   store->size[c]);
     return store_move_rows(store, between, 0, &span, HDF_WRITE, message);
 }
 
@@ -513,15 +501,10 @@ static void move_designs(const struct plan *plan, bool into, int column, double 
     }
 }
 
-static double *design_room(const struct plan *plan, int column)
-{
-    return malloc(plan->designs * store_width(plan->scenario->scene, &store_designs[column]) *
-                  sizeof(double));
-}
-
 double *store_design_values(const struct plan *plan, int column)
 {
-    double *const data = design_room(plan, column);
+    const size_t width = store_width(plan->scenario->scene, &store_designs[column]);
+    double *const data = malloc(plan->designs * width * sizeof *data);
     if (data)
         move_designs(plan, false, column, data);
     return data;
@@ -534,7 +517,7 @@ bool store_read_designs(struct store *store, struct plan *plan, stance_message *
         if (store_width(plan->scenario->scene, &store_designs[k]) == 0)
             continue;
         const hid_t dataset = find_dataset(store, store_designs[k].name, NULL);
-        double *const data = design_room(plan, k);
+        double *const data = store_design_values(plan, k);
         good = data && hdf_read(dataset, KIND_double, data) && good;
         if (good)
             move_designs(plan, true, k, data);
@@ -556,7 +539,7 @@ bool store_add_times(const struct store *store, const char *name, size_t first, 
     bool good = total && length[0] > 0 && hdf_read(dataset, KIND_double, total);
     for (size_t i = 0; good && i < count; i++)
         total[(first + i) % length[0]] += more[i];
-    good = good && hdf_write(dataset, KIND_double, total);
+    good = good && hdf_move(dataset, hdf_type(KIND_double), 0, length[0], HDF_WRITE, total);
     free(total);
     hdf_close(dataset);
     return good;

@@ -58,8 +58,6 @@ struct store_block; /* rows in memory as they will be in the file, column after 
 
 /* Call before MPI starts: an unfinished file must not be touched again at exit. */
 void store_prepare(void);
-/* Name and version of the HDF5 library. */
-void store_library(char *text, size_t size);
 
 /* The directory that a file is in. */
 void store_directory(const char *file, char *directory, size_t size);
@@ -170,10 +168,6 @@ struct store_damage {
 };
 bool store_distrust(int64_t file, uint8_t *status, uint64_t cases, struct store_damage *damage);
 
-/* The checksum that an open file has for the trajectory at a place; false: none that can be read.
- */
-bool store_trajectory_checksum(int64_t file, size_t place, uint32_t *crc);
-
 /* Counts the cases of a file, which another process may be writing. */
 struct store_counts {
     uint64_t cases, done, failed;
@@ -183,6 +177,8 @@ bool store_count(const char *file, struct store_counts *counts, stance_message *
 /* Whether a file of that size on the disk, and that length, can fit at all, before HDF5 begins what
  * it could not end. */
 bool store_fits(const char *file, uint64_t size, uint64_t length, stance_message *message);
+/* Brings a file to the disk; `whole`: the space of all of it is reserved there. */
+bool store_bring(const char *file, bool whole, stance_message *message);
 /* Brings a file that was made beside another to the disk, then under its name. */
 bool store_take_place(const char *made, const char *file, stance_message *message);
 

@@ -506,7 +506,7 @@ bool store_create(const char *file, const struct plan *plan, const struct store_
     bool good = !m->failed || store_failed(message, file, "lay out");
     if (H5Fclose(m->file) < 0 && good)
         good = store_failed(message, file, "write the layout");
-    good = good && (plan->shard.count > 0 || store_reserve(part, message)) &&
+    good = good && (plan->shard.count > 0 || store_bring(part, true, message)) &&
            (rename(part, file) == 0 || store_system_failed(message, file, "create", errno));
     if (!good)
         unlink(part);

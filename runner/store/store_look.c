@@ -31,12 +31,10 @@ bool store_check(const char *file, bool resume, stance_message *message)
         return false;
     struct shard shard;
     /* The last attribute written says that the creation came to its end. */
-    char *hash = hdf_text(id, "scenario_sha256"), *scenario = hdf_text(id, "scenario");
-    bool good = !resume || (hash && scenario) || not_resumable(id, file, message);
-    good = good && read_shard(id, file, &shard, message) &&
-           file_checksums_verify(id, file, scenario, scenario ? hash : NULL, resume, message);
-    free(hash);
-    free(scenario);
+    const bool ended = H5Aexists(id, "scenario_sha256") > 0 && H5Aexists(id, "scenario") > 0;
+    const bool good = (!resume || ended || not_resumable(id, file, message)) &&
+                      read_shard(id, file, &shard, message) &&
+                      file_checksums_verify(id, file, resume, message);
     H5Fclose(id);
     return good;
 }
@@ -167,13 +165,9 @@ static bool count_status(hid_t dataset, struct store_counts *counts)
 {
     enum { PIECE = 1 << 20 };
     uint8_t *status = malloc(PIECE);
-    hsize_t length[H5S_MAX_RANK], total = 1;
-    const int rank = hdf_shape(dataset, length);
-    for (int d = 0; d < rank; d++)
-        total *= length[d];
-    bool good = status && rank >= 1 && rank <= SCENARIO_MAX_AXES && total > 0;
+    counts->cases = hdf_elements(dataset);
+    bool good = status && counts->cases > 0;
 
-    counts->cases = good ? total : 0;
     for (uint64_t at = 0, n; good && at < counts->cases; at += n) {
         n = counts->cases - at < PIECE ? counts->cases - at : PIECE;
         good = hdf_move(dataset, H5T_STD_U8LE, at, n, HDF_READ, status);
@@ -259,13 +253,5 @@ bool store_distrust(int64_t file, uint8_t *status, uint64_t cases, struct store_
     }
     free(block);
     hdf_close_all(store.column, COLUMNS);
-    return good;
-}
-
-bool store_trajectory_checksum(int64_t file, size_t place, uint32_t *crc)
-{
-    hid_t dataset = H5Dopen2((hid_t)file, "trajectory/checksum", H5P_DEFAULT);
-    bool good = dataset >= 0 && hdf_move(dataset, H5T_STD_U32LE, place, 1, HDF_READ, crc);
-    hdf_close(dataset);
     return good;
 }

@@ -56,8 +56,6 @@ bool store_has_column(const struct scenario *scenario, int column);
 #define STORE_ONE_CASE "%.100s: holds one case of a sweep (run --only), not the sweep"
 /* "FILE: cannot ...: reason" of a system call. Returns false. */
 bool store_system_failed(stance_message *message, const char *file, const char *what, int error);
-/* Reserves the space of the whole file and brings it to the disk. */
-bool store_reserve(const char *file, stance_message *message);
 
 /* Numbers of all designs, NAN where there is none, freed by the caller; NULL: no memory. */
 double *store_design_values(const struct plan *plan, int column);
@@ -83,12 +81,22 @@ struct store_block {
     void *column[COLUMNS]; /* [rows][width]; NULL: not stored */
 };
 
+/* Where a column of a row is. */
+static inline void *store_cell(const struct store_block *block, int column, size_t slot)
+{
+    return (char *)block->column[column] + slot * block->store->size[column];
+}
+
 /* Moves rows between the file and a block, from `slot` on: all columns in order, the checksum and
  * then the status last. */
 bool store_move_rows(const struct store *store, const struct store_block *block, size_t slot,
                      const struct rows *rows, enum hdf_direction way, stance_message *message);
-/* What the checksum of a row of a block ought to be. */
+/* What the checksum of a row of a block ought to be; gives it to the row. */
 uint32_t store_row_checksum(const struct store_block *block, size_t slot);
+static inline void store_seal(const struct store_block *block, size_t slot)
+{
+    *(uint32_t *)store_cell(block, COLUMN_CHECKSUM, slot) = store_row_checksum(block, slot);
+}
 /* Moves a trajectory between the file and memory; its checksum as it follows from the numbers, and
  * as it is in the file. */
 bool store_move_trajectory(struct store *store, uint64_t place, enum hdf_direction way,

@@ -52,40 +52,37 @@ bool store_fits(const char *file, uint64_t size, uint64_t length, stance_message
     return true;
 }
 
-bool store_reserve(const char *file, stance_message *message)
+bool store_bring(const char *file, bool whole, stance_message *message)
 {
     struct stat information;
-    int descriptor = open(file, O_RDWR | O_CLOEXEC);
-    if (descriptor < 0 || fstat(descriptor, &information) != 0) {
-        bool result = store_system_failed(message, file, "open", errno);
-        if (descriptor >= 0)
-            close(descriptor);
-        return result;
-    }
+    const int descriptor = open(file, O_RDWR | O_CLOEXEC);
+    int error = descriptor < 0 || fstat(descriptor, &information) != 0 ? errno : 0;
     /* Where the file system cannot reserve, a full disk shows when rows are written. */
-    int error = fallocate(descriptor, 0, 0, information.st_size) == 0 ? 0 : errno;
-    error = error == EOPNOTSUPP ? 0 : error;
+    if (error == 0 && whole && fallocate(descriptor, 0, 0, information.st_size) != 0 &&
+        errno != EOPNOTSUPP)
+        error = errno;
     if (error == 0 && fsync(descriptor) != 0)
         error = errno;
-    if (close(descriptor) != 0 && error == 0)
+    if (descriptor >= 0 && close(descriptor) != 0 && error == 0)
         error = errno;
-    return error == 0 || store_system_failed(message, file, "reserve its space", error);
+    return error == 0 ||
+           store_system_failed(message, file, whole ? "reserve its space" : "bring it to the disk",
+                               error);
 }
 
 bool store_take_place(const char *made, const char *file, stance_message *message)
 {
     char directory[PATH_MAX];
     struct stat before;
-    int descriptor = open(made, O_RDWR | O_CLOEXEC);
     /* Whoever may write the old file may write this one, as far as the system lets us see to it. */
-    if (descriptor >= 0 && stat(file, &before) == 0 &&
-        fchown(descriptor, before.st_uid, before.st_gid) == 0)
-        (void)fchmod(descriptor, before.st_mode & 0777);
-    if (descriptor < 0 || fsync(descriptor) != 0 || close(descriptor) != 0 ||
-        rename(made, file) != 0)
+    if (stat(file, &before) == 0 && chown(made, before.st_uid, before.st_gid) == 0)
+        (void)chmod(made, before.st_mode & 0777);
+    if (!store_bring(made, false, message))
+        return false;
+    if (rename(made, file) != 0)
         return store_system_failed(message, file, "put the new file there", errno);
     store_directory(file, directory, sizeof directory);
-    descriptor = open(directory, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    const int descriptor = open(directory, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (descriptor >= 0) {
         (void)fsync(descriptor); /* some file systems cannot; then the rename takes its time */
         close(descriptor);
