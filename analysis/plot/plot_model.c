@@ -190,26 +190,17 @@ static bool is_place(const struct model *m, int k)
 /* To either side as far as it may be seen; pieces by footfall are not there yet. */
 static void put_ground(struct model *m)
 {
-    const struct plot_range x = {m->range[0].low - 4 * m->size, m->range[0].high + 4 * m->size};
-    double(*const point)[2] = gnuplot_room(m->g, PLOT_GROUND, sizeof *point);
-    struct ground_pieces pieces;
-    size_t points = 2;
-    if (!point)
-        return;
-    if (m->scene->mechanism->plates > 0) {
-        ground_pieces_find(m->c, NULL, &pieces);
-        points = ground_line(m->c, &pieces, 0, x.low, x.high, point, PLOT_GROUND);
-    } else {
-        for (int end = 0; end < 2; end++) {
-            point[end][0] = end ? x.high : x.low;
-            point[end][1] = -tan(m->c->robot[STANCE_ROBOT_SLOPE]) * point[end][0];
-        }
-    }
+    static struct plot_case even; /* large; nothing else of it is known */
+    even.values.robot[STANCE_ROBOT_SLOPE] = m->c->robot[STANCE_ROBOT_SLOPE];
+    even.floor = m->scene->mechanism->plates > 0 ? (stance_case *)m->c : NULL;
+    if (even.floor)
+        ground_pieces_find(m->c, NULL, &even.pieces);
     gnuplot_series(m->g,
                    "using 1:(at_least($2, y1_low)):(y1_low) with filledcurves fc rgb 0xf0f0f0 "
                    "notitle, '' using 1:2 with lines lw 2 lc rgb 0xa0a0a0");
-    for (size_t k = 0; k < points; k++)
-        GNUPLOT_ROW(m->g, point[k][0], point[k][1]);
+    plot_ground(m->g, &even, 0,
+                (struct plot_range){m->range[0].low - 4 * m->size, m->range[0].high + 4 * m->size},
+                0, 0);
 }
 
 static void put_lines(struct model *m)
