@@ -115,7 +115,7 @@ bool plot_animation(const struct plot_case *c)
     a.step = step;
     a.frames = (int)(end / step + 1e-9) + 1;
     c->plot->look->animated = step;
-    if (!plot_case_begin(c, &a.g, "animation", NULL, "Stick figures"))
+    if (!plot_case_begin(c, &a.g, "animation", "Stick figures"))
         return false;
     int cases = 0;
     for (const struct plot_case *k = c; k; k = k->other) {

@@ -31,7 +31,7 @@ bool plot_animation(const struct plot_case *c);
 
 /* Begins a picture of the case; gnuplot_end ends it. */
 bool plot_case_begin(const struct plot_case *c, struct gnuplot *g, const char *name,
-                     const char *script, const char *what);
+                     const char *what);
 
 /* A page of panels, all of columns of what it shows against time: begun where all cases are seen,
  * or between the first and the last of its marks, which are lines in each panel. */

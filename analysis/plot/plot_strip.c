@@ -130,7 +130,7 @@ bool plot_strip(const struct plot_case *c)
     bool drawn;
     if (!plot_steps(c, &drawn) || drawn)
         return drawn;
-    if (!plot_case_begin(c, &g, "strip", NULL, "Stick figures"))
+    if (!plot_case_begin(c, &g, "strip", "Stick figures"))
         return false;
     struct strip *const strip = gnuplot_room(&g, 1, sizeof *strip);
     if (!strip)
