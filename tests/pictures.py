@@ -418,7 +418,7 @@ def case():
         if k >= 2:
             close(p.panels[k].y(dashed[0][2][0][1]), target, 0.002)
     p = Picture("case-forces.svg")
-    says(p, "normal force (N)", "tangential force (N)")
+    says(p, "normal (N)", "tangential (N)")
     assert p.legend() == {"foot1": HUES[0], "foot2": HUES[1]}
     p_axis = p.panels[-1]
     for k in range(2):

@@ -88,21 +88,6 @@ void gnuplot_text(struct gnuplot *g, const char *text, const char *name, ...)
     put_text(g, text);
 }
 
-void gnuplot_tic(struct gnuplot *g, const char *text, const char *name, ...)
-{
-    char escaped[160];
-    size_t n = 0;
-    for (; *text && n + 3 < sizeof escaped; text++) {
-        escaped[n++] = *text;
-        if (*text == '%')
-            escaped[n++] = '%';
-    }
-    escaped[n] = '\0';
-    close_block(g);
-    PUT_FORMATTED(g, name);
-    put_text(g, escaped);
-}
-
 void gnuplot_number(struct gnuplot *g, double value, const char *name, ...)
 {
     close_block(g);
@@ -187,7 +172,24 @@ const char *gnuplot_axis(struct gnuplot *g, char which, enum plot_scale scale,
     gnuplot_set(g, "%s_scale = '%s'\n%s_low = %#.17g\n%s_high = %#.17g", axis, scales[scale], axis,
                 range.low, axis, range.high);
     gnuplot_set(g, g->panels ? "panel_%c[panels] = '%s'" : "shared_%c = '%s'", which, axis);
+    if (scale == PLOT_LIST)
+        gnuplot_set(g, "%s_words = 0; array %s_word[%d]; array %s_at[%d]", axis, axis,
+                    GNUPLOT_MOST_WORDS, axis, GNUPLOT_MOST_WORDS);
     return axis;
+}
+
+void gnuplot_word(struct gnuplot *g, double place, const char *text)
+{
+    char escaped[160]; /* a per cent sign would begin a format */
+    size_t n = 0;
+    for (; *text && n + 3 < sizeof escaped; text++) {
+        escaped[n++] = *text;
+        if (*text == '%')
+            escaped[n++] = '%';
+    }
+    escaped[n] = '\0';
+    gnuplot_set(g, "%1$s_words = %1$s_words + 1; %1$s_at[%1$s_words] = %2$#.17g", g->axis, place);
+    gnuplot_text(g, escaped, "%1$s_word[%1$s_words]", g->axis);
 }
 
 void gnuplot_panel(struct gnuplot *g, double height, const char *heading)
@@ -265,7 +267,7 @@ void gnuplot_about(struct gnuplot *g, const char *format, ...)
     char text[200] = "";
     ADD_FORMATTED(text, format);
     gnuplot_text(g, text, "about");
-    gnuplot_set(g, "legend_about[legends] = legend_about[legends].\"\\n\".about");
+    gnuplot_set(g, "legend_about[legends] = legend_about[legends].\"\\n\".wrap(about, 44)");
 }
 
 void gnuplot_note(struct gnuplot *g, const char *format, ...)

@@ -20,7 +20,7 @@ across = own_y ? 82 + 24*wide_tics : own_x ? 40 : asked_width > 0 ? 16 : 28 # be
 head = headed ? 22 : 0
 row_head = asides ? 44 : 0
 right_room = at_least(legend_room, ends > 0 ? 24 + 7.4*longest_end : 0)
-beside = leads ? margin : plain ? 24 : row_head + right_room
+beside = leads ? margin : row_head + right_room
 if (asked_width > 0 && !asides) { columns = at_most(columns, at_least(1, int((asked_width - left - beside + across)/(130 + across)))) }
 width = wide(chart_width, columns, left + (columns - 1)*across + beside)
 if (equal) { width = at_most(width, chart_width) }
@@ -63,7 +63,7 @@ do for [r=1:rows] {
 }
 do for [p=1:panels] { panel_top[p] = row_top[row_of(p)]; panel_high[p] = row_high[row_of(p)] }
 bottom = row_top[rows] + row_high[rows]
-page_height = bottom + foot
+page_height = at_least(bottom + foot, legend_below || asked_height > 0 ? 0 : row_top[1] + legend_tall + 24)
 load 'page.gp'
 
 do for [p=1:panels] {

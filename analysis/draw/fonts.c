@@ -29,16 +29,10 @@ static void add_ranges(uint8_t *has, const char *text)
 /* Whether one of "A,B,C" is the family. */
 static bool is_among(const char *names, size_t length, const char *family)
 {
-    const size_t wanted = strlen(family);
-    while (length > 0) {
-        const char *comma = memchr(names, ',', length);
-        const size_t own = comma ? (size_t)(comma - names) : length;
-        if (own == wanted && strncasecmp(names, family, own) == 0)
-            return true;
-        names += own + (comma != NULL);
-        length -= own + (comma != NULL);
-    }
-    return false;
+    char all[400], wanted[100];
+    snprintf(all, sizeof all, ",%.*s,", (int)length, names);
+    snprintf(wanted, sizeof wanted, ",%s,", family);
+    return strcasestr(all, wanted) != NULL;
 }
 
 /* The letters that any font of this machine has, as fc-list tells, and whether a family is among

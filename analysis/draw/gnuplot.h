@@ -84,10 +84,6 @@ void gnuplot_arrays(struct gnuplot *g, size_t size, const char *names);
 /* NAME = 'text' and NAME = value (NAN: NaN); the name as printf makes it. */
 void gnuplot_text(struct gnuplot *g, const char *text, const char *name, ...)
     __attribute__((format(printf, 3, 4)));
-/* The same of a text that becomes the label of a tic, where a per cent sign would begin a format.
- */
-void gnuplot_tic(struct gnuplot *g, const char *text, const char *name, ...)
-    __attribute__((format(printf, 3, 4)));
 void gnuplot_number(struct gnuplot *g, double value, const char *name, ...)
     __attribute__((format(printf, 3, 4)));
 /* $NAME << EOD; rows of numbers follow, NAN for a gap, up to the next of anything else. A block
@@ -129,6 +125,9 @@ struct plot_range plot_roomy(struct plot_range range, double part);
  * begin with, x or y3, until the next one. */
 const char *gnuplot_axis(struct gnuplot *g, char which, enum plot_scale scale,
                          struct plot_range range, const char *name, const char *unit);
+/* A further word of the last axis, a list, and where it stands. */
+enum { GNUPLOT_MOST_WORDS = 1200 };
+void gnuplot_word(struct gnuplot *g, double place, const char *text);
 /* The next panel of a chart, of this height in px as long as the page has no other, under a heading
  * ("": none): how panels stand is said in variables of style.gp, columns, chart_width ... */
 void gnuplot_panel(struct gnuplot *g, double height, const char *heading);

@@ -30,6 +30,7 @@ do for [k=1:notes] {
 }
 notes_y = f_y
 do for [k=1:notes] { f_y = f_y + 17*lines(note[k]) }
+legend_tall = f_y
 bar_y = at_least(70, f_y + 14)
 legend_height = legend_below ? f_y + (bars ? 90 : 0) + 8 + table_top : 0
 # What it takes of the width, its margins included; below, half a label of a tic at the right end is beyond the panel.

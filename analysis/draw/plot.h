@@ -30,8 +30,8 @@ double plot_axis_place(const struct plot_axis *along, size_t i);
 struct statistics_place *plot_axis_points(const struct plot_axis *along, struct gnuplot *g);
 /* Value that cell k shows. */
 size_t plot_axis_index(const struct plot_axis *along, size_t k);
-/* Tells the script of the axis x or y, see gnuplot_axis, and of a list x_words of its words
- * x_word[] at x_at[]. Returns its name. */
+/* Tells the script of the axis x or y, see gnuplot_axis, with the words of a list. Returns its
+ * name. */
 const char *plot_axis_write(const struct plot_axis *along, struct gnuplot *g, char which);
 /* What an axis is called, x_text and x_path, with its unit, alone. */
 void plot_label_write(const struct results_axis *axis, struct gnuplot *g, const char *which);

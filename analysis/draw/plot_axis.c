@@ -117,22 +117,6 @@ size_t plot_axis_index(const struct plot_axis *along, size_t k)
 
 /* ---- what scripts are told ---------------------------------------------------------------- */
 
-/* The words of a list, where they are many so many of them that no picture has room for more. */
-static void put_words(const struct plot_axis *along, struct gnuplot *g, const char *which)
-{
-    enum { MOST = 64 };
-    const size_t every = along->axis->count / MOST + 1;
-    const size_t words = (along->axis->count + every - 1) / every;
-    gnuplot_set(g, "%s_words = %zu\narray %s_word[%zu]\narray %s_at[%zu]", which, words, which,
-                words, which, words);
-    for (size_t k = 0; k < words; k++) {
-        char text[64];
-        results_value_text(along->axis, k * every, false, text, sizeof text);
-        gnuplot_set(g, "%s_at[%zu] = %zu", which, k + 1, k * every);
-        gnuplot_tic(g, text, "%s_word[%zu]", which, k + 1);
-    }
-}
-
 void plot_label_write(const struct results_axis *axis, struct gnuplot *g, const char *which)
 {
     static const char with[] = "; with ";
@@ -161,8 +145,13 @@ const char *plot_axis_write(const struct plot_axis *along, struct gnuplot *g, ch
 {
     const char *const axis = gnuplot_axis(g, which, along->scale, along->range, "", "");
     plot_label_write(along->axis, g, axis);
-    if (along->scale == PLOT_LIST)
-        put_words(along, g, axis);
+    /* Where words are many, as many of them as pictures have room for. */
+    const size_t count = along->scale == PLOT_LIST ? along->axis->count : 0;
+    for (size_t i = 0; i < count; i += count / 64 + 1) {
+        char text[64];
+        results_value_text(along->axis, i, false, text, sizeof text);
+        gnuplot_word(g, (double)i, text);
+    }
     return axis;
 }
 

@@ -54,128 +54,94 @@ static bool is_meant(const char *path, const char *name)
            (own == length || path[length - own - 1] == '.');
 }
 
-/* A point near what was asked for. */
-struct near {
-    size_t point[SCENARIO_MAX_AXES];
-    double *distance; /* [points of the sample] squares, in units of the ranges; NULL: no sample */
-};
-
-/* The number of NAME=NUMBER; false, and it is said, where it is none. */
-static bool read_number(const char *text, const char *what, double *number)
-{
-    char *end;
-    *number = strtod(text, &end);
-    return (end != text && !*end && isfinite(*number)) ||
-           bad("--near takes NAME=NUMBER, not", what);
-}
-
-/* The value of an axis that a word is, or is nearest to. */
-static bool find_value(const struct results_axis *axis, const char *name, const char *text,
-                       size_t *value)
-{
-    double wanted;
-    if (axis->word) {
-        *value =
-            command_word(&command_replay, name, text, (const char *const *)axis->word, axis->count);
-        return *value < axis->count;
-    }
-    if (!read_number(text, text, &wanted))
-        return false;
-    *value = 0;
-    for (size_t i = 1; i < axis->count; i++)
-        if (fabs(axis->value[i] - wanted) < fabs(axis->value[*value] - wanted))
-            *value = i;
-    return true;
-}
-
-static bool add_distances(const struct results_varied *v, const char *name, const char *text,
+/* The distances of values, or of words, from NAME=VALUE. */
+static bool add_distances(const struct results_axis *of, const char *name, const char *text,
                           double *distance)
 {
-    double wanted;
-    struct plot_range of;
-    if (v->word)
-        return bad("--near takes NAME=NUMBER, not", name);
-    if (!read_number(text, name, &wanted))
-        return false;
-    const double range =
-        plot_range_of(&of, v->of.value, v->of.count) && of.high > of.low ? of.high - of.low : 1;
-    for (size_t i = 0; i < v->of.count; i++) {
-        const double off = (v->of.value[i] - wanted) / range;
+    char *end;
+    struct plot_range range;
+    if (of->word) {
+        const size_t word =
+            command_word(&command_replay, name, text, (const char *const *)of->word, of->count);
+        for (size_t i = 0; i < of->count; i++)
+            distance[i] += i != word;
+        return word < of->count;
+    }
+    const double wanted = strtod(text, &end);
+    if (end == text || *end || !isfinite(wanted))
+        return bad("--near takes NAME=NUMBER, not", text);
+    const bool wide = plot_range_of(&range, of->value, of->count) && range.high > range.low;
+    for (size_t i = 0; i < of->count; i++) {
+        const double off = (of->value[i] - wanted) / (wide ? range.high - range.low : 1);
         distance[i] += off * off;
     }
     return true;
 }
 
-/* The point of an axis by a further path, which moves along with its first one; the file's scenario
- * has its numbers. How many such paths there are; *good: of one, that it has been taken. */
-static int find_along(const struct results *r, const char *name, const char *text,
-                      struct near *near, bool *good)
+/* One NAME=VALUE: of an axis, of what is varied, or of a further path of an axis, which moves along
+ * with its first one; the file's scenario has the numbers of these. distance[axes]: how far its
+ * points are from all that was asked for, squares, in units of the ranges; NULL: nothing was. */
+static bool take_part(const struct results *r, const char *name, const char *text,
+                      double **distance)
 {
     const struct scenario *const s = r->read;
-    int at = 0, path = 0, found = 0;
-    for (int a = 0; s && a < s->axes && a < r->axes; a++)
-        for (int k = 1; k < s->axis[a].paths; k++)
-            if (a != r->sample && !s->axis[a].enumeration[k] && is_meant(s->axis[a].path[k], name))
-                at = a, path = k, found++;
-    struct results_axis along = {.count = found == 1 ? r->axis[at].count : 0};
-    along.value = along.count > 0 ? malloc(along.count * sizeof *along.value) : NULL;
-    for (size_t i = 0; along.value && i < along.count; i++)
-        along.value[i] = scenario_axis_value(&s->axis[at], i % s->axis[at].count, path);
-    *good = along.value && find_value(&along, name, text, &near->point[at]);
-    free(along.value);
-    return found;
-}
-
-/* One NAME=VALUE. */
-static bool take_part(const struct results *r, const char *name, const char *text,
-                      struct near *near)
-{
-    int axis = -1, varied = -1, found = 0;
+    const struct results_axis *of = NULL;
+    struct results_axis along = {.count = 0};
+    int axis = -1, path = 0, found = 0;
     for (int a = 0; a < r->axes; a++)
         if (a != r->sample && is_meant(r->axis[a].name, name))
-            axis = a, found++;
+            of = &r->axis[a], axis = a, found++;
     for (int k = 0; k < r->varied; k++)
-        if (is_meant(r->vary[k].of.name, name))
-            varied = k, found++;
-    bool good = false;
-    if (found == 0 && (found = find_along(r, name, text, near, &good)) == 1)
-        return good;
+        if (is_meant(r->vary[k].of.name, name)) {
+            if (r->vary[k].word)
+                return bad("--near takes NAME=NUMBER, not", name);
+            of = &r->vary[k].of, axis = r->sample, found++;
+        }
+    for (int a = 0; !of && s && a < s->axes && a < r->axes; a++)
+        for (int k = 1; k < s->axis[a].paths; k++)
+            if (a != r->sample && !s->axis[a].enumeration[k] && is_meant(s->axis[a].path[k], name))
+                axis = a, path = k, found++;
     if (found != 1)
         return bad(found ? "--near: several paths end with"
                          : "--near: nothing is varied that ends with",
                    name);
-    return axis >= 0 ? find_value(&r->axis[axis], name, text, &near->point[axis])
-                     : add_distances(&r->vary[varied], name, text, near->distance);
+    const size_t count = r->axis[axis].count;
+    if (!of) {
+        along = (struct results_axis){.count = count, .value = malloc(count * sizeof(double))};
+        for (size_t i = 0; along.value && i < count; i++)
+            along.value[i] = scenario_axis_value(&s->axis[axis], i % s->axis[axis].count, path);
+    }
+    double *const own = distance[axis] ? distance[axis] : calloc(count, sizeof *own);
+    distance[axis] = own;
+    const bool good =
+        own && (of || along.value) && add_distances(of ? of : &along, name, text, own);
+    free(along.value);
+    return good;
 }
 
 /* "theta=0.02,vtheta=-0.1": the case nearest to that, offsets that are not named at the
  * equilibrium, all else at its first value. */
 static bool find_near(const struct results *r, const char *text, uint64_t *index)
 {
-    struct near near = {{0}, NULL};
+    double *distance[SCENARIO_MAX_AXES] = {NULL};
     char *const copy = strdup(text), *rest = copy;
     bool good = copy != NULL;
-    for (int a = 0; a < r->axes; a++)
-        if (r->axis[a].offset)
-            near.point[a] = statistics_nearest_zero(&r->axis[a]);
-    if (r->sample >= 0) {
-        near.distance = calloc(r->axis[r->sample].count, sizeof *near.distance);
-        good = good && near.distance;
-    }
     for (char *part; good && (part = strsep(&rest, ","));) {
         char *const equals = strchr(part, '=');
         if (equals)
             *equals = '\0';
-        good = equals && equals > part ? take_part(r, part, equals + 1, &near)
+        good = equals && equals > part ? take_part(r, part, equals + 1, distance)
                                        : bad("--near takes NAME=VALUE,..., not", text);
     }
-    for (size_t i = 1; good && near.distance && i < r->axis[r->sample].count; i++)
-        if (near.distance[i] < near.distance[near.point[r->sample]])
-            near.point[r->sample] = i;
     *index = 0;
-    for (int a = 0; a < r->axes; a++)
-        *index = *index * r->axis[a].count + near.point[a];
-    free(near.distance);
+    for (int a = 0; a < r->axes; a++) {
+        const double *const far = distance[a];
+        size_t point = r->axis[a].offset && !far ? statistics_nearest_zero(&r->axis[a]) : 0;
+        for (size_t i = 1; far && i < r->axis[a].count; i++)
+            point = far[i] < far[point] ? i : point;
+        *index = *index * r->axis[a].count + point;
+        free(distance[a]);
+    }
     free(copy);
     return good;
 }

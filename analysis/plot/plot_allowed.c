@@ -1,10 +1,10 @@
-/* plot_allowed.c - see plot_allowed.h.
+/* plot_allowed.c - what linear theory allows in a map.
  *
  * The states of a map's starts are a plane, x = origin + u side[0] + v side[1] with u and v in 0
  * ... 1, and the set is convex: so is its section by the plane, whose outline is where rays from a
  * point inside leave it or the map. Where three points of the outline are on a line, so is all
  * between them; elsewhere further rays go between. */
-#include "plot_allowed.h"
+#include "plot_layout.h"
 
 #include "runner/base/message.h"
 #include "runner/plan/allowed.h"
@@ -21,7 +21,7 @@ enum { RAYS = 32, DEEPEST = 9, HALVINGS = 20, MOST_POINTS = RAYS << DEEPEST };
 struct picture {
     const struct plot_layout *layout;
     struct plot_axis along[2];
-    size_t end[2][2]; /* of each axis: places of its least and its largest value */
+    size_t end[2][2]; /* of each axis: places between which its values lie */
     const struct scenario *s;
     struct scenario_values values; /* of the start that is looked at */
     /* Of the panel that is made: its set, its plane, a point inside, in parts of the picture. */
@@ -40,12 +40,8 @@ static bool check_axes(struct picture *p, stance_message *why)
         for (int i = 0; i < of->paths; i++) // NOLINT: maps have axes
             if (!scenario_is_start(of->path[i]))
                 return complain(why, "%.90s is no coordinate of a start", of->path[i]);
-        p->end[k][0] = p->end[k][1] = 0;
-        for (size_t i = 1; i < axis->count; i++)
-            for (int end = 0; end < 2; end++)
-                if ((axis->value[i] < axis->value[p->end[k][end]]) == (end == 0))
-                    p->end[k][end] = i;
-        if (p->end[k][0] == p->end[k][1])
+        scenario_ends(axis->value, axis->count, 1, p->end[k]);
+        if (axis->value[p->end[k][0]] == axis->value[p->end[k][1]])
             return complain(why, "%.90s has one value", axis->name);
         if (p->along[k].scale == PLOT_LIST)
             return complain(why, "the values of %.90s are not even", axis->name);
@@ -53,21 +49,28 @@ static bool check_axes(struct picture *p, stance_message *why)
     return true;
 }
 
-/* Where a value of an axis is between the picture's edges, 0 ... 1. */
-static double part_of(const struct picture *p, int k, double value)
+/* The ends of the picture along an axis, as values. */
+static struct plot_range ends_of(const struct picture *p, int k)
 {
-    const bool log = p->along[k].scale == PLOT_LOG;
-    const double low = log ? pow(10, p->along[k].range.low) : p->along[k].range.low,
-                 high = log ? pow(10, p->along[k].range.high) : p->along[k].range.high;
-    return (value - low) / (high - low);
+    const struct plot_range range = p->along[k].range;
+    return p->along[k].scale == PLOT_LOG
+               ? (struct plot_range){pow(10, range.low), pow(10, range.high)}
+               : range;
 }
 
+/* Where a value of an axis is between them, 0 ... 1. */
+static double part_of(const struct picture *p, int k, size_t i)
+{
+    const struct plot_range ends = ends_of(p, k);
+    return (p->along[k].axis->value[i] - ends.low) / (ends.high - ends.low);
+}
+
+/* And where that is drawn. */
 static double place_of(const struct picture *p, int k, double part)
 {
-    const double low = p->along[k].range.low, high = p->along[k].range.high;
-    if (p->along[k].scale == PLOT_LOG)
-        return log10(pow(10, low) + part * (pow(10, high) - pow(10, low)));
-    return low + part * (high - low);
+    const struct plot_range ends = ends_of(p, k);
+    const double value = ends.low + part * (ends.high - ends.low);
+    return p->along[k].scale == PLOT_LOG ? log10(value) : value;
 }
 
 static void state_at(const struct picture *p, const double part[2], double *x)
@@ -95,8 +98,7 @@ static void start_of(struct picture *p, size_t i, size_t j, double *x)
 /* How far a start is off the plane, as a part of the largest coordinates. */
 static double off_plane(struct picture *p, size_t i, size_t j)
 {
-    const double part[2] = {part_of(p, 0, p->along[0].axis->value[i]),
-                            part_of(p, 1, p->along[1].axis->value[j])};
+    const double part[2] = {part_of(p, 0, i), part_of(p, 1, j)};
     double x[DESIGN_STATES], on[DESIGN_STATES], largest = 0, off = 0;
     start_of(p, i, j, x);
     state_at(p, part, on);
@@ -114,8 +116,7 @@ static bool make_plane(struct picture *p, stance_message *why)
     start_of(p, p->end[0][0], p->end[1][0], first);
     memcpy(p->origin, first, sizeof first);
     for (int k = 0; k < 2; k++) {
-        const double begin = part_of(p, k, p->along[k].axis->value[p->end[k][0]]),
-                     end = part_of(p, k, p->along[k].axis->value[p->end[k][1]]);
+        const double begin = part_of(p, k, p->end[k][0]), end = part_of(p, k, p->end[k][1]);
         start_of(p, p->end[0][k == 0], p->end[1][k == 1], x);
         for (int c = 0; c < p->n; c++) {
             p->side[k][c] = (x[c] - first[c]) / (end - begin);
@@ -181,8 +182,7 @@ static double find_inside(struct picture *p)
     double inside = 0, sum[2] = {0};
     for (size_t i = 0; i < count[0]; i++)
         for (size_t j = 0; j < count[1]; j++) {
-            const double part[2] = {part_of(p, 0, p->along[0].axis->value[i]),
-                                    part_of(p, 1, p->along[1].axis->value[j])};
+            const double part[2] = {part_of(p, 0, i), part_of(p, 1, j)};
             const bool holds = holds_at(p, part);
             inside += holds;
             for (int k = 0; k < 2; k++)

@@ -16,20 +16,20 @@ struct animation {
     bool follows; /* the robot travels too far for a view that stays */
 };
 
-/* What is seen along x or z, around the points of all frames, about a place that moves with the
- * first case if it follows. */
-static struct plot_range see(const struct animation *a, int i)
+/* Where the view is at a frame, if it follows the first case. */
+static double place(const struct animation *a, int f, int i)
 {
-    struct plot_range range = {i == 0 ? INFINITY : 0, i == 0 ? -INFINITY : 0};
-    for (int c = 0; c < 2 && a->figure[c]; c++) {
-        for (int f = 0; f < a->frames; f++) {
-            const struct figure *const first = &a->figure[0][f], *const figure = &a->figure[c][f];
-            const double about = !a->follows ? 0 : i == 0 ? first->centre : first->base;
-            for (int p = 0; p < figure->points; p++)
-                plot_widen(&range, figure->point[p][i] - about);
-        }
-    }
-    return range;
+    return !a->follows ? 0 : i == 0 ? a->figure[0][f].centre : a->figure[0][f].base;
+}
+
+/* What is seen along x and z, around the points of all frames. */
+static void see(const struct animation *a, struct plot_range range[2])
+{
+    range[0] = PLOT_NOTHING;
+    range[1] = (struct plot_range){0, 0};
+    for (int c = 0; c < 2 && a->figure[c]; c++)
+        for (int f = 0; f < a->frames; f++)
+            figure_widen(range, &a->figure[c][f], place(a, f, 0), place(a, f, 1));
 }
 
 /* The ground between places that move with the view, each frame an index; `z` is widened to where
@@ -37,18 +37,13 @@ static struct plot_range see(const struct animation *a, int i)
 static void put_ground(struct animation *a, const struct plot_case *c, struct plot_range x,
                        struct plot_range *z)
 {
-    double(*const point)[2] = gnuplot_room(&a->g, PLOT_GROUND, sizeof *point);
     gnuplot_series(&a->g, "index f-1 using 1:2 with lines lw 2 lc rgb 0xa0a0a0");
-    for (int f = 0; point && f < a->frames; f++) {
-        const double about = a->follows ? a->figure[0][f].centre : 0,
-                     base = a->follows ? a->figure[0][f].base : 0;
-        const size_t points = plot_ground(c, f * a->step, about + x.low, about + x.high, point);
-        for (size_t k = 0; k < points; k++) {
-            GNUPLOT_ROW(&a->g, point[k][0], point[k][1]);
-            if (c->floor)
-                z->low = fmin(z->low, point[k][1] - base);
-        }
-        gnuplot_gap(&a->g);
+    for (int f = 0; f < a->frames; f++) {
+        const double about = place(a, f, 0);
+        const double low = plot_ground(&a->g, c, f * a->step,
+                                       (struct plot_range){about + x.low, about + x.high}, 0, 0);
+        if (c->floor)
+            z->low = fmin(z->low, low - place(a, f, 1));
         gnuplot_gap(&a->g);
     }
 }
@@ -58,12 +53,11 @@ static void put_view(struct animation *a, const struct plot_case *c)
 {
     enum { WIDE = 632, HIGH = 480 };
     struct gnuplot *const g = &a->g;
-    struct plot_range x = see(a, 0), z = see(a, 1);
-    if (x.high - x.low > 3 * (z.high - z.low)) {
-        a->follows = true;
-        x = see(a, 0);
-        z = see(a, 1);
-    }
+    struct plot_range range[2];
+    see(a, range);
+    a->follows = range[0].high - range[0].low > 3 * (range[1].high - range[1].low);
+    see(a, range);
+    struct plot_range x = range[0], z = range[1];
     const double tall = z.high - z.low, margin = 0.08 * tall + 1e-9,
                  middle = 0.5 * (x.low + x.high),
                  half = fmax(fmax(0.6 * tall, 0.5 * (x.high - x.low)) + margin,
@@ -80,8 +74,8 @@ static void put_view(struct animation *a, const struct plot_case *c)
     gnuplot_axis(g, 'y', PLOT_LINEAR, z, "z", "m");
     gnuplot_arrays(g, (size_t)a->frames, "centre base");
     for (int f = 0; f < a->frames; f++) {
-        gnuplot_number(g, a->follows ? a->figure[0][f].centre : 0, "centre[%d]", f + 1);
-        gnuplot_number(g, a->follows ? a->figure[0][f].base : 0, "base[%d]", f + 1);
+        gnuplot_number(g, place(a, f, 0), "centre[%d]", f + 1);
+        gnuplot_number(g, place(a, f, 1), "base[%d]", f + 1);
     }
     gnuplot_set(g,
                 "frames = %d; frame_step = %.10g; delay = int(100*frame_step + 0.5); "
@@ -121,7 +115,7 @@ bool plot_animation(const struct plot_case *c)
     a.step = step;
     a.frames = (int)(end / step + 1e-9) + 1;
     c->plot->look->animated = step;
-    if (!plot_case_begin(c, &a.g, "animation", NULL, "Stick figures"))
+    if (!plot_case_begin(c, &a.g, "animation", "Stick figures"))
         return false;
     int cases = 0;
     for (const struct plot_case *k = c; k; k = k->other) {

@@ -107,18 +107,17 @@ static void swept_text(const struct scenario *s, uint64_t index, char *text, siz
         const struct scenario_axis *const axis = &s->axis[a];
         const size_t i = point[a];
         for (int k = 0; k < (axis->sample ? axis->paths : 1); k++) {
-            const double value = axis->words ? NAN : scenario_axis_value(axis, i, k);
-            double gap = INFINITY; /* from the nearest other value: so many digits are needed */
-            if (axis->sample || axis->words || isinf(value)) {
+            if (axis->sample || axis->words) {
                 scenario_axis_text(axis, i, k, word, sizeof word);
-            } else {
-                if (i > 0)
-                    gap = fmin(gap, fabs(value - scenario_axis_value(axis, i - 1, 0)));
-                if (i + 1 < axis->count)
-                    gap = fmin(gap, fabs(scenario_axis_value(axis, i + 1, 0) - value));
-                results_number_text(value, isinf(gap) ? 0 : gap, word, sizeof word);
-                if (axis->unit[0] && strcmp(axis->unit, "1") != 0)
-                    add_text(word, sizeof word, " %s", axis->unit);
+            } else { /* in as many digits as it takes beside its neighbours */
+                const size_t first = i > 0 ? i - 1 : 0;
+                double value[3];
+                struct results_axis own = {.value = value};
+                for (size_t j = first; j < axis->count && j <= i + 1; j++)
+                    value[own.count++] = scenario_axis_value(axis, j, k);
+                if (strcmp(axis->unit, "1") != 0)
+                    snprintf(own.unit, sizeof own.unit, "%s", axis->unit);
+                results_value_text(&own, i - first, true, word, sizeof word);
             }
             add_text(text, size, "%s%s = %s", a || k ? ", " : "",
                      axis->sample ? axis->path[k] : axis->name, word);
@@ -145,9 +144,9 @@ static void describe(struct gnuplot *g, const struct plot_case *c)
 }
 
 bool plot_case_begin(const struct plot_case *c, struct gnuplot *g, const char *name,
-                     const char *script, const char *what)
+                     const char *what)
 {
-    if (!gnuplot_begin(g, c->plot, name, script))
+    if (!gnuplot_begin(g, c->plot, name, NULL))
         return false;
     gnuplot_say(g, "%s; ", what);
     describe(g, c);
@@ -161,7 +160,7 @@ bool plot_case_begin(const struct plot_case *c, struct gnuplot *g, const char *n
 bool plot_page_begin(struct case_page *page, const char *name, const char *what)
 {
     struct gnuplot *const g = &page->g;
-    if (!plot_case_begin(page->c, g, name, NULL, what))
+    if (!plot_case_begin(page->c, g, name, what))
         return false;
     page->time = PLOT_NOTHING;
     for (size_t k = 0; k < page->marks; k++)
@@ -289,18 +288,15 @@ static bool setpoint_of(const struct plot_case *c, size_t i, struct ramp *setpoi
     return isfinite(setpoint->start);
 }
 
-static bool draw_coordinates(const struct plot_case *c)
+static void put_coordinates(struct case_page *page, double height)
 {
     static const stance_quantity unknown = {.unit = "", .text = ""};
-    const struct results_trajectory *t = c->t;
-    struct case_page page = {.c = c, .shown = SHOWN_POSITIONS};
+    const struct plot_case *const c = page->c;
     bool targets = false, led = false;
-
-    if (!plot_page_begin(&page, "coordinates", "Coordinates"))
-        return false;
-    for (size_t i = 0; i < t->coordinates; i++) {
+    page->shown = SHOWN_POSITIONS;
+    for (size_t i = 0; i < c->t->coordinates; i++) {
         const stance_quantity *q = c->scenario ? &c->scenario->scene->coordinate[i] : &unknown;
-        struct range range = range_of(&page, (struct columns){i, 1, i + 1, false});
+        struct range range = range_of(page, (struct columns){i, 1, i + 1, false});
         const double target = target_of(c, i);
         struct ramp setpoint;
         const bool leads = setpoint_of(c, i, &setpoint);
@@ -309,44 +305,38 @@ static bool draw_coordinates(const struct plot_case *c)
             plot_widen(&range.of, setpoint.start);
             plot_widen(&range.of, setpoint.start + setpoint.rate * setpoint.end);
         }
-        put_panel(&page, 100, q->text, range.of, t->coordinate[i], q->unit);
+        put_panel(page, height, q->text, range.of, c->t->coordinate[i], q->unit);
         if (isfinite(target))
-            put_ramp(&page, &(struct ramp){target, 0, INFINITY}, "hue[2]", true);
+            put_ramp(page, &(struct ramp){target, 0, INFINITY}, "hue[2]", true);
         if (leads)
-            put_ramp(&page, &setpoint, "hue[2]", true);
-        put_line(&page, i, 1, 0, false);
+            put_ramp(page, &setpoint, "hue[2]", true);
+        put_line(page, i, 1, 0, false);
         targets = targets || isfinite(target);
         led = led || leads;
     }
     if (targets || led)
-        gnuplot_note(&page.g, "%s: %s", c->other ? "dash-dotted" : "dashed",
+        gnuplot_note(&page->g, "%s: %s", c->other ? "dash-dotted" : "dashed",
                      targets ? "equilibrium" : "set-point");
-    return gnuplot_end(&page.g);
 }
 
 /* ---- forces ------------------------------------------------------------------------------- */
 
-/* "Normal force (mean over 0.01 s); 1 of 801 instants beyond the frame, the largest 9000 N" */
-static void heading_of(const struct range *range, bool brief, const char *unit, char *text,
-                       size_t size)
+/* "; 1 of 801 instants beyond the frame, up to 9000 N" */
+static void add_beyond(const struct range *range, const char *unit, char *text, size_t size)
 {
-    if (range->beyond > 0 && brief)
-        add_text(text, size, "; beyond the frame up to %.4g %s", range->largest, unit);
-    else if (range->beyond > 0)
+    if (range->beyond > 0)
         add_text(text, size, "; %zu of %zu instants beyond the frame, up to %.4g %s", range->beyond,
                  range->rows, range->largest, unit);
 }
 
 void plot_page_forces(struct case_page *page, double height)
 {
-    static const char *const names[][4] = {
-        {"Normal force, out of the ground", "normal force", "Normal force", "normal"},
-        {"Tangential force, along +x", "tangential force", "Tangential force", "tangential"}};
+    static const char *const names[][2] = {{"Normal force, out of the ground", "normal"},
+                                           {"Tangential force, along +x", "tangential"}};
     const struct plot_case *const c = page->c;
     const struct results_trajectory *t = c->t;
     const size_t count = grounded(c);
     stance_tree_numbers number = {0};
-    const bool brief = page->marks > 0;
     char text[300];
     bool rough = false;
 
@@ -356,11 +346,11 @@ void plot_page_forces(struct case_page *page, double height)
                                  c->values.robot, &number);
     for (size_t k = 0; k < 2; k++) {
         const struct range range = range_of(page, (struct columns){k, 2, 2 * count, true});
-        snprintf(text, sizeof text, "%s", names[k][brief ? 2 : 0]);
-        if (t->rows > 1 && !brief)
+        snprintf(text, sizeof text, "%s", names[k][0]);
+        if (t->rows > 1)
             add_text(text, sizeof text, " (means over %.4g s)", t->time[1] - t->time[0]);
-        heading_of(&range, brief, "N", text, sizeof text);
-        put_panel(page, height, text, range.of, names[k][brief ? 3 : 1], "N");
+        add_beyond(&range, "N", text, sizeof text);
+        put_panel(page, height, text, range.of, names[k][1], "N");
         for (size_t i = 0; i < count; i++) {
             for (int sign = -1; k == 1 && c->scenario && sign <= 1; sign += 2)
                 put_line(page, 2 * i, sign * c->values.friction * number.rough[i], i, true);
@@ -382,18 +372,6 @@ void plot_page_forces(struct case_page *page, double height)
 static const char *unit_of(const stance_scene *scene, size_t k)
 {
     return strcmp(scene->coordinate[scene->actuated[k]].unit, "m") == 0 ? "N" : "N m";
-}
-
-/* What the actuators give. */
-static const char *torque_label(const struct plot_case *c, const char **unit)
-{
-    const stance_scene *const scene = c->scenario ? c->scenario->scene : NULL;
-    int slides = 0;
-    for (int k = 0; scene && k < scene->actuators; k++)
-        slides += strcmp(unit_of(scene, (size_t)k), "N") == 0;
-    const bool all = slides > 0 && slides == scene->actuators;
-    *unit = all ? "N" : slides > 0 ? "N m, N" : "N m";
-    return all ? "force (N)" : slides > 0 ? "torque (N m), force (N)" : "torque (N m)";
 }
 
 /* A limit that actuators have, with the names of those that do where others have another. */
@@ -436,17 +414,25 @@ void plot_page_torques(struct case_page *page, double height)
     page->shown = SHOWN_TORQUES;
     struct range range = range_of(page, (struct columns){0, 1, t->actuators, true});
     const double extent = 4 * fmax(fabs(range.of.low), fabs(range.of.high));
-    const char *unit, *const label = torque_label(c, &unit);
+    bool kind[2] = {false, false}; /* there are torques, forces */
+    for (size_t k = 0; k < t->actuators; k++)
+        kind[c->scenario && unit_of(c->scenario->scene, k)[1] == '\0'] = true;
+    const char *const unit = !kind[1]  ? "N m"
+                             : kind[0] ? "N m, N"
+                                       : "N",
+                      *const name = !kind[1]  ? "torque"
+                                    : kind[0] ? "torque, force"
+                                              : "force";
     struct torque_level level[STANCE_MAX_ACTUATORS];
     char text[300] = "Applied in the step that ends at each instant";
 
-    heading_of(&range, page->marks > 0, unit, text, sizeof text);
+    add_beyond(&range, unit, text, sizeof text);
     const size_t limits = torque_levels(c, t->actuators, level);
     for (size_t k = 0; k < limits && level[k].limit < extent; k++) {
         plot_widen(&range.of, -level[k].limit);
         plot_widen(&range.of, level[k].limit);
     }
-    put_panel(page, height, text, range.of, label, "");
+    put_panel(page, height, text, range.of, name, unit);
     for (size_t k = 0; k < limits; k++)
         for (int sign = -1; level[k].limit < extent && sign <= 1; sign += 2)
             put_ramp(page, &(struct ramp){sign * level[k].limit, 0, INFINITY}, "0x606060", true);
@@ -458,12 +444,13 @@ void plot_page_torques(struct case_page *page, double height)
                      level[k].limit, level[k].unit, level[k].of);
 }
 
-static void put_gaps(struct case_page *page)
+static void put_gaps(struct case_page *page, double height)
 {
     const size_t count = grounded(page->c);
+    page->shown = SHOWN_GAPS;
     struct range range = range_of(page, (struct columns){0, 1, count, false});
     plot_widen(&range.of, 0);
-    put_panel(page, 260, "", range.of, "gap", "m");
+    put_panel(page, height, "", range.of, "gap", "m");
     put_ramp(page, &(struct ramp){0, 0, INFINITY}, "0x606060", false);
     for (size_t k = 0; k < count; k++)
         put_line(page, k, 1, k, false);
@@ -471,19 +458,13 @@ static void put_gaps(struct case_page *page)
 }
 
 /* A page of one quantity. */
-static bool draw_page(const struct plot_case *c, enum shown shown)
+static bool draw_page(const struct plot_case *c, const char *name, const char *what,
+                      void (*put)(struct case_page *page, double height), double height)
 {
-    struct case_page page = {.c = c, .shown = shown};
-    if (shown == SHOWN_FORCES &&
-        plot_page_begin(&page, "forces", "Forces of the ground on the contacts"))
-        plot_page_forces(&page, 220);
-    else if (shown == SHOWN_TORQUES && plot_page_begin(&page, "torques", "What the actuators give"))
-        plot_page_torques(&page, 260);
-    else if (shown == SHOWN_GAPS &&
-             plot_page_begin(&page, "gaps", "Heights of the contact points above the ground"))
-        put_gaps(&page);
-    else
+    struct case_page page = {.c = c};
+    if (!plot_page_begin(&page, name, what))
         return false;
+    put(&page, height);
     return gnuplot_end(&page.g);
 }
 
@@ -548,9 +529,14 @@ bool plot_case(const struct plot_case *c)
         return complain(c->plot->message, "%.100s: the two cases are of different robots",
                         c->plot->r->file);
     const bool lands = grounded(c) > 0;
-    const bool good = draw_coordinates(c) && (!t->force || !lands || draw_page(c, SHOWN_FORCES)) &&
-                      (!t->torque || draw_page(c, SHOWN_TORQUES)) &&
-                      (!t->gap || !lands || draw_page(c, SHOWN_GAPS));
+    const bool good =
+        draw_page(c, "coordinates", "Coordinates", put_coordinates, 100) &&
+        (!t->force || !lands ||
+         draw_page(c, "forces", "Forces of the ground on the contacts", plot_page_forces, 220)) &&
+        (!t->torque ||
+         draw_page(c, "torques", "What the actuators give", plot_page_torques, 260)) &&
+        (!t->gap || !lands ||
+         draw_page(c, "gaps", "Heights of the contact points above the ground", put_gaps, 260));
     if (good && !c->scenario)
         fprintf(stderr, "%s: no stick figures: this version cannot read the file's scenario\n",
                 c->plot->r->file);

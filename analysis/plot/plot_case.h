@@ -31,7 +31,7 @@ bool plot_animation(const struct plot_case *c);
 
 /* Begins a picture of the case; gnuplot_end ends it. */
 bool plot_case_begin(const struct plot_case *c, struct gnuplot *g, const char *name,
-                     const char *script, const char *what);
+                     const char *what);
 
 /* A page of panels, all of columns of what it shows against time: begun where all cases are seen,
  * or between the first and the last of its marks, which are lines in each panel. */
@@ -69,12 +69,15 @@ struct figure {
 /* Row of a trajectory at a time: the last one from its end on. */
 size_t figure_row(const struct results_trajectory *t, double time);
 void figure_make(struct figure *figure, const struct plot_case *c, size_t row);
+/* Widens ranges of x and z to its points, as seen from a place. */
+void figure_widen(struct plot_range range[2], const struct figure *figure, double x, double z);
 /* The ground's fall along x: a slope's tangent. */
 double figure_fall(const struct plot_case *c);
-/* The ground at a time from x = low to high, m: points x, z of a line, [PLOT_GROUND]; how many. */
+/* Rows x, z, 0, time of the ground at a time from x = low to high, m, moved by dx, dz, and a gap; g
+ * NULL: none. Returns the lowest z. */
 enum { PLOT_GROUND = 2000 };
-size_t plot_ground(const struct plot_case *c, double time, double low, double high,
-                   double (*point)[2]);
+double plot_ground(struct gnuplot *g, const struct plot_case *c, double time, struct plot_range x,
+                   double dx, double dz);
 /* Height z of the ground at x, m; of plates the mean about it. */
 double plot_ground_base(const struct plot_case *c, double time, double x);
 /* Once the rest of a case is known. */

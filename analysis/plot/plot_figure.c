@@ -137,6 +137,14 @@ static bool is_contact(const struct figure *figure, int contacts, int point)
     return false;
 }
 
+void figure_widen(struct plot_range range[2], const struct figure *figure, double x, double z)
+{
+    for (int p = 0; p < figure->points; p++) {
+        plot_widen(&range[0], figure->point[p][0] - x);
+        plot_widen(&range[1], figure->point[p][1] - z);
+    }
+}
+
 void figure_put(struct gnuplot *g, const struct figure *figure, int contacts, enum figure_part part,
                 double dx, double dz)
 {

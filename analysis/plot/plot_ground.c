@@ -4,20 +4,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Of the stick figure at first, upwards or across. */
-static double size_of(const struct plot_case *c)
-{
-    struct plot_range x = PLOT_NOTHING, z = PLOT_NOTHING;
-    double point[STANCE_MAX_POINTS][2];
-    const int points =
-        c->scenario->scene->figure(c->scenario->scene, c->values.robot, c->t->position, point);
-    for (int p = 0; p < points; p++) {
-        plot_widen(&x, point[p][0]);
-        plot_widen(&z, point[p][1]);
-    }
-    return points > 0 ? fmax(x.high - x.low, z.high - z.low) : 0;
-}
-
 void plot_ground_learn(struct plot_case *c)
 {
     const struct results_trajectory *const t = c->t;
@@ -25,24 +11,39 @@ void plot_ground_learn(struct plot_case *c)
         !(c->floor = calloc(1, sizeof *c->floor)))
         return;
     ground_case(c->scenario, &c->values, t->index, c->floor);
-    c->reach = 0.5 * size_of(c);
+    struct plot_range range[2] = {PLOT_NOTHING, PLOT_NOTHING};
+    static struct figure figure; /* large */
+    figure.points =
+        c->scenario->scene->figure(c->scenario->scene, c->values.robot, t->position, figure.point);
+    figure_widen(range, &figure, 0, 0);
+    c->reach = 0.5 * fmax(0, fmax(range[0].high - range[0].low, range[1].high - range[1].low));
     const struct ground_motion motion = {t->rows,     t->time,  t->position,
                                          t->velocity, t->force, t->gap};
     ground_pieces_find(c->floor, &motion, &c->pieces);
 }
 
-size_t plot_ground(const struct plot_case *c, double time, double low, double high,
-                   double (*point)[2])
+double plot_ground(struct gnuplot *g, const struct plot_case *c, double time, struct plot_range x,
+                   double dx, double dz)
 {
+    static double point[PLOT_GROUND][2]; /* large */
     const double fall = figure_fall(c), along = hypot(1, fall);
-    if (c->floor)
-        return ground_line(c->floor, &c->pieces, time, low * along, high * along, point,
-                           PLOT_GROUND);
+    double lowest = INFINITY;
+    size_t points = 2;
     for (int end = 0; end < 2; end++) {
-        point[end][0] = end ? high : low;
+        point[end][0] = end ? x.high : x.low;
         point[end][1] = -fall * point[end][0];
     }
-    return 2;
+    if (c->floor)
+        points = ground_line(c->floor, &c->pieces, time, x.low * along, x.high * along, point,
+                             PLOT_GROUND);
+    for (size_t k = 0; k < points; k++) {
+        lowest = fmin(lowest, point[k][1]);
+        if (g)
+            GNUPLOT_ROW(g, point[k][0] + dx, point[k][1] + dz, 0, time);
+    }
+    if (g)
+        gnuplot_gap(g);
+    return lowest;
 }
 
 double plot_ground_base(const struct plot_case *c, double time, double x)

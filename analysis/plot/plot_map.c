@@ -1,6 +1,6 @@
 /* plot_map.c - maps of a sweep over two axes or more: what became of every case, a cell each, and
  * the numbers that cases have. Further axes become panels; two of them a table of panels. */
-#include "plot_allowed.h"
+#include "plot_layout.h"
 
 #include "runner/base/message.h"
 

@@ -13,8 +13,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-GNUPLOT_SCRIPT(plot_model_gp, "analysis/plot/plot_model.gp");
-
 enum { MOST_LABELS = 40, ARC_STEPS = 24 };
 
 /* Whose colour something has in the script. */
@@ -31,11 +29,12 @@ struct moved {
     double radius, torque; /* m, of the arcs of its angle and of its actuator */
 };
 
-/* At a place, of what is at `of`, all in m. */
+/* Of what is at `of`, m. */
 struct label {
     const char *text;
-    double x, z, of[2];
+    double of[2];
     enum ink ink;
+    bool placed;
 };
 
 struct model {
@@ -45,10 +44,10 @@ struct model {
     double point[STANCE_MAX_POINTS][2];
     double velocity[STANCE_MAX_COORDINATES][STANCE_MAX_POINTS][2]; /* at unit rates */
     struct moved moved[STANCE_MAX_COORDINATES];
-    struct plot_range range[2]; /* m: of the figure, x and z */
-    double size;
+    struct plot_range range[2]; /* m: of what is drawn so far, x and z */
+    double size;                /* of the figure */
     struct gnuplot *g;
-    int labels, words; /* so far */
+    int labels; /* so far */
     struct label label[MOST_LABELS];
 };
 
@@ -142,11 +141,12 @@ static void make_model(struct model *m)
 
 /* ---- drawing ------------------------------------------------------------------------------ */
 
-static void label(struct model *m, enum ink ink, double x, double z, const double of[2],
-                  const char *text)
+/* The next label, at the left of the robot or at its right, of what is at `of`. */
+static void label(struct model *m, enum ink ink, const double of[2], const char *text)
 {
     if (m->labels < MOST_LABELS)
-        m->label[m->labels++] = (struct label){text, x, z, {of[0], of[1]}, ink};
+        m->label[m->labels++] =
+            (struct label){look_label(m->g->plot->look, text), {of[0], of[1]}, ink, false};
 }
 
 /* At a radius about the centre of a turn, at an angle. */
@@ -156,8 +156,18 @@ static void place_at(const struct moved *moved, double radius, double angle, dou
     place[1] = moved->centre[1] + radius * sin(angle);
 }
 
-/* From one angle to another; its last piece has a head. Rows: where a piece begins, how far it
- * goes, its ink, whether it has a head. */
+/* A row: where an arrow begins, how far it goes, its ink, whether it has a head. */
+static void arrow(struct model *m, const double from[2], double dx, double dz, enum ink ink,
+                  bool head)
+{
+    for (int end = 0; end < 2; end++) {
+        plot_widen(&m->range[0], from[0] + end * dx);
+        plot_widen(&m->range[1], from[1] + end * dz);
+    }
+    GNUPLOT_ROW(m->g, from[0], from[1], dx, dz, ink, head);
+}
+
+/* From one angle to another; its last piece has a head. */
 static void arc(struct model *m, const struct moved *moved, enum ink ink, double radius,
                 double from, double to)
 {
@@ -165,11 +175,11 @@ static void arc(struct model *m, const struct moved *moved, enum ink ink, double
     for (int i = 0; i < ARC_STEPS; i++) {
         place_at(moved, radius, from + (to - from) * i / ARC_STEPS, a);
         place_at(moved, radius, from + (to - from) * (i + 1) / ARC_STEPS, b);
-        GNUPLOT_ROW(m->g, a[0], a[1], b[0] - a[0], b[1] - a[1], ink, i + 1 == ARC_STEPS);
+        arrow(m, a, b[0] - a[0], b[1] - a[1], ink, i + 1 == ARC_STEPS);
     }
 }
 
-/* A rail's coordinate is far from where it is 0, perhaps: an arrow shows its sign. */
+/* Of a base that moves along x and z: one label has both. */
 static bool is_place(const struct model *m, int k)
 {
     const struct moved *const moved = m->moved;
@@ -177,92 +187,87 @@ static bool is_place(const struct model *m, int k)
            !moved[1].turns;
 }
 
-/* Uneven ground, to either side as far as it may be seen; pieces by footfall are not there yet. */
+/* To either side as far as it may be seen; pieces by footfall are not there yet. */
 static void put_ground(struct model *m)
 {
-    double(*const point)[2] = gnuplot_room(m->g, PLOT_GROUND, sizeof *point);
-    struct ground_pieces pieces;
-    gnuplot_set(m->g, "uneven = %d", m->scene->mechanism->plates > 0);
-    gnuplot_block(m->g, "ground");
-    GNUPLOT_ROW(m->g, NAN, NAN);
-    if (m->scene->mechanism->plates == 0 || !point)
-        return;
-    ground_pieces_find(m->c, NULL, &pieces);
-    const size_t points = ground_line(m->c, &pieces, 0, m->range[0].low - 4 * m->size,
-                                      m->range[0].high + 4 * m->size, point, PLOT_GROUND);
-    for (size_t k = 0; k < points; k++)
-        GNUPLOT_ROW(m->g, point[k][0], point[k][1]);
+    static struct plot_case even; /* large; nothing else of it is known */
+    even.values.robot[STANCE_ROBOT_SLOPE] = m->c->robot[STANCE_ROBOT_SLOPE];
+    even.floor = m->scene->mechanism->plates > 0 ? (stance_case *)m->c : NULL;
+    if (even.floor)
+        ground_pieces_find(m->c, NULL, &even.pieces);
+    gnuplot_series(m->g,
+                   "using 1:(at_least($2, y1_low)):(y1_low) with filledcurves fc rgb 0xf0f0f0 "
+                   "notitle, '' using 1:2 with lines lw 2 lc rgb 0xa0a0a0");
+    plot_ground(m->g, &even, 0,
+                (struct plot_range){m->range[0].low - 4 * m->size, m->range[0].high + 4 * m->size},
+                0, 0);
 }
 
 static void put_lines(struct model *m)
 {
-    gnuplot_block(m->g, "segments");
+    gnuplot_series(m->g, "using 1:2 with lines lw 3.4 lc rgb 0x303030 notitle, '' using 1:2 with "
+                         "points pt 7 ps 0.7 lc rgb 0x303030");
     for (int p = 0; p < m->points; p++)
         GNUPLOT_ROW(m->g, m->point[p][0], m->point[p][1]);
-    gnuplot_block(m->g, "zeros");
-    GNUPLOT_ROW(m->g, NAN, NAN);
+    gnuplot_series(m->g, "using 1:2 with lines dt 2 lw 1.2 lc rgb 0x606060");
     for (int k = 0; k < m->scene->coordinates; k++) {
         const struct moved *const moved = &m->moved[k];
-        const double zero = moved->direction - moved->shown, length = 1.25 * moved->radius;
-        if (!moved->turns)
-            continue;
-        gnuplot_gap(m->g);
-        gnuplot_segment(m->g, moved->centre[0], moved->centre[1],
-                        moved->centre[0] + length * cos(zero),
-                        moved->centre[1] + length * sin(zero));
+        double end[2];
+        place_at(moved, 1.25 * moved->radius, moved->direction - moved->shown, end);
+        if (moved->turns)
+            gnuplot_segment(m->g, moved->centre[0], moved->centre[1], end[0], end[1]);
     }
 }
 
-/* Beside the arc, beyond where the angle is 0; an arc that only shows the sign: at its end. */
+/* An arc from where the angle is 0, or one that only shows the sign. */
 static void put_coordinate(struct model *m, int k)
 {
     const struct moved *const moved = &m->moved[k];
-    const char *const name = m->scene->coordinate[k].name;
-    double at[2], of[2];
+    double of[2];
     if (moved->turns) {
-        const double angle = moved->shown, radius = moved->radius, gap = 0.06 * m->size / radius,
-                     end = moved->direction + (angle == 0 ? 0.6 : 0);
-        arc(m, moved, INK_COORDINATE, radius, moved->direction - angle, end);
-        place_at(moved, radius, angle == 0 ? end + gap : end - angle - copysign(gap, angle), at);
-        place_at(moved, radius, moved->direction + (angle == 0 ? 0.3 : -0.5 * angle), of);
-        label(m, INK_COORDINATE, at[0], at[1], of, name);
-    } else if (!is_place(m, k)) { /* from where it is 0; near that the arrow shows the sign */
+        const double angle = moved->shown;
+        arc(m, moved, INK_COORDINATE, moved->radius, moved->direction - angle,
+            moved->direction + (angle == 0 ? 0.6 : 0));
+        place_at(moved, moved->radius, moved->direction + (angle == 0 ? 0.3 : -0.5 * angle), of);
+    } else if (is_place(m, k)) {
+        if (k == 1)
+            label(m, INK_COORDINATE, m->c->position, "(x, z)");
+        return;
+    } else { /* from where it is 0; near that the arrow shows the sign */
         const double q = m->c->position[k], side = 0.05 * m->size;
         const bool sign = moved->all || fabs(q) < 0.02 * m->size;
         const double far = sign ? 0.18 * m->size : q;
         for (int i = 0; i < 2; i++)
             of[i] = moved->point[i] - (sign ? 0 : q * moved->along[i]) +
                     side * (i ? moved->along[0] : -moved->along[1]);
-        GNUPLOT_ROW(m->g, of[0], of[1], far * moved->along[0], far * moved->along[1],
-                    INK_COORDINATE, 1);
+        arrow(m, of, far * moved->along[0], far * moved->along[1], INK_COORDINATE, true);
         for (int i = 0; i < 2; i++)
             of[i] += 0.5 * far * moved->along[i];
-        label(m, INK_COORDINATE, of[0] - side * moved->along[1], of[1] + side * moved->along[0], of,
-              name);
     }
+    label(m, INK_COORDINATE, of, m->scene->coordinate[k].name);
 }
 
 static void put_actuator(struct model *m, int a)
 {
-    const int k = m->scene->actuated[a];
-    const struct moved *const moved = &m->moved[k];
-    const double x = moved->point[0], z = moved->point[1], dx = m->size * moved->along[0],
-                 dz = m->size * moved->along[1];
-    double at[2] = {x + 0.22 * dx, z + 0.22 * dz}, of[2] = {x + 0.11 * dx, z + 0.11 * dz};
+    const struct moved *const moved = &m->moved[m->scene->actuated[a]];
+    const double dx = m->size * moved->along[0], dz = m->size * moved->along[1];
+    double of[2] = {moved->point[0] + 0.11 * dx, moved->point[1] + 0.11 * dz};
     if (moved->turns) {
         arc(m, moved, INK_ACTUATOR, moved->torque, moved->direction + 0.12, moved->direction + 0.7);
-        place_at(moved, moved->torque + 0.05 * m->size, moved->direction + 0.6, at);
         place_at(moved, moved->torque, moved->direction + 0.5, of);
     } else {
-        GNUPLOT_ROW(m->g, x, z, 0.18 * dx, 0.18 * dz, INK_ACTUATOR, 1);
+        arrow(m, moved->point, 0.18 * dx, 0.18 * dz, INK_ACTUATOR, true);
     }
-    label(m, INK_ACTUATOR, at[0], at[1], of, m->scene->actuator_name[a]);
+    label(m, INK_ACTUATOR, of, m->scene->actuator_name[a]);
 }
 
-/* The arrows of all things and, after them, their labels. */
+/* The arrows of all things. */
 static void put_things(struct model *m)
 {
-    gnuplot_block(m->g, "arrows");
+    gnuplot_series(m->g,
+                   "using 1:($6 == 0 ? $2 : NaN):3:4:(ink[$5+1]) with vectors nohead lw 2 lc rgb "
+                   "variable notitle, '' using 1:($6 == 1 ? $2 : NaN):3:4:(ink[$5+1]) with vectors "
+                   "head filled size screen 0.011,22 fixed lw 2 lc rgb variable");
     for (int k = 0; k < m->scene->coordinates; k++)
         put_coordinate(m, k);
     for (int a = 0; a < m->scene->actuators; a++)
@@ -272,64 +277,86 @@ static void put_things(struct model *m)
         const double slope = m->c->robot[STANCE_ROBOT_SLOPE], length = 0.13 * m->size;
         double p[2], speed[2];
         m->scene->contact_point(m->scene, m->c->robot, m->c->position, rest, k, p, speed);
-        GNUPLOT_ROW(m->g, p[0], p[1], length * sin(slope), length * cos(slope), INK_CONTACT, 1);
-        GNUPLOT_ROW(m->g, p[0], p[1], length * cos(slope), -length * sin(slope), INK_CONTACT, 1);
-        label(m, INK_CONTACT, p[0], p[1] - 0.06 * m->size, p, m->scene->contact_name[k]);
-    }
-    gnuplot_arrays(m->g, MOST_LABELS, "label_text label_x label_y label_ink of_x of_y");
-    gnuplot_set(m->g, "labels = %d", m->labels);
-    for (int k = 0; k < m->labels; k++) {
-        const struct label *const l = &m->label[k];
-        gnuplot_text(m->g, look_label(m->g->plot->look, l->text), "label_text[%d]", k + 1);
-        gnuplot_set(m->g,
-                    "k = %d; label_x[k] = %#.9g; label_y[k] = %#.9g; label_ink[k] = %d; "
-                    "of_x[k] = %#.9g; of_y[k] = %#.9g",
-                    k + 1, l->x, l->z, l->ink, l->of[0], l->of[1]);
+        arrow(m, p, length * sin(slope), length * cos(slope), INK_CONTACT, true);
+        arrow(m, p, length * cos(slope), -length * sin(slope), INK_CONTACT, true);
+        label(m, INK_CONTACT, p, m->scene->contact_name[k]);
     }
 }
 
-/* The next line of what stands beside the figure. */
-static void word(struct model *m, enum ink ink, const char *text)
+/* Labels of coordinates stand in a column at the left, the others in one at the right, from below
+ * in the order of what they name and a line apart, also where the page is narrow. */
+static void put_labels(struct model *m)
 {
-    m->words++;
-    gnuplot_text(m->g, text, "word_text[%d]", m->words);
-    gnuplot_set(m->g, "word_ink[%d] = %d", m->words, ink);
+    struct plot_range *const x = &m->range[0], *const z = &m->range[1];
+    *x = plot_roomy(*x, 0.12);
+    *z = plot_roomy(*z, 0.12);
+    const double wide = fmax(x->high - x->low, 0.6 * (z->high - z->low)), line = 0.07 * wide,
+                 middle = 0.5 * (x->low + x->high);
+    gnuplot_series(m->g, "using 1:2:($5-$1):($6-$2):(ink[$4+1]) with vectors nohead lw 0.7 lc rgb "
+                         "variable notitle, '' using 1:2:(label_text[$3]):(ink[$4+1]) with labels "
+                         "center font ',13' tc rgb variable boxed");
+    for (int right = 0; right < 2; right++) {
+        const struct label *lowest;
+        double height = -INFINITY;
+        do {
+            int next = -1;
+            for (int k = 0; k < m->labels; k++)
+                if ((m->label[k].ink != INK_COORDINATE) == right && !m->label[k].placed &&
+                    (next < 0 || m->label[k].of[1] < m->label[next].of[1]))
+                    next = k;
+            lowest = next < 0 ? NULL : &m->label[next];
+            if (lowest) {
+                m->label[next].placed = true;
+                height = fmax(lowest->of[1], height + line);
+                plot_widen(z, height + line);
+                GNUPLOT_ROW(m->g, middle + (right ? 0.6 : -0.6) * wide, height, next + 1,
+                            lowest->ink, lowest->of[0], lowest->of[1]);
+            }
+        } while (lowest);
+    }
+    *x = (struct plot_range){middle - 0.72 * wide, middle + 0.72 * wide};
+    gnuplot_arrays(m->g, MOST_LABELS, "label_text");
+    for (int k = 0; k < m->labels; k++)
+        gnuplot_text(m->g, m->label[k].text, "label_text[%d]", k + 1);
 }
 
 /* Each coordinate's value and meaning. */
 static void put_words(struct model *m)
 {
     static const double dust = 1e-12; /* m, rad: what equilibria leave of a 0 */
-    char text[240];
-    gnuplot_arrays(m->g, STANCE_MAX_COORDINATES + STANCE_MAX_ACTUATORS + 2, "word_text word_ink");
+    struct gnuplot *const g = m->g;
+    char text[100];
     for (int k = 0; k < m->scene->coordinates; k++) {
         const stance_quantity *const q = &m->scene->coordinate[k];
         const double at = fabs(m->c->position[k]) < dust ? 0 : m->c->position[k];
-        snprintf(text, sizeof text, "%.40s = %.4g %.20s: %.120s", q->name, at, q->unit, q->text);
-        word(m, INK_COORDINATE, text);
+        snprintf(text, sizeof text, "%.40s = %.4g %.20s", q->name, at, q->unit);
+        gnuplot_legend(g, "ink[1]", 0, 0, text, "");
+        gnuplot_about(g, "%.120s", q->text);
     }
     for (int a = 0; a < m->scene->actuators; a++) {
         const int k = m->scene->actuated[a];
         const char *const name = m->scene->coordinate[k].name;
         const double x = m->moved[k].along[0], z = m->moved[k].along[1]; /* of a slide */
+        gnuplot_legend(g, "ink[2]", 0, 0, m->scene->actuator_name[a], "");
         if (m->moved[k].turns)
-            snprintf(text, sizeof text, "%.40s: positive raises %.40s", m->scene->actuator_name[a],
-                     name);
+            gnuplot_about(g, "positive raises %.40s", name);
         else
-            snprintf(text, sizeof text, "%.40s: positive pushes %.40s along its axis, %s",
-                     m->scene->actuator_name[a], name,
-                     fabs(x) > fabs(z) ? (x > 0 ? "to the right" : "to the left")
-                     : z > 0           ? "up"
-                                       : "down");
-        word(m, INK_ACTUATOR, text);
+            gnuplot_about(g, "positive pushes %.40s along its axis, %s", name,
+                          fabs(x) > fabs(z) ? (x > 0 ? "to the right" : "to the left")
+                          : z > 0           ? "up"
+                                            : "down");
     }
-    if (plot_case_grounded(m->scene) > 0)
-        word(m, INK_CONTACT, "contacts: positive forces of the ground, normal and tangential");
-    gnuplot_set(m->g, "words_shown = %d", m->words);
+    if (plot_case_grounded(m->scene) > 0) {
+        gnuplot_legend(g, "ink[3]", 0, 0, "contacts", "");
+        gnuplot_about(g, "positive forces of the ground, normal and tangential");
+    }
+    gnuplot_note(g, "x points forward (right), z up; angles and torques: counter-clockwise");
+    gnuplot_note(g, "dashed: where an angle is 0");
 }
 
 static int draw_model(const struct scenario *s, const stance_case *c, void *asked)
 {
+    enum { WIDE = 632 }; /* px */
     struct look *const look = asked;
     stance_message message;
     const struct plot plot = {.title = s->title[0] ? s->title : s->name,
@@ -340,7 +367,7 @@ static int draw_model(const struct scenario *s, const stance_case *c, void *aske
     struct gnuplot g;
     if (!look->file && !gnuplot_directory(plot.directory))
         return EXIT_IO;
-    bool good = gnuplot_begin(&g, &plot, "model", plot_model_gp);
+    bool good = gnuplot_begin(&g, &plot, "model", NULL);
     struct model *const m = good ? gnuplot_room(&g, 1, sizeof *m) : NULL;
     if (m) {
         m->scene = s->scene;
@@ -348,16 +375,26 @@ static int draw_model(const struct scenario *s, const stance_case *c, void *aske
         m->g = &g;
         make_model(m);
         gnuplot_say(&g, "The model in its first posture, scene %.60s", s->scene->name);
-        gnuplot_set(&g,
-                    "low_x = %#.9g; high_x = %#.9g; low_y = %#.9g; high_y = %#.9g; size = %#.9g",
-                    m->range[0].low, m->range[0].high, m->range[1].low, m->range[1].high, m->size);
-        gnuplot_set(&g, "has_place = %d; place_x = %#.9g; place_y = %#.9g; fall = %#.9g",
-                    is_place(m, 0), c->position[0], c->position[1],
-                    tan(c->robot[STANCE_ROBOT_SLOPE]));
+        gnuplot_set(
+            &g,
+            "array ink[3] = [shade(0x0072b2), shade(0xd55e00), shade(0x009e73)]; plain = "
+            "equal = scaled = 1; set style textbox opaque noborder margins 0.3,0.1; set clip two; "
+            "chart_width = %d",
+            WIDE);
+        gnuplot_panel(&g, 0, "");
         put_ground(m);
         put_lines(m);
         put_things(m);
+        put_labels(m);
+        if (is_place(m, 0)) {
+            gnuplot_series(&g, "using 1:2 with points pt 6 ps 2 lw 2 lc rgb ink[1]");
+            GNUPLOT_ROW(&g, c->position[0], c->position[1]);
+        }
         put_words(m);
+        const double tall = m->range[1].high - m->range[1].low;
+        gnuplot_set(&g, "panel_own[1] = %.10g", WIDE * tall / (m->range[0].high - m->range[0].low));
+        gnuplot_axis(&g, 'x', PLOT_LINEAR, m->range[0], "", "");
+        gnuplot_axis(&g, 'y', PLOT_LINEAR, m->range[1], "", "");
     }
     good = good && gnuplot_end(&g);
     if (!good)

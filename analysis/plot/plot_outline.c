@@ -1,7 +1,7 @@
 /* plot_outline.c - the domains of an outcome over the same two axes in one frame: an outline for
  * each file, and in it for each value of the other axes. */
 #include "boundary.h"
-#include "plot_allowed.h"
+#include "plot_layout.h"
 #include "runner/base/message.h"
 
 #include <math.h>
@@ -217,14 +217,14 @@ static void put(struct page *page)
 {
     struct gnuplot *const g = &page->g;
     bool cross = true;
+    double zero;
     gnuplot_say(g, "Outlines of where the outcome is: %s; beside them its share of cases",
                 results_kind_names[page->of]);
     for (int k = 0; k < 2; k++) {
         choose_scale(page, k);
         const struct plot_axis along = on_page(page, 0, k);
         plot_axis_write(&along, g, k == 0 ? 'x' : 'y');
-        cross = cross && along.axis->offset && along.scale == PLOT_LINEAR && along.range.low < 0 &&
-                along.range.high > 0;
+        cross = cross && plot_zero_place(&along, &zero);
     }
     page->swept = find_swept(page); /* what the values in the legend are of */
     const char *const swept = page->swept ? look_label(g->plot->look, page->swept) : "";

@@ -167,7 +167,7 @@ bool plot_phase(const struct plot_case *c)
     char legend[3][200] = {"", "", ""};
     if (walk_footfalls(c, time) < 2)
         return true;
-    if (!plot_case_begin(c, &g, "phase", NULL, "Angles against their rates"))
+    if (!plot_case_begin(c, &g, "phase", "Angles against their rates"))
         return false;
     for (int j = 0; j < c->scenario->scene->postures; j++)
         put_phase(&g, c, c->scenario->scene->posture[j], legend);

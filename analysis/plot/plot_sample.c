@@ -120,7 +120,6 @@ static void put_axis(struct page *page, int k, char which)
     struct doe_bins bins;
     const struct span *span = &page->span[k];
     struct plot_range range = span->shown;
-    size_t words = 0;
 
     if (!gnuplot_needs(g, doe_bins_make(&bins, page->r, k, TICS, g->plot->message)))
         return;
@@ -136,8 +135,6 @@ static void put_axis(struct page *page, int k, char which)
     plot_label_write(&v->of, g, axis);
     if (!listed)
         return;
-    gnuplot_set(g, "array %s_word[%zu]\narray %s_at[%zu]", axis, bins.count + 2, axis,
-                bins.count + 2);
     for (size_t b = 0; b < bins.count + 2; b++) {
         const bool beside = b >= bins.count, up = b > bins.count;
         if (beside && (!span->none[up] || isinf(bins.bin[up ? bins.count - 1 : 0].centre)))
@@ -145,10 +142,9 @@ static void put_axis(struct page *page, int k, char which)
         const double centre = !beside ? bins.bin[b].centre : up ? INFINITY : -INFINITY;
         char text[40];
         results_number_text(centre, 0, text, sizeof text);
-        gnuplot_set(g, "%s_at[%zu] = %#.17g", axis, ++words, place_of(page, k, centre));
-        gnuplot_tic(g, v->word ? v->word[(int)centre] : text, "%s_word[%zu]", axis, words);
+        gnuplot_word(g, place_of(page, k, centre), v->word ? v->word[(int)centre] : text);
     }
-    gnuplot_set(g, "%s_words = %zu; panel_wordy[panels] = %d", axis, words, v->word != NULL);
+    gnuplot_set(g, "panel_wordy[panels] = %d", v->word != NULL);
 }
 
 /* ---- the scatter -------------------------------------------------------------------------- */

@@ -13,7 +13,6 @@ struct strip {
     struct figure other[MOST_FIGURES]; /* of the other case, without points from its end on */
     double spacing;                    /* m: between figures */
     struct plot_range height;          /* m: what is shown */
-    double ground[PLOT_GROUND][2];     /* of a figure */
     bool follows;                      /* places move with the figures */
 };
 
@@ -23,26 +22,25 @@ struct strip {
  * these. */
 static double measure_figures(struct strip *strip)
 {
-    double half = 0;
-    strip->height = (struct plot_range){0, 1e-9};
-    for (int i = 0; i < 2 * strip->count; i++) {
-        struct figure *const own = &strip->figure[i / 2];
-        const struct figure *const figure = i % 2 ? &strip->other[i / 2] : own;
+    struct plot_range range[2] = {{0, 0}, {0, 1e-9}};
+    for (int i = 0; i < strip->count; i++) {
+        struct figure *const own = &strip->figure[i];
         own->base = plot_ground_base(strip->c, own->time, own->centre);
-        for (int p = 0; p < figure->points; p++) {
-            half = fmax(half, fabs(figure->point[p][0] - own->centre));
-            plot_widen(&strip->height, figure->point[p][1] - own->base);
-        }
+        figure_widen(range, own, own->centre, own->base);
+        figure_widen(range, &strip->other[i], own->centre, own->base);
     }
-    return half;
+    strip->height = range[1];
+    return fmax(-range[0].low, range[0].high);
 }
 
-/* The ground that a figure stands on. Returns how many points it has. */
-static size_t find_ground(struct strip *strip, int i)
+/* The ground that a figure stands on; its lowest height. */
+static double put_ground(struct gnuplot *g, const struct strip *strip, int i)
 {
     const struct figure *const of = &strip->figure[i];
-    return plot_ground(strip->c, of->time, of->centre - 0.5 * strip->spacing,
-                       of->centre + 0.5 * strip->spacing, strip->ground);
+    const double half = 0.5 * strip->spacing;
+    return plot_ground(g, strip->c, of->time,
+                       (struct plot_range){of->centre - half, of->centre + half},
+                       (i + 0.5) * strip->spacing - of->centre, -of->base);
 }
 
 /* Where and how large the figures are drawn. */
@@ -59,9 +57,7 @@ static void measure(struct strip *strip)
     const double half = measure_figures(strip), tall = strip->height.high - strip->height.low;
     strip->spacing = 2.1 * fmax(half, 0.1 * tall);
     for (int i = 0; i < strip->count; i++)
-        for (size_t k = find_ground(strip, i); k-- > 0;)
-            strip->height.low =
-                fmin(strip->height.low, strip->ground[k][1] - strip->figure[i].base);
+        plot_widen(&strip->height, put_ground(NULL, strip, i) - strip->figure[i].base);
     strip->height.low -= 0.05 * tall;
     strip->height.high += 0.06 * tall;
 }
@@ -97,14 +93,8 @@ static void put_row(struct gnuplot *g, struct strip *strip, int first, int colum
         "1:2:(" FIGURE_COLOUR ") with points pt 7 ps 0.8 lc rgb variable"};
     const int end = first + columns < strip->count ? first + columns : strip->count;
     gnuplot_series(g, "using 1:2 with lines lw 2 lc rgb 0xa0a0a0");
-    for (int i = first; i < end; i++) {
-        const size_t points = find_ground(strip, i);
-        for (size_t k = 0; k < points; k++)
-            GNUPLOT_ROW(g,
-                        (i + 0.5) * strip->spacing + strip->ground[k][0] - strip->figure[i].centre,
-                        strip->ground[k][1] - strip->figure[i].base);
-        gnuplot_gap(g);
-    }
+    for (int i = first; i < end; i++)
+        put_ground(g, strip, i);
     for (int k = strip->c->other ? 0 : 1; k < 3; k++) {
         gnuplot_series(g, "using %s", styles[k]);
         for (int i = first; i < end; i++)
@@ -140,7 +130,7 @@ bool plot_strip(const struct plot_case *c)
     bool drawn;
     if (!plot_steps(c, &drawn) || drawn)
         return drawn;
-    if (!plot_case_begin(c, &g, "strip", NULL, "Stick figures"))
+    if (!plot_case_begin(c, &g, "strip", "Stick figures"))
         return false;
     struct strip *const strip = gnuplot_room(&g, 1, sizeof *strip);
     if (!strip)

@@ -115,7 +115,6 @@ static const char metre[] = "metre(_) = panel_high[1]/(y1_high - y1_low)*(x_high
 /* What is under the feet of each figure. */
 static void put_plates(struct case_page *page, const struct figure *figure)
 {
-    static double point[PLOT_GROUND][2]; /* large, as the figures */
     const int contacts = plot_case_grounded(page->c->scenario->scene);
     gnuplot_series(&page->g, "using " FIGURE_PLACE_ALONE " with lines lw 2 lc rgb 0xa0a0a0");
     for (int i = 0; i <= STEPS * FIGURES; i++) {
@@ -123,12 +122,9 @@ static void put_plates(struct case_page *page, const struct figure *figure)
         for (int k = 0; k < contacts; k++)
             plot_widen(&x, figure[i].contact[k][0]);
         const double more = 0.1 * (x.high - x.low) + 0.02;
-        const size_t points =
-            plot_ground(page->c, figure[i].time, x.low - more, x.high + more, point);
-        for (size_t k = 0; k < points; k++)
-            GNUPLOT_ROW(&page->g, point[k][0] - figure[i].centre, point[k][1] - figure[i].base, 0,
-                        figure[i].time);
-        gnuplot_gap(&page->g);
+        plot_ground(&page->g, page->c, figure[i].time,
+                    (struct plot_range){x.low - more, x.high + more}, -figure[i].centre,
+                    -figure[i].base);
     }
 }
 
@@ -142,14 +138,12 @@ static void put_figures(struct case_page *page)
     double wide = 0;
 
     for (int i = 0; i <= STEPS * FIGURES; i++) {
-        struct plot_range x = PLOT_NOTHING;
+        struct plot_range range[2] = {PLOT_NOTHING, height};
         figure_make(&figure[i], c, figure_row(c->t, begin + (i + 0.1) * step));
         figure[i].open = true;
-        for (int p = 0; p < figure[i].points; p++) {
-            plot_widen(&x, figure[i].point[p][0]);
-            plot_widen(&height, figure[i].point[p][1] - figure[i].base);
-        }
-        wide = fmax(wide, x.high - x.low);
+        figure_widen(range, &figure[i], 0, figure[i].base);
+        height = range[1];
+        wide = fmax(wide, range[0].high - range[0].low);
     }
     const double tall = height.high - height.low, fall = figure_fall(c);
     gnuplot_set(g,

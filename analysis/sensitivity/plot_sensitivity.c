@@ -184,14 +184,13 @@ static void put_axes(struct drawing *d)
                      "sigma, standard deviation of the effects", "");
     else
         gnuplot_axis(g, 'y', PLOT_LIST, (struct plot_range){-0.67, (double)n - 0.33}, "", "");
-    gnuplot_set(g, "y_words = %zu; array y_word[%zu]; array y_at[%zu]", n, n, n);
     for (size_t i = 0; i < n; i++) {
         sensitivity_factor_text(d->study, d->study->order[i], text, sizeof text);
         const char *const name = look_label(g->plot->look, text);
         if (d->morris)
             gnuplot_note(g, "%zu  %s", i + 1, name);
-        gnuplot_tic(g, name, "y_word[%zu]", i + 1);
-        gnuplot_set(g, "y_at[%zu] = %zu", i + 1, n - 1 - i);
+        else
+            gnuplot_word(g, (double)(n - 1 - i), name);
     }
     for (int k = 0; k < SERIES && !d->morris; k++)
         if (d->study->table[0].s.measure[series[k].measure])
