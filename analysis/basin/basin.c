@@ -108,26 +108,23 @@ static bool contains(const int *list, int count, int axis)
     return false;
 }
 
-/* The axes that --by names, in the file's order. */
-static bool choose_by(struct basin *b, stance_message *message)
+/* The axes that --by names. */
+static bool choose_by(const struct basin *b, bool wanted[SCENARIO_MAX_AXES],
+                      stance_message *message)
 {
     const struct results *r = b->r;
-    bool wanted[SCENARIO_MAX_AXES] = {false};
     for (size_t k = 0; k < b->choice.by_count; k++) {
         int a = 0;
         char meant[128];
         while (a < r->axes && strcmp(r->axis[a].name, b->choice.by[k]) != 0)
             a++;
-        if (a == r->axes || strcmp(r->axis[a].name, "sample") == 0)
+        if (a == r->axes || a == r->sample)
             return complain(
                 message,
                 "stance basin: --by takes an axis of the grid, and '%.40s' is none of %.60s%s",
                 b->choice.by[k], r->file, basin_meant(r, b->choice.by[k], meant));
         wanted[a] = true;
     }
-    for (int a = 0; a < r->axes; a++)
-        if (wanted[a])
-            b->by[b->by_axes++] = a;
     return true;
 }
 
@@ -215,19 +212,20 @@ static bool is_around(const struct basin *b)
 static bool choose_axes(struct basin *b, stance_message *message)
 {
     const struct results *r = b->r;
-    if (!choose_by(b, message))
+    bool wanted[SCENARIO_MAX_AXES] = {false};
+    if (!choose_by(b, wanted, message))
         return false;
     b->box = 1;
     for (int a = 0; a < r->axes; a++) {
         const struct results_axis *axis = &r->axis[a];
-        const bool by = contains(b->by, b->by_axes, a), sample = strcmp(axis->name, "sample") == 0;
-        if (!by && is_start(axis) && axis->count > 1) {
+        const bool all = b->choice.by_count + b->choice.rank == 0 && !r->single,
+                   start = is_start(axis);
+        if (!wanted[a] && start && axis->count > 1) {
             b->start[b->start_axes++] = a;
             add_unit(b, axis->unit);
-        } else if (!by && sample && b->choice.rank == 0) {
+        } else if (!wanted[a] && a == r->sample && b->choice.rank == 0) {
             b->averaged = a;
-        } else if (!by && (sample || (b->choice.by_count + b->choice.rank == 0 && !is_start(axis) &&
-                                      !r->single))) {
+        } else if (wanted[a] || a == r->sample || (all && !start)) {
             b->by[b->by_axes++] = a;
         }
     }
@@ -254,6 +252,7 @@ struct lattice {
     size_t *order[SCENARIO_MAX_AXES]; /* of the start axes: points by rising value */
     double *place[SCENARIO_MAX_AXES];
     uint64_t stride[SCENARIO_MAX_AXES]; /* of the file's axes */
+    size_t slices[SCENARIO_MAX_AXES];   /* points of these, 1 of the start axes */
     size_t origin[SCENARIO_MAX_AXES];   /* the place nearest to zero */
     struct basin_map map;
     uint8_t *kind; /* [map.cases] */
@@ -290,8 +289,10 @@ static bool make_lattice(struct lattice *lattice, const struct basin *b)
 {
     const struct results *r = b->r;
     *lattice = (struct lattice){.map = {.axes = b->start_axes, .cases = 1}};
-    for (int a = 0; a < r->axes; a++)
+    for (int a = 0; a < r->axes; a++) {
         lattice->stride[a] = statistics_stride(r, a);
+        lattice->slices[a] = contains(b->start, b->start_axes, a) ? 1 : r->axis[a].count;
+    }
     bool good = true;
     for (int d = 0; good && d < b->start_axes; d++)
         good = sort_axis(lattice, d, &r->axis[b->start[d]]);
@@ -302,13 +303,13 @@ static bool make_lattice(struct lattice *lattice, const struct basin *b)
     return lattice->kind != NULL;
 }
 
-/* The kinds of the cases of one slice, into lattice->kind. */
+/* The kinds of the cases of one slice, into lattice->kind; of starts it has point 0. */
 static void take_slice(struct lattice *lattice, const struct basin *b, const size_t *point)
 {
     size_t at[SCENARIO_MAX_AXES] = {0};
     uint64_t base = 0;
     for (int a = 0; a < b->r->axes; a++)
-        base += contains(b->start, b->start_axes, a) ? 0 : point[a] * lattice->stride[a];
+        base += point[a] * lattice->stride[a];
     for (uint64_t i = 0; i < lattice->map.cases; i++) {
         uint64_t index = base;
         for (int d = 0; d < b->start_axes; d++)
@@ -318,34 +319,11 @@ static void take_slice(struct lattice *lattice, const struct basin *b, const siz
     }
 }
 
-/* The next point of the axes that are no starts; false after the last. */
-static bool next_slice(const struct basin *b, size_t *point)
-{
-    for (int a = b->r->axes - 1; a >= 0; a--) {
-        if (contains(b->start, b->start_axes, a))
-            continue;
-        if (++point[a] < b->r->axis[a].count)
-            return true;
-        point[a] = 0;
-    }
-    return false;
-}
-
 size_t basin_row_of(const struct basin *b, const size_t *point)
 {
     size_t row = 0;
     for (int k = 0; k < b->by_axes; k++)
         row = row * b->r->axis[b->by[k]].count + point[b->by[k]];
-    return row;
-}
-
-/* The row of a slice that is added to it. */
-static struct basin_row *begin_slice(const struct basin *b, const size_t *point)
-{
-    struct basin_row *const row = &b->row[basin_row_of(b, point)];
-    for (int k = 0; k < b->by_axes; k++)
-        row->point[b->by[k]] = point[b->by[k]];
-    row->slices++;
     return row;
 }
 
@@ -395,9 +373,8 @@ static bool add_part(const struct basin *b, const struct lattice *lattice, struc
 
 /* draws[rows][draws] */
 static bool add_slice(struct basin *b, const struct lattice *lattice, const size_t *point,
-                      struct draw *draws)
+                      struct basin_row *row, struct draw *draws)
 {
-    struct basin_row *row = begin_slice(b, point);
     struct basin_volume volume;
     const double deviations = basin_map_deviations(b->choice.level);
     for (uint64_t i = 0; i < lattice->map.cases; i++) {
@@ -466,10 +443,9 @@ static void finish_row(const struct basin *b, struct basin_row *row, struct draw
 }
 
 /* Counts cases alone: a sample is no map. */
-static void add_sampled(struct basin *b, const struct lattice *lattice, const size_t *point,
+static void add_sampled(struct basin *b, const struct lattice *lattice, struct basin_row *row,
                         struct draw *draws)
 {
-    struct basin_row *row = begin_slice(b, point);
     struct draw *own = draws_of(b, row, draws);
     for (size_t i = 0; i < lattice->map.cases; i++) {
         if (basin_sample_counts(&b->sample, i)) {
@@ -542,13 +518,17 @@ static bool make_rows(struct basin *b, stance_message *message)
         free(draws);
         return statistics_no_memory(b->r, message);
     }
+    for (size_t k = 0; k < b->rows; k++)
+        statistics_row(b->r, b->by, b->by_axes, k, b->row[k].point);
     do {
+        struct basin_row *const row = &b->row[basin_row_of(b, point)];
+        row->slices++;
         take_slice(&lattice, b, point);
         if (sampled)
-            add_sampled(b, &lattice, point, draws);
+            add_sampled(b, &lattice, row, draws);
         else
-            good = add_slice(b, &lattice, point, draws);
-    } while (good && next_slice(b, point));
+            good = add_slice(b, &lattice, point, row, draws);
+    } while (good && basin_next_point(b->r->axes, lattice.slices, point));
     for (size_t k = 0; k < b->rows; k++)
         (sampled ? finish_sampled : finish_row)(b, &b->row[k], draws);
     for (size_t k = 0; k < b->rows * b->draws; k++) {
@@ -660,7 +640,7 @@ bool basin_print_boundary(const struct basin *b)
             good = table_write_csv(&t, stdout);
             table_clear(&t);
         }
-    } while (good && next_slice(b, point));
+    } while (good && basin_next_point(b->r->axes, lattice.slices, point));
     free_lattice(&lattice);
     table_free(&t);
     return good;

@@ -5,7 +5,6 @@
 #include "basin_print.h"
 
 #include "analysis/statistics/statistics.h"
-#include "runner/base/message.h"
 #include "runner/plan/allowed.h"
 
 #include <inttypes.h>
@@ -155,7 +154,7 @@ static const char text[] = BASIN_TITLE
     "farthest of each in units of the\nset, whose boundary is at 1, and which case that is\n\n"
     "{.excuses}]";
 
-static bool print_rows(const struct basin *b, const struct row *rows, enum table_form form)
+static int print_rows(const struct basin *b, const struct row *rows, enum table_form form)
 {
     struct table t = {0};
     bool any_glued = false, unreached = false, excused = false;
@@ -185,31 +184,30 @@ static bool print_rows(const struct basin *b, const struct row *rows, enum table
     return basin_say(b->r, form, facts, &t, "at/ starts allowed used outside why", text);
 }
 
-bool basin_print_allowed(const struct basin *b, enum table_form form, bool *usage,
-                         stance_message *message)
+int basin_print_allowed(const struct basin *b, enum table_form form, stance_message *message)
 {
     struct motion motion = {0};
-    *usage = b->averaged >= 0 || b->rows > MOST_ROWS;
+    bool wrong = b->averaged >= 0 || b->rows > MOST_ROWS;
     for (size_t k = 0; k < b->rows; k++)
-        *usage = *usage || b->row[k].slices > 1;
-    if (*usage)
-        return complain(message,
-                        "stance basin: --allowed needs a row for each point of the parameters, "
-                        "%d of them at most: no --by, no sample of parameters",
-                        MOST_ROWS);
-    struct row *const rows = calloc(b->rows + 1, sizeof *rows);
-    if (!rows)
-        return statistics_no_memory(b->r, message);
+        wrong = wrong || b->row[k].slices > 1;
+    if (wrong)
+        return refuse(message,
+                      "stance basin: --allowed needs a row for each point of the parameters, "
+                      "%d of them at most: no --by, no sample of parameters",
+                      MOST_ROWS);
     const struct scenario *const s = results_swept(b->r, message);
-    const bool good = s && basin_numbers(b->r, "slip_distance", &motion.slip, message) &&
+    struct row *const rows = calloc(b->rows + 1, sizeof *rows);
+    const bool good = s && (rows || statistics_no_memory(b->r, message)) &&
+                      basin_numbers(b->r, "slip_distance", &motion.slip, message) &&
                       basin_numbers(b->r, "footfalls", &motion.footfalls, message) &&
                       basin_numbers(b->r, "least_normal_force", &motion.least, message) &&
-                      count_rows(b, s, rows, &motion, message) && print_rows(b, rows, form);
-    for (size_t k = 0; k < b->rows; k++)
+                      count_rows(b, s, rows, &motion, message);
+    const int code = good ? print_rows(b, rows, form) : EXIT_IO;
+    for (size_t k = 0; rows && k < b->rows; k++)
         allowed_free(&rows[k].of);
     free(motion.slip);
     free(motion.footfalls);
     free(motion.least);
     free(rows);
-    return good;
+    return code;
 }

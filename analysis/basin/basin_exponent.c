@@ -20,11 +20,27 @@ const char *basin_refusal_text(enum basin_refusal refusal)
     return text[refusal];
 }
 
-/* Points of log f over log e. */
+/* Points of log f over log e, and their least squares. */
 struct line {
     int n;
     double y[BASIN_SCALES];
+    double slope, scatter; /* and its standard error from the scatter about the line */
 };
+
+static void fit(struct line *line)
+{
+    const double middle = (line->n - 1) / 2.0;
+    double mean = 0, product = 0, square = 0, misfit = 0;
+    for (int k = 0; k < line->n; k++) {
+        mean += line->y[k] / line->n;
+        product += (k - middle) * line->y[k];
+        square += (k - middle) * (k - middle);
+    }
+    line->slope = product / square;
+    for (int k = 0; k < line->n; k++)
+        misfit += pow(line->y[k] - mean - line->slope * (k - middle), 2);
+    line->scatter = sqrt(misfit / (line->n - 2) / square);
+}
 
 /* Points first ... n - 1 or, with a tile, those without it; false where one has no logarithm. */
 static bool take_points(const struct basin_uncertainty *u, int n, int without, struct line *line)
@@ -36,32 +52,8 @@ static bool take_points(const struct basin_uncertainty *u, int n, int without, s
             return false;
         line->y[k] = log((double)uncertain / (double)u->counted[k]) / log(2);
     }
+    fit(line);
     return true;
-}
-
-static double slope_of(const struct line *line)
-{
-    const double middle = (line->n - 1) / 2.0;
-    double product = 0, square = 0;
-    for (int k = 0; k < line->n; k++) {
-        product += (k - middle) * line->y[k];
-        square += (k - middle) * (k - middle);
-    }
-    return product / square;
-}
-
-/* Standard error of the slope from the scatter of the points about the line. */
-static double scatter_of(const struct line *line, double slope)
-{
-    const double middle = (line->n - 1) / 2.0;
-    double mean = 0, square = 0, misfit = 0;
-    for (int k = 0; k < line->n; k++) {
-        mean += line->y[k] / line->n;
-        square += (k - middle) * (k - middle);
-    }
-    for (int k = 0; k < line->n; k++)
-        misfit += pow(line->y[k] - mean - slope * (k - middle), 2);
-    return sqrt(misfit / (line->n - 2) / square);
 }
 
 /* Whether the last slope of neighbours leaves the others: a fractal's wave about their mean. */
@@ -101,7 +93,7 @@ static double tiles_error(const struct basin_uncertainty *u, int n)
     double slope[BASIN_TILES];
     for (int tile = 0; tile < BASIN_TILES; tile++) {
         struct line without;
-        slope[tile] = take_points(u, n, tile, &without) ? slope_of(&without) : NAN;
+        slope[tile] = take_points(u, n, tile, &without) ? without.slope : NAN;
     }
     return jackknife_error(slope);
 }
@@ -118,13 +110,13 @@ struct basin_exponent basin_exponent(const struct basin_uncertainty *u)
         } else if (is_bent(&line) || fabs(drift_of(&line)) > BASIN_DRIFT) {
             exponent.refusal = BASIN_BENT;
         } else {
-            const double slope = slope_of(&line), tiles = tiles_error(u, n);
+            const double slope = line.slope, tiles = tiles_error(u, n);
             if (isnan(tiles)) {
                 exponent.refusal = BASIN_FEW;
                 continue;
             }
-            const double own = hypot(hypot(scatter_of(&line, slope), 2 * drift_of(&line)),
-                                     BASIN_WAVE * fmax(0, 1 - slope));
+            const double own =
+                hypot(hypot(line.scatter, 2 * drift_of(&line)), BASIN_WAVE * fmax(0, 1 - slope));
             return (struct basin_exponent){slope, hypot(tiles, own), n, BASIN_FITTED};
         }
     }

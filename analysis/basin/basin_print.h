@@ -6,7 +6,7 @@
 #include "basin.h"
 #include "basin_rays.h"
 
-#include "analysis/table/table.h"
+#include "analysis/table/report.h"
 
 enum { BASIN_SHOWN = 40 }; /* rows that people see */
 
@@ -43,25 +43,24 @@ int basin_within_make(struct results *own, const struct results *r,
                       const struct basin_within *within, char *said, size_t size,
                       stance_message *message);
 
-/* Answers to single questions. *usage: it is the request that is at fault; *message says why. */
-bool basin_print_threshold(const struct basin *basin, const char *path, double threshold,
-                           enum table_form form, bool *usage, stance_message *message);
-bool basin_print_loss(const struct results *r, const char *path, enum results_kind of,
-                      enum table_form form, bool *usage, stance_message *message);
-bool basin_print_answer(const struct basin *basin, const char *answer, enum table_form form,
-                        bool *usage, stance_message *message);
-
-bool basin_print_allowed(const struct basin *basin, enum table_form form, bool *usage,
-                         stance_message *message);
+/* Answers to single questions. Each returns an exit code; *message says why there is none. */
+int basin_print_threshold(const struct basin *basin, const char *path, double threshold,
+                          enum table_form form, stance_message *message);
+int basin_print_loss(const struct results *r, const char *path, enum results_kind of,
+                     enum table_form form, stance_message *message);
+int basin_print_answer(const struct basin *basin, const char *answer, enum table_form form,
+                       stance_message *message);
+int basin_print_allowed(const struct basin *basin, enum table_form form, stance_message *message);
 /* "stabilised with settle_time <= 2": what starts are asked for, until the next call. */
 const char *basin_asked(const struct basin *basin);
 
 /* Adds to facts of any of these what the file is, with which the texts of most begin. */
 #define BASIN_TITLE "{.name}\n{.file}: {.cases} cases\n\n"
 json_t *basin_titled(const struct results *r, json_t *facts);
-/* Says these facts with the rows of a table, of which a view is shown (table_say); frees both. */
-bool basin_say(const struct results *r, enum table_form form, json_t *facts, struct table *t,
-               const char *view, const char *text);
+/* Says these facts with the rows of a table, of which a view is shown (table_say); frees both.
+ * Returns an exit code. */
+int basin_say(const struct results *r, enum table_form form, json_t *facts, struct table *t,
+              const char *view, const char *text);
 /* Adds to a text among them a line without its end; a line, `otherwise` without a range. */
 void basin_add_axis(json_t *facts, const char *key, const struct results_axis *axis);
 void basin_add_factors(json_t *facts, const char *key, const struct basin_sample *sample,

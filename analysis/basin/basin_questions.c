@@ -3,7 +3,6 @@
 #include "basin_print.h"
 
 #include "analysis/statistics/statistics.h"
-#include "runner/base/message.h"
 #include "runner/store/results.h"
 
 #include <gsl/gsl_cdf.h>
@@ -19,11 +18,11 @@ json_t *basin_titled(const struct results *r, json_t *facts)
     return facts;
 }
 
-bool basin_say(const struct results *r, enum table_form form, json_t *facts, struct table *t,
-               const char *view, const char *text)
+int basin_say(const struct results *r, enum table_form form, json_t *facts, struct table *t,
+              const char *view, const char *text)
 {
-    return table_say(form, table_show(basin_titled(r, facts), "rows", t, view, BASIN_SHOWN), text,
-                     t);
+    return report_code(
+        table_say(form, table_show(basin_titled(r, facts), "rows", t, view, BASIN_SHOWN), text, t));
 }
 
 /* ---- thresholds --------------------------------------------------------------------------- */
@@ -153,8 +152,8 @@ static const struct say_key threshold_rows[] = {TABLE_KEY_AT THRESHOLD(TABLE_KEY
 const struct say_key basin_threshold_keys[] = {
     THRESHOLD_HEAD(TABLE_KEY){"rows", "", threshold_rows}, {0}};
 
-bool basin_print_threshold(const struct basin *b, const char *path, double threshold,
-                           enum table_form form, bool *usage, stance_message *message)
+int basin_print_threshold(const struct basin *b, const char *path, double threshold,
+                          enum table_form form, stance_message *message)
 {
     struct table t = {0};
     char meant[128];
@@ -164,12 +163,11 @@ bool basin_print_threshold(const struct basin *b, const char *path, double thres
             along = k;
         else
             others[count++] = b->by[k];
-    *usage = along < 0 || !statistics_is_monotone(&b->r->axis[b->by[along]]);
-    if (*usage)
-        return complain(message,
-                        "stance basin: --threshold needs --of PATH of a parameter whose values "
-                        "rise or fall on the grid, not '%.40s'%s",
-                        path, basin_meant(b->r, path, meant));
+    if (along < 0 || !statistics_is_monotone(&b->r->axis[b->by[along]]))
+        return refuse(message,
+                      "stance basin: --threshold needs --of PATH of a parameter whose values "
+                      "rise or fall on the grid, not '%.40s'%s",
+                      path, basin_meant(b->r, path, meant));
     const struct results_axis *const axis = &b->r->axis[b->by[along]];
     for (size_t row = 0; row < b->rows; row++) {
         if (b->row[row].point[b->by[along]] > 0)
@@ -268,8 +266,8 @@ static int which_end(const struct results_axis *axis, const char *value)
 static const struct say_key loss_rows[] = {LOSS(TABLE_KEY){0}};
 const struct say_key basin_loss_keys[] = {LOSS_HEAD(TABLE_KEY){"rows", "", loss_rows}, {0}};
 
-bool basin_print_loss(const struct results *r, const char *path, enum results_kind of,
-                      enum table_form form, bool *usage, stance_message *message)
+int basin_print_loss(const struct results *r, const char *path, enum results_kind of,
+                     enum table_form form, stance_message *message)
 {
     struct basin_loss loss;
     struct table t = {0};
@@ -282,17 +280,14 @@ bool basin_print_loss(const struct results *r, const char *path, enum results_ki
             a != r->sample && r->axis[a].count > 1)
             along = a;
     const int end = along < 0 ? -1 : which_end(&r->axis[along], equals ? equals + 1 : NULL);
-    *usage = along < 0 || end < 0;
-    if (*usage)
-        return complain(message,
-                        "stance basin: --lost takes PATH or PATH=VALUE of an axis of the grid with "
-                        "several values, VALUE its first or last, not '%.40s'%s",
-                        path, along < 0 ? basin_meant(r, path, meant) : "");
+    if (along < 0 || end < 0)
+        return refuse(message,
+                      "stance basin: --lost takes PATH or PATH=VALUE of an axis of the grid with "
+                      "several values, VALUE its first or last, not '%.40s'%s",
+                      path, along < 0 ? basin_meant(r, path, meant) : "");
     const bool down = end < 2 ? end == 1 : basin_more_at_last(r, along, of);
-    if (!basin_lose(r, along, down, of, &loss)) {
-        free(loss.lost);
-        return statistics_no_memory(r, message);
-    }
+    if (!basin_lose(r, along, down, of, &loss))
+        return report_code(statistics_no_memory(r, message));
     const struct results_axis *axis = &r->axis[along];
     const size_t last = axis->count - 1;
     uint64_t gone = 0;
@@ -394,28 +389,26 @@ static void sort_numbers(const struct basin *b, const double *value, double *num
 static const struct say_key answer_rows[] = {TABLE_KEY_AT ANSWER(TABLE_KEY){0}};
 const struct say_key basin_answer_keys[] = {ANSWER_HEAD(TABLE_KEY){"rows", "", answer_rows}, {0}};
 
-bool basin_print_answer(const struct basin *b, const char *answer, enum table_form form,
-                        bool *usage, stance_message *message)
+int basin_print_answer(const struct basin *b, const char *answer, enum table_form form,
+                       stance_message *message)
 {
     struct table t = {0};
     double *value = NULL;
     struct basin_lack lack = {0};
     if (!basin_numbers(b->r, answer, &value, message))
-        return false;
-    *usage = !value;
+        return EXIT_IO;
     if (!value)
-        return complain(message, "stance basin: %.90s stores no number '%.60s'", b->r->file,
-                        answer);
+        return refuse(message, "stance basin: %.90s stores no number '%.60s'", b->r->file, answer);
     double *number = malloc(b->r->cases * sizeof *number);
     uint64_t *begin = calloc(2 * b->rows + 1, sizeof *begin);
-    const bool room = number && begin;
-    if (!room || !basin_lacks(b->r, b->choice.of, value, &lack, message)) {
+    uint64_t *const largest = begin + b->rows + 1;
+    const bool good = (number && begin) || statistics_no_memory(b->r, message);
+    if (!good || !basin_lacks(b->r, b->choice.of, value, &lack, message)) {
         free(number);
         free(begin);
         free(value);
-        return !room && statistics_no_memory(b->r, message);
+        return EXIT_IO;
     }
-    uint64_t *largest = begin + b->rows + 1;
     if (lack.inferred > 0)
         fprintf(stderr,
                 "stance basin: warning: %" PRIu64 " of these cases were inferred and have no %s: "

@@ -141,11 +141,6 @@ static void add_postures(struct ranges *r, const struct scenario_values *values)
 
 /* ---- rays --------------------------------------------------------------------------------- */
 
-static bool simulate(void *context, size_t count, const double *x, uint8_t *end)
-{
-    return starts_run(context, count, x, end);
-}
-
 /* The axes that starts are asked for along. */
 static void take_axes(const struct ranges *r, struct starts *starts)
 {
@@ -173,7 +168,7 @@ static void limit_ranges(struct ranges *r, struct starts *starts, int a, int up)
 static bool end_rays(struct ranges *r, struct starts *starts, struct descend_ray *ray, size_t count,
                      double first, double growth)
 {
-    const struct descend_set set = {r->axes, UINT64_C(1) << r->of, simulate, starts};
+    const struct descend_set set = {r->axes, UINT64_C(1) << r->of, starts_run, starts};
     const struct descend_way way = {first, growth - 1, false, WIDTH, NOTHING * first};
     for (size_t k = 0; k < count; k++) {
         ray[k].most = INFINITY;
@@ -474,16 +469,8 @@ static bool choose(struct ranges *r, struct starts *starts)
 
 const char *ranges_end(uint8_t end)
 {
-    static const char *const name[] = {
-        [STANCE_NONE] = "nothing",
-#define RANGES_NAME(NAME, name, number, text) [STANCE_##NAME] = #name,
-        STANCE_OUTCOMES(RANGES_NAME)
-#undef RANGES_NAME
-            [STARTS_FAILED] = "failed",
-        [STARTS_IMPOSSIBLE] = "no start",
-        [RANGES_OPEN] = "not lost",
-    };
-    return name[end];
+    static const char *const name[] = {"failed", "no start", "not lost"};
+    return end < STARTS_FAILED ? stance_outcome_name[end] : name[end - STARTS_FAILED];
 }
 
 /* Why there are no ranges though there are designs: the equilibrium itself has that end. */

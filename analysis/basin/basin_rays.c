@@ -45,13 +45,6 @@ static struct basin_ray follow(const struct results_axis *scale, const size_t *o
     return ray;
 }
 
-size_t basin_rays_point(const struct basin_rays *rays, size_t row, int k)
-{
-    for (int j = rays->by_axes - 1; j > k; j--)
-        row /= rays->r->axis[rays->by[j]].count;
-    return row % rays->r->axis[rays->by[k]].count;
-}
-
 static void follow_all(struct basin_rays *rays, const size_t *order)
 {
     const struct results *r = rays->r;
@@ -59,9 +52,8 @@ static void follow_all(struct basin_rays *rays, const size_t *order)
     const uint64_t step = statistics_stride(r, rays->scale),
                    next = statistics_stride(r, rays->sample.axis);
     for (size_t row = 0; row < rays->rows; row++) {
-        uint64_t first = 0;
-        for (int k = 0; k < rays->by_axes; k++)
-            first += basin_rays_point(rays, row, k) * statistics_stride(r, rays->by[k]);
+        size_t point[SCENARIO_MAX_AXES];
+        const uint64_t first = statistics_row(r, rays->by, rays->by_axes, row, point);
         for (size_t p = 0; p < rays->sample.points; p++)
             rays->ray[row * rays->sample.points + p] =
                 follow(scale, order, r->kind + first + p * next, step, rays->of);
@@ -151,9 +143,8 @@ static void add_end(struct table *t, const struct basin_rays *rays, size_t p,
 
 static void add_parameters(struct table *t, const struct basin_rays *rays, size_t row)
 {
-    size_t point[SCENARIO_MAX_AXES] = {0};
-    for (int k = 0; k < rays->by_axes; k++)
-        point[rays->by[k]] = basin_rays_point(rays, row, k);
+    size_t point[SCENARIO_MAX_AXES];
+    statistics_row(rays->r, rays->by, rays->by_axes, row, point);
     table_axes(t, rays->r, rays->by, rays->by_axes, point);
 }
 

@@ -75,7 +75,4 @@ static inline double basin_ray_middle(const struct basin_ray *ray)
 {
     return 0.5 * (ray->low + ray->high);
 }
-/* Point of axis by[k] that a row has. */
-size_t basin_rays_point(const struct basin_rays *rays, size_t row, int k);
-
 #endif

@@ -28,11 +28,6 @@ static void tell(void *context, uint64_t more)
                      own->rows, more);
 }
 
-static bool simulate(void *context, size_t count, const double *z, uint8_t *end)
-{
-    return starts_run(context, count, z, end);
-}
-
 /* Where the paths of the rays stand in the values; false: one is not moved by a factor of its own,
  * over a range. */
 static bool find_paths(struct simulator *own, const struct basin_rays *rays)
@@ -63,13 +58,8 @@ static bool begin(struct simulator *own, const struct basin_rays *rays, size_t r
     if (rays->sample.factors > DESCEND_DIMENSIONS || !r->read)
         return complain(message, "%.150s: its scenario cannot be simulated by this version",
                         r->file);
-    uint64_t index = 0;
-    for (int a = 0; a < r->axes; a++) {
-        size_t at = 0;
-        for (int k = 0; k < rays->by_axes; k++)
-            at = rays->by[k] == a ? basin_rays_point(rays, row, k) : at;
-        index = index * r->axis[a].count + at;
-    }
+    size_t point[SCENARIO_MAX_AXES];
+    const uint64_t index = statistics_row(r, rays->by, rays->by_axes, row, point);
     const bool good = starts_begin(&own->starts, r->read, index, message);
     own->starts.axes = (int)rays->sample.factors;
     return good && (find_paths(own, rays) ||
@@ -115,11 +105,6 @@ static size_t choose_starts(const struct basin_rays *rays, size_t row, const str
 bool basin_rays_nearest(const struct basin_rays *rays, size_t row, size_t starts,
                         struct basin_nearest *nearest, stance_message *message)
 {
-    static const stance_outcome outcome[RESULTS_OUTCOMES] = {
-#define DESCEND_OUTCOME(NAME, name, number, text) [RESULTS_##NAME] = STANCE_##NAME,
-        STANCE_OUTCOMES(DESCEND_OUTCOME)
-#undef DESCEND_OUTCOME
-    };
     double start[DESCEND_STARTS * DESCEND_DIMENSIONS], r[DESCEND_STARTS], most = 0;
     struct simulator *own = calloc(1, sizeof *own);
     const struct results_axis *scale = &rays->r->axis[rays->scale];
@@ -134,8 +119,8 @@ bool basin_rays_nearest(const struct basin_rays *rays, size_t row, size_t starts
         most = fmax(most, scale->value[i]);
     const size_t chosen = choose_starts(rays, row, own, starts, start, r);
     /* Starts whose simulation fails count as inside: a shorter distance is not made up. */
-    const uint64_t inside = UINT64_C(1) << outcome[rays->of] | UINT64_C(1) << STARTS_FAILED;
-    const struct descend_set set = {own->starts.axes, inside, simulate, &own->starts};
+    const uint64_t inside = UINT64_C(1) << starts_outcome(rays->of) | UINT64_C(1) << STARTS_FAILED;
+    const struct descend_set set = {own->starts.axes, inside, starts_run, &own->starts};
     const bool good = chosen == 0 ||
                       basin_descend(&set, 4 * most, start, r, chosen, &nearest->end) ||
                       statistics_no_memory(rays->r, message);

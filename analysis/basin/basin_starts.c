@@ -7,6 +7,16 @@
 #include <stdlib.h>
 #include <string.h>
 
+uint8_t starts_outcome(enum results_kind kind)
+{
+    static const uint8_t outcome[RESULTS_OUTCOMES] = {
+#define STARTS_OUTCOME(NAME, name, number, text) [RESULTS_##NAME] = STANCE_##NAME,
+        STANCE_OUTCOMES(STARTS_OUTCOME)
+#undef STARTS_OUTCOME
+    };
+    return outcome[kind];
+}
+
 bool starts_begin(struct starts *starts, const struct scenario *s, uint64_t index,
                   stance_message *message)
 {
@@ -76,8 +86,9 @@ static bool array_tell(void *context)
     return false;
 }
 
-bool starts_run(struct starts *starts, size_t count, const double *x, uint8_t *end)
+bool starts_run(void *context, size_t count, const double *x, uint8_t *end)
 {
+    struct starts *const starts = context;
     stance_case *cases = calloc(count + 1, sizeof *cases);
     stance_result *results = calloc(count + 1, sizeof *results);
     const bool good = cases && results;

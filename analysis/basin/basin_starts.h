@@ -3,11 +3,14 @@
 #define STANCE_BASIN_BASIN_STARTS_H
 
 #include "runner/plan/resolve.h"
+#include "runner/store/results.h"
 
 enum { STARTS_MOST = 18 }; /* coordinates of a start that vary: angles and rates */
 
 /* What becomes of a start: an outcome, or one of these. */
 enum { STARTS_FAILED = STANCE_OUTCOME_COUNT, STARTS_IMPOSSIBLE };
+/* That outcome. */
+uint8_t starts_outcome(enum results_kind kind);
 
 /* A number of the start, and how it moves with what is asked for: centre + along * x[axis]. */
 struct starts_field {
@@ -37,8 +40,9 @@ struct starts {
  * design, or its method no kernel on this machine; `message` says so. */
 bool starts_begin(struct starts *starts, const struct scenario *s, uint64_t index,
                   stance_message *message);
-/* Simulates the starts x[count][axes]. end[count]: what became of each. False: no memory. */
-bool starts_run(struct starts *starts, size_t count, const double *x, uint8_t *end);
+/* Simulates the starts x[count][axes] of a struct starts. end[count]: what became of each. False:
+ * no memory. */
+bool starts_run(void *starts, size_t count, const double *x, uint8_t *end);
 /* Whether there is that start, x[axes]. */
 bool starts_possible(struct starts *starts, const double *x);
 

@@ -2,7 +2,6 @@
 #include "basin_print.h"
 
 #include "analysis/statistics/statistics.h"
-#include "runner/base/message.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -37,13 +36,11 @@ static int keep_within(struct results *r, const struct basin_within *within, con
     double *value = NULL, bound[2];
     snprintf(name, sizeof name, "%.*s", equals ? (int)(equals - asked) : 0, asked);
     if (!equals || !read_bounds(equals + 1, bound) || !basin_numbers(r, name, &value, message) ||
-        !value) {
-        complain(message,
-                 "stance %s: --within takes ANSWER=MOST or ANSWER=LEAST.. of a number that the "
-                 "file stores, as settle_time=2, not '%.60s'",
-                 within->command, asked);
-        return EXIT_USAGE;
-    }
+        !value)
+        return refuse(message,
+                      "stance %s: --within takes ANSWER=MOST or ANSWER=LEAST.. of a number that "
+                      "the file stores, as settle_time=2, not '%.60s'",
+                      within->command, asked);
     struct basin_lack lack;
     const bool good = basin_lacks(r, within->of, value, &lack, message);
     if (good && lack.inferred > 0)
@@ -79,6 +76,9 @@ int basin_within_make(struct results *own, const struct results *r,
     int code = EXIT_DONE;
     said[0] = '\0';
     *own = *r;
+    own->kind = NULL;
+    if (memchr(r->kind, RESULTS_DONE, r->cases))
+        return refuse(message, "%.150s: holds no outcomes (record.answers left them out)", r->file);
     own->kind = malloc(r->cases + 1);
     if (!own->kind) {
         statistics_no_memory(r, message);

@@ -3,8 +3,6 @@
 #include "basin_print.h"
 
 #include "analysis/statistics/statistics.h"
-#include "analysis/table/report.h"
-#include "runner/base/message.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -41,19 +39,16 @@ static int show_rays(const struct report *report, const struct results *r,
                                                       : NULL;
     if (wrong) {
         basin_sample_free(sample);
-        complain(message, "stance basin: rays have no use for %s", wrong);
-        return EXIT_USAGE;
+        return refuse(message, "stance basin: rays have no use for %s", wrong);
     }
     if (!basin_rays_make(&rays, r, request->choice.of, sample, message))
         return EXIT_IO;
-    if (request->descents > 0 && !basin_rays_descend(&rays, request->descents, message)) {
-        basin_rays_free(&rays);
-        return EXIT_IO;
-    }
-    const bool good = request->boundary ? basin_rays_print_boundary(&rays)
-                                        : basin_rays_print(&rays, report->form);
+    const bool good =
+        (request->descents == 0 || basin_rays_descend(&rays, request->descents, message)) &&
+        (request->boundary ? basin_rays_print_boundary(&rays)
+                           : basin_rays_print(&rays, report->form));
     basin_rays_free(&rays);
-    return good ? EXIT_DONE : EXIT_IO;
+    return report_code(good);
 }
 
 static int show_basin(const struct report *report, const struct results *r,
@@ -62,32 +57,34 @@ static int show_basin(const struct report *report, const struct results *r,
     const struct request *request = (const struct request *)report;
     const enum table_form form = report->form;
     struct basin basin;
-    bool usage = true, good = false;
+    bool usage;
+    int code;
 
     if (request->descents > 0) {
         basin_sample_free(sample);
-        complain(message,
-                 "stance basin: --descend goes on from rays, and %.150s has none (stance basin -h)",
-                 report->file);
-    } else if (basin_make(&basin, r, &request->choice, sample, &usage, message)) {
-        usage = request->boundary && basin.starts != BASIN_GRID;
-        if (request->threshold > 0)
-            good = basin_print_threshold(&basin, request->along, request->threshold, form, &usage,
-                                         message);
-        else if (request->allowed)
-            good = basin_print_allowed(&basin, form, &usage, message);
-        else if (request->answer)
-            good = basin_print_answer(&basin, request->answer, form, &usage, message);
-        else if (usage)
-            complain(message,
-                     "stance basin: --boundary needs starts on a grid; those of %.150s are a "
-                     "sample",
-                     report->file);
-        else
-            good = request->boundary ? basin_print_boundary(&basin) : basin_print(&basin, form);
-        basin_free(&basin);
+        return refuse(
+            message,
+            "stance basin: --descend goes on from rays, and %.150s has none (stance basin -h)",
+            report->file);
     }
-    return good ? EXIT_DONE : usage ? EXIT_USAGE : EXIT_IO;
+    if (!basin_make(&basin, r, &request->choice, sample, &usage, message))
+        return usage ? EXIT_USAGE : EXIT_IO;
+    if (request->threshold > 0)
+        code = basin_print_threshold(&basin, request->along, request->threshold, form, message);
+    else if (request->allowed)
+        code = basin_print_allowed(&basin, form, message);
+    else if (request->answer)
+        code = basin_print_answer(&basin, request->answer, form, message);
+    else if (request->boundary && basin.starts != BASIN_GRID)
+        code = refuse(message,
+                      "stance basin: --boundary needs starts on a grid; those of %.150s are a "
+                      "sample",
+                      report->file);
+    else
+        code = report_code(request->boundary ? basin_print_boundary(&basin)
+                                             : basin_print(&basin, form));
+    basin_free(&basin);
+    return code;
 }
 
 /* On a copy of what became of the cases, of which --within may leave less. */
@@ -97,23 +94,15 @@ static int work(struct report *report, const struct results *r, stance_message *
     struct basin_choice *const choice = &request->choice;
     struct basin_sample sample;
     struct results own;
-    bool usage = false;
 
     if (choice->of == RESULTS_KIND_COUNT)
         choice->of = statistics_judged(r);
-    if (memchr(r->kind, RESULTS_DONE, r->cases)) {
-        complain(message, "%.150s: holds no outcomes (record.answers left them out)", report->file);
-        return EXIT_USAGE;
-    }
     int code =
         basin_within_make(&own, r, &(struct basin_within){"basin", &request->within, choice->of},
                           request->within_text, sizeof request->within_text, message);
     choice->within = request->within_text[0] ? request->within_text : NULL;
     if (code == EXIT_DONE && request->lost)
-        code = basin_print_loss(&own, request->lost, choice->of, report->form, &usage, message)
-                   ? EXIT_DONE
-               : usage ? EXIT_USAGE
-                       : EXIT_IO;
+        code = basin_print_loss(&own, request->lost, choice->of, report->form, message);
     else if (code == EXIT_DONE)
         code = !basin_sample_make(&sample, &own, message) ? EXIT_IO
                : basin_is_rays(&own, &sample) ? show_rays(report, &own, &sample, message)

@@ -218,22 +218,15 @@ static bool print(const struct ranges *r, bool json)
 
 static int show(const struct request *request, const struct scenario *s)
 {
-    static const uint8_t number_of[] = {
-#define RANGES_NUMBER(NAME, name, number, text) number,
-        STANCE_OUTCOMES(RANGES_NUMBER)
-#undef RANGES_NUMBER
-    };
     const int wanted = s->base.walk_steps > 0 ? RESULTS_WALKS : RESULTS_STABILISED;
     const int of = request->of < RESULTS_OUTCOMES ? request->of : wanted;
     struct ranges *r = malloc(sizeof *r);
     stance_message message = {""};
-    int code = EXIT_IO;
-    if (!r || !ranges_make(r, s, number_of[of], &message)) {
-        fprintf(stderr, "%s: %s\n", s->file, r ? message.text : "not enough memory");
-        code = r ? EXIT_USAGE : EXIT_IO;
-    } else {
-        code = print(r, request->json) ? EXIT_DONE : EXIT_IO;
-    }
+    const bool found = (r || no_memory(&message)) &&
+                       ranges_make(r, s, starts_outcome((enum results_kind)of), &message);
+    if (!found)
+        fprintf(stderr, "%s: %s\n", s->file, message.text);
+    const int code = found ? report_code(print(r, request->json)) : r ? EXIT_USAGE : EXIT_IO;
     free(r);
     return code;
 }

@@ -198,10 +198,11 @@ static void put_legend(struct page *page)
         add_text(text, sizeof text, "%s%s", k ? ", " : "", rays->r->axis[rays->by[k]].name);
     gnuplot_text(&page->g, text, "legend_head");
     for (size_t c = 0; c < page->curves; c++) {
+        size_t point[SCENARIO_MAX_AXES];
+        statistics_row(rays->r, rays->by, rays->by_axes, row_of(page, c), point);
         snprintf(text, sizeof text, "%s", rays->by_axes ? "" : results_kind_names[rays->of]);
         for (int k = 0; k < rays->by_axes; k++) {
-            results_value_text(&rays->r->axis[rays->by[k]],
-                               basin_rays_point(rays, row_of(page, c), k), true, value,
+            results_value_text(&rays->r->axis[rays->by[k]], point[rays->by[k]], true, value,
                                sizeof value);
             add_text(text, sizeof text, "%s%.100s", k ? ", " : "", value);
         }

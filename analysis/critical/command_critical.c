@@ -4,7 +4,6 @@
 #include "critical.h"
 
 #include "analysis/basin/basin_print.h"
-#include "analysis/table/report.h"
 #include "runner/plan/law.h"
 #include "runner/run/run.h"
 
@@ -51,16 +50,12 @@ static int work(struct report *report, const struct results *r, stance_message *
     struct critical critical;
     bool usage;
     char said[256];
-    if (memchr(r->kind, RESULTS_DONE, r->cases)) {
-        complain(message, "%.150s: holds no outcomes (record.answers left them out)", r->file);
-        return EXIT_USAGE;
-    }
     int code = basin_within_make(&own, r, &within, said, sizeof said, message);
     if (code == EXIT_DONE &&
         !critical_make(&critical, &own, request->of, of, &request->choice, &usage, message)) {
         code = usage ? EXIT_USAGE : EXIT_IO;
     } else if (code == EXIT_DONE) {
-        code = critical_print(&critical, said, report->form) ? EXIT_DONE : EXIT_IO;
+        code = critical_print(&critical, said, report->form);
         critical_free(&critical);
     }
     free(own.kind);

@@ -173,16 +173,9 @@ static bool keep_islands(struct walk *w, struct critical_row *row)
 static bool find_rows(struct walk *w)
 {
     struct critical *const c = w->c;
-    const struct results *const r = c->r;
     for (size_t k = 0; k < c->rows; k++) {
         struct critical_row *const row = &c->row[k];
-        size_t rest = k;
-        w->first = 0;
-        for (int b = c->by_axes - 1; b >= 0; b--) {
-            row->point[c->by[b]] = rest % r->axis[c->by[b]].count;
-            rest /= r->axis[c->by[b]].count;
-            w->first += row->point[c->by[b]] * statistics_stride(r, c->by[b]);
-        }
+        w->first = statistics_row(c->r, c->by, c->by_axes, k, row->point);
         count_line(w);
         row->value = critical_find(&w->line, &c->choice);
         if (c->blocks)

@@ -16,7 +16,7 @@
 #define STANCE_CRITICAL_CRITICAL_H
 
 #include "analysis/statistics/statistics.h"
-#include "analysis/table/table.h"
+#include "analysis/table/report.h"
 
 /* ---- one line of values ------------------------------------------------------------------- */
 
@@ -103,7 +103,7 @@ void critical_free(struct critical *critical);
 
 enum { CRITICAL_SHOWN = 60 };                /* rows that people see */
 extern const struct say_key critical_keys[]; /* of its JSON */
-/* `within`: what the outcome was narrowed to, "" for nothing. False: memory or the output fails. */
-bool critical_print(const struct critical *critical, const char *within, enum table_form form);
+/* `within`: what the outcome was narrowed to, "" for nothing. Returns an exit code. */
+int critical_print(const struct critical *critical, const char *within, enum table_form form);
 
 #endif

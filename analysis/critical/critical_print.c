@@ -111,7 +111,7 @@ static const char text[] = BASIN_TITLE
     "{.unseen%.4g}[.unit: {.unit}])\n]"
     "[.pending:  ({.pending} cases are not done: go on with --resume)\n]";
 
-bool critical_print(const struct critical *c, const char *within, enum table_form form)
+int critical_print(const struct critical *c, const char *within, enum table_form form)
 {
     const struct results_axis *const axis = &c->r->axis[c->along];
     struct table t = {0};
@@ -144,6 +144,6 @@ bool critical_print(const struct critical *c, const char *within, enum table_for
         {".again", as_truth(again)}, {".unsure", as_truth(unsure)}, {".unseen", as_number(unseen)},
         {".number", as_truth(number)}, {".pending", pending ? as_whole(pending) : as_nothing(NULL)},
         {".unit", as_text(strcmp(axis->unit, "1") == 0 ? "" : axis->unit)});
-    return table_say(form, table_show(basin_titled(c->r, facts), "rows", &t, view, CRITICAL_SHOWN),
-                     text, &t);
+    return report_code(table_say(
+        form, table_show(basin_titled(c->r, facts), "rows", &t, view, CRITICAL_SHOWN), text, &t));
 }

@@ -2,7 +2,6 @@
 #include "sensitivity_study.h"
 
 #include "analysis/draw/plot.h"
-#include "analysis/table/report.h"
 
 #include <stdio.h>
 

@@ -3,8 +3,6 @@
 
 #include "analysis/statistics/statistics.h"
 #include "analysis/summary/summary.h"
-#include "runner/base/command.h"
-#include "runner/base/message.h"
 #include "runner/base/words.h"
 
 #include <math.h>
@@ -60,12 +58,6 @@ void sensitivity_table_text(const struct sensitivity_study *study, size_t table,
 
 /* ---- what is asked ------------------------------------------------------------------------ */
 
-static int refuse(stance_message *message, const struct results *r, const char *text)
-{
-    complain(message, "%.110s: %s", r->file, text);
-    return EXIT_USAGE;
-}
-
 /* Which grid axes are kept apart. */
 static int choose_axes(struct sensitivity_study *study, stance_message *message)
 {
@@ -86,10 +78,9 @@ static int choose_axes(struct sensitivity_study *study, stance_message *message)
             a++;
         if (a == grid) {
             const char *const near = nearest_word(name, names, (size_t)grid);
-            complain(message, "stance sensitivity: --by %.50s: not a grid axis of %.50s%s%.50s%s",
-                     name, r->file, near ? "; did you mean '" : "", near ? near : "",
-                     near ? "'?" : "");
-            return EXIT_USAGE;
+            return refuse(
+                message, "stance sensitivity: --by %.50s: not a grid axis of %.50s%s%.50s%s", name,
+                r->file, near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
         }
         study->kept[a] = true;
     }
@@ -106,31 +97,25 @@ bool sensitivity_study_fits(const struct results *r)
 static int read_design(struct sensitivity_study *study, stance_message *message)
 {
     const struct results *r = study->r;
-    if (r->sample < 0) {
-        return refuse(message, r,
-                      "has no sampled factors: its scenario needs sweep.sample "
-                      "(stance describe sweep.sample)");
-    }
     const struct scenario *const s = r->read;
-    if (!s) {
-        complain(message, "%.150s: its scenario cannot be read by this version", r->file);
-        return EXIT_IO;
+    const bool sampled = r->sample >= 0,
+               damaged = sampled && (!s || !s->sample.given || s->axes != r->axes ||
+                                     doe_points(&s->sample.design) != r->axis[r->sample].count);
+    const char *const wrong =
+        !sampled          ? "has no sampled factors: its scenario needs sweep.sample "
+                            "(stance describe sweep.sample)"
+        : !s              ? "its scenario cannot be read by this version"
+        : damaged         ? "damaged: its samples are not those of its scenario"
+        : r->other_points ? "has points of another version, whose generator was another: its "
+                            "indices cannot be told; compute it anew"
+        : s->sample.design.method == DOE_SPHERE
+            ? "samples directions (method sphere), which have no factors of their own"
+            : NULL;
+    if (wrong) {
+        complain(message, "%.110s: %s", r->file, wrong);
+        return damaged ? EXIT_IO : EXIT_USAGE;
     }
     study->design = &s->sample.design;
-    if (!s->sample.given || s->axes != r->axes ||
-        doe_points(study->design) != r->axis[r->sample].count) {
-        complain(message, "%.150s: damaged: its samples are not those of its scenario", r->file);
-        return EXIT_IO;
-    }
-    if (r->other_points) {
-        return refuse(message, r,
-                      "has points of another version, whose generator was another: its indices "
-                      "cannot be told; compute it anew");
-    }
-    if (study->design->method == DOE_SPHERE) {
-        return refuse(message, r,
-                      "samples directions (method sphere), which have no factors of their own");
-    }
     study->points = r->axis[r->sample].count;
     study->block = (size_t)doe_block(study->design);
     study->blocks = study->points / study->block;
@@ -172,12 +157,6 @@ static double *make_points(const struct sensitivity_study *study)
 }
 
 /* ---- responses ---------------------------------------------------------------------------- */
-
-static int lacks_memory(const struct results *r, stance_message *message)
-{
-    statistics_no_memory(r, message);
-    return EXIT_IO;
-}
 
 /* The table of the cases at a grid point. */
 static size_t table_at_point(const struct sensitivity_study *study, const size_t *point)
@@ -229,20 +208,14 @@ static int read_answers(const struct sensitivity_study *study, double **answers,
     uint64_t inferred;
     bool *which = NULL;
     *answers = NULL;
-    if (study->request.of != RESULTS_KIND_COUNT && memchr(r->kind, RESULTS_DONE, r->cases)) {
-        complain(message, "%.200s: does not store outcomes", r->file);
-        return EXIT_USAGE;
-    }
+    if (study->request.of != RESULTS_KIND_COUNT && memchr(r->kind, RESULTS_DONE, r->cases))
+        return refuse(message, "%.200s: does not store outcomes", r->file);
     if (!name)
         return EXIT_DONE;
-    int code = statistics_inferred(r, &inferred, &which, message) &&
-                       results_answer(r, name, answers, message)
-                   ? EXIT_DONE
-                   : EXIT_IO;
-    if (code == EXIT_DONE && !*answers) {
-        complain(message, "%.150s: does not store %.60s", r->file, name);
-        code = EXIT_USAGE;
-    }
+    int code = report_code(statistics_inferred(r, &inferred, &which, message) &&
+                           results_answer(r, name, answers, message));
+    if (code == EXIT_DONE && !*answers)
+        code = refuse(message, "%.150s: does not store %.60s", r->file, name);
     for (uint64_t i = 0; code == EXIT_DONE && which && i < r->cases; i++)
         (*answers)[i] = which[i] ? NAN : (*answers)[i];
     free(which);
@@ -424,7 +397,7 @@ int sensitivity_study_make(struct sensitivity_study *study, const struct results
         code = read_answers(study, &answers, message);
     if (code == EXIT_DONE &&
         !(count_cases(study) && make_tables(study, answers) && make_order(study)))
-        code = lacks_memory(r, message);
+        code = report_code(statistics_no_memory(r, message));
     free(answers);
     if (code != EXIT_DONE)
         sensitivity_study_free(study);

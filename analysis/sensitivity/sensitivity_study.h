@@ -16,7 +16,7 @@
 
 #include "sensitivity.h"
 
-#include "analysis/table/table.h"
+#include "analysis/table/report.h"
 
 struct sensitivity_request {
     const char *answer;   /* NULL: the share of cases with the outcome */

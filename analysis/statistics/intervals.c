@@ -47,11 +47,9 @@ bool intervals_find(const struct results *r, enum results_kind kind, int axis, c
     enum { OF, DONE };
     const size_t points = r->sample < 0 ? 1 : r->axis[r->sample].count;
     const size_t block = r->block > 0 ? r->block : 1, blocks = (points + block - 1) / block;
+    const uint64_t stride = statistics_stride(r, axis);
     uint32_t *count = calloc(rows * blocks, 2 * sizeof *count);
-    uint64_t stride = 1;
 
-    for (int a = r->axes - 1; axis >= 0 && a > axis; a--)
-        stride *= r->axis[a].count;
     for (uint64_t i = 0; count && r->sample >= 0 && !r->single && i < r->cases; i++) {
         const size_t point = i % points; /* the sample is the last axis */
         const size_t row = axis >= 0 ? i / stride % rows : part ? part[point] : 0;

@@ -45,6 +45,19 @@ uint64_t statistics_stride(const struct results *r, int axis)
     return stride;
 }
 
+uint64_t statistics_row(const struct results *r, const int *axis, int axes, size_t row,
+                        size_t *point)
+{
+    uint64_t index = 0;
+    memset(point, 0, SCENARIO_MAX_AXES * sizeof *point);
+    for (int k = axes - 1; k >= 0; k--) {
+        point[axis[k]] = row % r->axis[axis[k]].count;
+        row /= r->axis[axis[k]].count;
+        index += point[axis[k]] * statistics_stride(r, axis[k]);
+    }
+    return index;
+}
+
 static void finish_counts(struct statistics_counts *counts)
 {
     counts->done = 0;

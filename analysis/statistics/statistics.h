@@ -83,6 +83,10 @@ bool statistics_is_monotone(const struct results_axis *axis);
 
 /* How many cases lie between neighbours along an axis. */
 uint64_t statistics_stride(const struct results *r, int axis);
+/* Point number `row` of some of the axes, row-major over these; point[axes of the file], 0 along
+ * all others. Returns the case there. */
+uint64_t statistics_row(const struct results *r, const int *axis, int axes, size_t row,
+                        size_t *point);
 
 /* The point of an axis nearest to zero; the first of two equally near. */
 size_t statistics_nearest_zero(const struct results_axis *axis);

@@ -7,6 +7,7 @@
 #include "table.h"
 
 #include "runner/base/command.h"
+#include "runner/base/message.h"
 
 enum { REPORT_FILES = 12 };
 
@@ -27,6 +28,13 @@ struct report {
     "FILE", OPTION_TO(struct request, report.files), .low = 1, .high = 1, .text = "a results file"
 #define REPORT_CSV TABLE_CSV(struct request, report.form)
 #define REPORT_JSON TABLE_JSON(struct request, report.form)
+
+/* Says in a message what is wrong with a request; returns EXIT_USAGE. */
+#define refuse(message, ...) (complain(message, __VA_ARGS__), EXIT_USAGE)
+static inline int report_code(bool good)
+{
+    return good ? EXIT_DONE : EXIT_IO;
+}
 
 /* Opens the file in a sandbox and works on it; returns the exit code. */
 int report_run(struct report *report);
