@@ -384,21 +384,18 @@ static json_t *field_schema(const struct schema *schema, const struct scenario_f
     return object;
 }
 
-/* A mapping with the keys below `path`. */
 /* Whether a key stands for any name. */
 static bool is_pattern(const struct schema *schema, const char *name)
 {
-    const stance_scene *const scene = schema->scene;
-    if (schema_any_plate(schema) && strcmp(name, PLATE_PATTERN) == 0)
-        return true;
-    return schema->pattern &&
-           (strcmp(name, scene->mechanism->body[0].name) == 0 ||
-            (name[0] == 'v' && strcmp(name + 1, scene->mechanism->body[0].name) == 0) ||
-            strcmp(name, scene->mechanism->element[0].name) == 0 ||
-            strcmp(name, scene->mechanism->point[0].name) == 0 ||
-            strcmp(name, scene->mechanism->actuator[0].name) == 0);
+    const stance_mechanism *const m = schema->scene->mechanism;
+    bool is = schema_any_plate(schema) && strcmp(name, PLATE_PATTERN) == 0;
+    for (int part = 0; part < ROBOT_PARTS && schema->pattern; part++)
+        is = is || strcmp(name + (part == PART_BODY && name[0] == 'v'),
+                          part_name(m, (enum part)part, 0)) == 0;
+    return is;
 }
 
+/* A mapping with the keys below `path`. */
 static json_t *map_schema(const struct schema *schema, const char *path)
 {
     const char *names[SCHEMA_MAX_FIELDS];
@@ -568,17 +565,16 @@ static bool fits_pattern(const struct schema *schema, const char *row, const cha
 static const struct scenario_field *find_row(const struct schema *schema, const char *path)
 {
     char general[sizeof schema->field->path];
-    size_t index[2], n = 0;
-    const struct scenario_field *field = schema_find(schema, path);
-    field = field ? field : schema_find_concrete(schema, path, index);
+    size_t n = 0;
     for (const char *at = path; *at && n < sizeof general - 1; n++) {
         general[n] = *at++;
         if (general[n] == '[')
             at += strspn(at, "0123456789");
     }
     general[n] = '\0';
+    const struct scenario_field *field = schema_find(schema, general);
     const bool exact = field != NULL;
-    for (size_t i = 0; i < schema->count && schema->documents && !exact; i++)
+    for (size_t i = 0; i < schema->count && !exact; i++)
         if (fits_pattern(schema, schema->field[i].path, general))
             field = &schema->field[i]; /* a rate comes after its coordinate */
     return field;

@@ -79,10 +79,12 @@ static bool read_range(struct axis_reader *a, struct scenario_factor *f)
     if (!f->value)
         return problem_no_memory(&a->r->problems);
     double *const from = f->value, *const to = f->value + f->paths;
+    double spacing;
     bool good = axis_read_ends(a, "give from and to, or values", from, to), differ = false;
     if (good && !tree_find(a->node, "to"))
         return axis_complain(a, "to is missing");
-    good = axis_read_spacing(a, "sweep.sample.vary[].spacing", &f->log) && good;
+    good = axis_read_key(a, "spacing", &spacing) && good;
+    f->log = spacing != 0;
     for (int k = 0; good && k < f->paths; k++) {
         differ = differ || from[k] != to[k];
         if (f->log && a->axis->whole[f->first + k])
@@ -98,7 +100,7 @@ static bool read_range(struct axis_reader *a, struct scenario_factor *f)
 
 static bool read_factor(struct axis_reader *a, struct scenario_factor *f)
 {
-    if (!axis_begin(a, "sweep.sample.vary[]", "a mapping with path, from, to"))
+    if (!axis_begin(a, "a mapping with path, from, to"))
         return false;
     f->first = a->first;
     f->paths = a->axis->paths - f->first;
@@ -174,7 +176,8 @@ static bool read_factors(struct reader *r, struct scenario_axis *axis)
                                 .axis = axis,
                                 .swept = r->swept[r->s->axes - 1],
                                 .node = vary->item[j],
-                                .number = r->s->axes - 1};
+                                .number = r->s->axes - 1,
+                                .path = "sweep.sample.vary[]"};
         snprintf(a.name, sizeof a.name, "sweep.sample.vary[%zu]", j);
         sample->design.factors = j + 1; /* as many as there are to free */
         good = read_factor(&a, &sample->factor[j]) &&

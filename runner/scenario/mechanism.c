@@ -114,11 +114,8 @@ static bool check_part(struct description *d, enum part part, const struct entry
 static bool read_names(struct description *d, enum part part)
 {
     const struct part_kind *const kind = &part_kinds[part];
-    const struct tree_node *const in = tree_find(d->r->tree.root, kind->in), *const map =
-                                                                                 in ? tree_find(
-                                                                                          in,
-                                                                                          kind->key)
-                                                                                    : NULL;
+    const struct tree_node *const in = tree_find(d->r->tree.root, kind->in);
+    const struct tree_node *const map = tree_find(in, kind->key);
     char path[DESCRIPTION_PATH];
     snprintf(path, sizeof path, "%s.%s", kind->in, kind->key);
     if (!map)
@@ -279,8 +276,7 @@ static bool sort_bodies(struct description *d)
 static void fill_point(struct description *d, int i)
 {
     const struct entry *const entry = &d->entry[PART_POINT][i];
-    snprintf(d->m->point[i].name, STANCE_NAME, "%s", entry->key->name);
-    d->m->point[i].body = d->place[entry->body];
+    part_put(d->m, PART_POINT, i, entry->key->name, d->place[entry->body]);
     d->m->point[i].swings |= tree_find(entry->map, "frequency") != NULL;
     if (tree_find(entry->map, "impulse") || tree_find(entry->map, "force"))
         d->m->point[i].pushed = tree_find(entry->map, "impulse") ? STANCE_IMPULSE : STANCE_FORCE;
@@ -290,9 +286,8 @@ static void fill_plates(struct description *d)
 {
     d->m->plates = d->count[PART_PLATE];
     for (int i = 0; i < d->m->plates; i++) {
-        const struct entry *const entry = &d->entry[PART_PLATE][i];
-        snprintf(d->m->plate[i].name, STANCE_NAME, "%s", entry->key->name);
-        d->m->plate[i].kind = entry->ground;
+        part_put(d->m, PART_PLATE, i, d->entry[PART_PLATE][i].key->name, -1);
+        d->m->plate[i].kind = d->entry[PART_PLATE][i].ground;
     }
 }
 
@@ -306,26 +301,24 @@ static void fill_structure(struct description *d)
     m->actuators = d->count[PART_ACTUATOR];
     for (int b = 0; b < m->bodies; b++) {
         const struct entry *const entry = &d->entry[PART_BODY][d->back[b]];
-        snprintf(m->body[b].name, STANCE_NAME, "%s", entry->key->name);
+        part_put(m, PART_BODY, b, entry->key->name,
+                 entry->parent < 0 ? -1 : d->place[entry->parent]);
         m->body[b].joint = entry->joint;
-        m->body[b].parent = entry->parent < 0 ? -1 : d->place[entry->parent];
         const struct tree_node *const own = tree_find(entry->map, "coordinate");
         if (own && own->kind == TREE_SCALAR)
             snprintf(m->body[b].coordinate, STANCE_NAME, "%s", own->text);
     }
     for (int i = 0; i < m->elements; i++) {
         const struct entry *const entry = &d->entry[PART_CONTACT][i];
-        snprintf(m->element[i].name, STANCE_NAME, "%s", entry->key->name);
-        m->element[i].body = d->place[entry->body];
+        part_put(m, PART_CONTACT, i, entry->key->name, d->place[entry->body]);
         m->element[i].sole = tree_find(entry->map, "from") || tree_find(entry->map, "to");
     }
     for (int i = 0; i < m->points; i++)
         fill_point(d, i);
     fill_plates(d);
-    for (int i = 0; i < m->actuators; i++) {
-        snprintf(m->actuator[i].name, STANCE_NAME, "%s", d->entry[PART_ACTUATOR][i].key->name);
-        m->actuator[i].body = d->place[d->entry[PART_ACTUATOR][i].body];
-    }
+    for (int i = 0; i < m->actuators; i++)
+        part_put(m, PART_ACTUATOR, i, d->entry[PART_ACTUATOR][i].key->name,
+                 d->place[d->entry[PART_ACTUATOR][i].body]);
 }
 
 /* Does a body move along the root's rail alone? */
@@ -529,9 +522,7 @@ static bool read_point(struct description *d, const struct tree_key *key,
 /* What a file adds to a scene that is carried. */
 static bool read_carried(struct description *d, const stance_mechanism *carried)
 {
-    const struct tree_node *const robot = tree_find(d->r->tree.root, "robot"),
-                                  *const map =
-                                      robot ? tree_find(robot, part_kinds[PART_POINT].key) : NULL;
+    const struct tree_node *const map = tree_find(tree_find(d->r->tree.root, "robot"), "points");
     bool good = true;
     enter_carried(d, carried);
     if (map && map->kind != TREE_MAP)
@@ -621,11 +612,10 @@ stance_scene *mechanism_pattern(void)
         return NULL;
     m->bodies = m->elements = m->points = m->actuators = 1;
     m->body[0].joint = STANCE_FREE;
-    m->body[0].parent = -1;
-    snprintf(m->body[0].name, STANCE_NAME, "BODY");
-    snprintf(m->element[0].name, STANCE_NAME, "CONTACT");
-    snprintf(m->point[0].name, STANCE_NAME, "POINT");
-    snprintf(m->actuator[0].name, STANCE_NAME, "ACTUATOR");
+    part_put(m, PART_BODY, 0, "BODY", -1);
+    part_put(m, PART_CONTACT, 0, "CONTACT", 0);
+    part_put(m, PART_POINT, 0, "POINT", 0);
+    part_put(m, PART_ACTUATOR, 0, "ACTUATOR", 0);
     stance_mechanism_defaults(&m->value);
     if (stance_mechanism_scene(m, &scene, &message) != STANCE_OK)
         scene = NULL;

@@ -24,23 +24,15 @@ const char *axis_key(const struct scenario *s, int axis, char name[AXIS_NAME])
 static bool unknown_path(struct axis_reader *a, const struct tree_node *node)
 {
     const struct schema *schema = a->r->schema;
-    char path[SCHEMA_MAX_FIELDS][96], word[SHOWN_SIZE];
+    char path[SCHEMA_MAX_FIELDS][128], word[SHOWN_SIZE];
     const char *known[SCHEMA_MAX_FIELDS], *near;
     size_t n = 0;
 
-    for (size_t i = 0; i < schema->count; i++) {
-        if (!schema->field[i].sweep)
-            continue;
-        size_t length = 0;
-        for (const char *s = schema->field[i].path; *s && length + 2 < sizeof path[0]; s++) {
-            path[n][length++] = *s;
-            if (*s == '[')
-                path[n][length++] = '0';
+    for (size_t i = 0; i < schema->count; i++)
+        if (schema->field[i].sweep) {
+            known[n] = schema_item_path(&schema->field[i], 0, path[n]);
+            n++;
         }
-        path[n][length] = '\0';
-        known[n] = path[n];
-        n++;
-    }
     near = mend_path(node->text, known, n);
     near = near ? near : nearest_word(node->text, known, n);
     shown(word, node->text);
@@ -239,17 +231,15 @@ static bool read_values(struct axis_reader *a, const struct tree_node *values)
     return good && axis_check_values(a, values);
 }
 
-bool axis_read_spacing(struct axis_reader *a, const char *path, bool *log)
+bool axis_read_key(struct axis_reader *a, const char *key, double *value)
 {
-    const struct tree_node *spacing = tree_find(a->node, "spacing");
-    char name[AXIS_NAME + 16];
-    int word = 0;
-
-    snprintf(name, sizeof name, "%s.spacing", a->name);
-    const bool good = !spacing || field_word(&a->r->problems, schema_find(a->r->schema, path), name,
-                                             spacing, &word);
-    *log = word != 0;
-    return good;
+    const struct tree_node *const node = tree_find(a->node, key);
+    char path[AXIS_NAME], name[AXIS_NAME + 16];
+    snprintf(path, sizeof path, "%s.%.16s", a->path, key);
+    snprintf(name, sizeof name, "%s.%.14s", a->name, key);
+    const struct scenario_field *const field = schema_find(a->r->schema, path);
+    *value = field->fallback;
+    return !node || field_value(&a->r->problems, field, name, node, value);
 }
 
 /* The points of a range that is logarithmic, or along which several paths move: from[paths] to
@@ -307,22 +297,17 @@ static bool check_range(struct axis_reader *a, int k, double from, double to)
 static bool read_range(struct axis_reader *a)
 {
     struct scenario_axis *axis = a->axis;
-    const struct tree_node *const count = tree_find(a->node, "count");
-    double first[SCENARIO_MAX_PATHS] = {0}, last[SCENARIO_MAX_PATHS] = {0};
-    char name[AXIS_NAME + 16];
-    double number = 0;
+    double first[SCENARIO_MAX_PATHS] = {0}, last[SCENARIO_MAX_PATHS] = {0}, count, spacing;
 
     bool good = axis_read_ends(a, "give from, to and count, or values", first, last);
-    if (!count)
+    if (!tree_find(a->node, "count"))
         return good && axis_complain(a, "count is missing");
-    snprintf(name, sizeof name, "%s.count", a->name);
-    good = field_number(&a->r->problems, schema_find(a->r->schema, "sweep.grid[].count"), name,
-                        count, &number) &&
-           good;
-    good = axis_read_spacing(a, "sweep.grid[].spacing", &axis->log) && good;
+    good = axis_read_key(a, "count", &count) && good;
+    good = axis_read_key(a, "spacing", &spacing) && good;
     if (!good)
         return false;
-    axis->count = (size_t)number;
+    axis->count = (size_t)count;
+    axis->log = spacing != 0;
     axis->from = first[0];
     axis->to = last[0];
     for (int k = 0; k < axis->paths; k++)
@@ -345,14 +330,14 @@ void axis_describe(const struct axis_reader *a, int k, char unit[24], char text[
     snprintf(text, 160, "%s", field->text);
 }
 
-bool axis_begin(struct axis_reader *a, const char *path, const char *wanted)
+bool axis_begin(struct axis_reader *a, const char *wanted)
 {
     static const char *const range_keys[] = {"from", "to", "count", "spacing"};
     struct problems *problems = &a->r->problems;
     const size_t before = problems->count + problems->lost;
     if (a->node->kind != TREE_MAP)
         return field_mismatch(problems, a->name, wanted, a->node);
-    reader_check_keys(a->r, a->node, path, a->name);
+    reader_check_keys(a->r, a->node, a->path, a->name);
     a->first = a->axis->paths;
     a->rows = tree_find(a->node, "paths") != NULL;
     if (problems->count + problems->lost != before || !read_paths(a))
@@ -370,7 +355,7 @@ static bool read_axis(struct axis_reader *a)
 
     axis->line = a->node->mark.line;
     axis->column = a->node->mark.column;
-    if (!axis_begin(a, "sweep.grid[]", "a mapping with path, from, to, count"))
+    if (!axis_begin(a, "a mapping with path, from, to, count"))
         return false;
     snprintf(axis->name, sizeof axis->name, "%s", axis->path[0]);
     axis_describe(a, 0, axis->unit, axis->text);
@@ -401,7 +386,8 @@ void sweep_read(struct reader *r, const struct tree_node *grid)
                                 .axis = &s->axis[i],
                                 .swept = r->swept[i],
                                 .node = grid->item[i],
-                                .number = (int)i};
+                                .number = (int)i,
+                                .path = "sweep.grid[]"};
         snprintf(a.name, sizeof a.name, "sweep.grid[%zu]", i);
         s->axes = (int)i + 1;
         if (!read_axis(&a)) {
