@@ -161,12 +161,9 @@ static bool read_factors(struct reader *r, struct scenario_axis *axis)
     const struct tree_node *vary = reader_seen(r, "sweep.sample.vary")->node;
     bool good = true;
 
-    if (!vary || !field_list(&r->problems, "sweep.sample.vary", "a list of factors", vary))
+    if (!vary || !field_list(&r->problems, "sweep.sample.vary", "a list of factors", vary,
+                             DOE_MAX_FACTORS, "factors"))
         return false;
-    if (vary->count > DOE_MAX_FACTORS) {
-        return problem_add(&r->problems, vary->mark, "sweep.sample.vary: more than %d factors",
-                           DOE_MAX_FACTORS);
-    }
     sample->factor = calloc(vary->count, sizeof *sample->factor);
     axis->meaning = calloc(SCENARIO_MAX_PATHS, sizeof *axis->meaning);
     if (!sample->factor || !axis->meaning)

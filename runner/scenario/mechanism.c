@@ -7,6 +7,8 @@
 #include "mechanism.h"
 #include "description.h"
 
+#include "runner/base/words.h"
+
 #include <ctype.h>
 #include <math.h>
 #include <stdlib.h>
@@ -86,14 +88,10 @@ static bool check_keys(struct description *d, const struct tree_node *map, const
                        const char *const *known, size_t count)
 {
     bool good = true;
-    for (size_t i = 0; i < map->count; i++) {
-        size_t k = 0;
-        while (k < count && strcmp(map->key[i].name, known[k]) != 0)
-            k++;
-        if (k == count)
+    for (size_t i = 0; i < map->count; i++)
+        if (word_place(map->key[i].name, known, count) == count)
             good = field_unknown(&d->r->problems, name, "key", map->key[i].name, map->key[i].mark,
                                  known, count);
-    }
     return good;
 }
 
@@ -152,6 +150,7 @@ static bool read_body(struct description *d, enum part part, const struct entry 
     const struct tree_node *const node = tree_find(entry->map, key);
     char path[DESCRIPTION_PATH];
     description_path(path, part, entry, key);
+    const size_t count = (size_t)d->count[PART_BODY];
     *body = -1;
     if (!node)
         return strcmp(key, "body") != 0 ||
@@ -159,11 +158,10 @@ static bool read_body(struct description *d, enum part part, const struct entry 
                                   part == PART_ACTUATOR ? "drives" : "belongs to");
     if (node->kind != TREE_SCALAR)
         return field_mismatch(&d->r->problems, path, "the name of a body", node);
-    for (int b = 0; b < d->count[PART_BODY]; b++)
-        if (strcmp(d->body_name[b], node->text) == 0)
-            *body = b;
-    return *body >= 0 || field_unknown(&d->r->problems, path, "body", node->text, node->mark,
-                                       d->body_name, (size_t)d->count[PART_BODY]);
+    const size_t place = word_place(node->text, d->body_name, count);
+    *body = place < count ? (int)place : -1;
+    return place < count || field_unknown(&d->r->problems, path, "body", node->text, node->mark,
+                                          d->body_name, count);
 }
 
 /* The word of a key of a part, if it is given, by its place. False: a problem. */
@@ -402,9 +400,8 @@ static bool check_coordinate(struct description *d, int b)
         return problem_add(&d->r->problems, node->mark, "%s: '%s' is no name: %s", path,
                            shown(word, text), fault);
     for (int other = 0; other < d->m->bodies; other++) {
-        const char *const own = d->m->body[other].coordinate, *const its =
-                                                                  own[0] ? own
-                                                                         : d->m->body[other].name;
+        const char *const own = d->m->body[other].coordinate;
+        const char *const its = own[0] ? own : d->m->body[other].name;
         if (other == b || d->m->body[other].joint == STANCE_FIXED)
             continue;
         if (strcmp(its, text) == 0 || (text[0] == 'v' && strcmp(its, text + 1) == 0) ||

@@ -304,7 +304,7 @@ static void read_record_list(struct reader *r, const struct tree_node *node)
                                          .high = r->axes_bad ? 0x1p53 : (double)(s->cases - 1)};
     double number;
 
-    if (!field_list(&r->problems, "record.cases", "none, all or a list of cases", node))
+    if (!field_list(&r->problems, "record.cases", "none, all or a list of cases", node, 0, NULL))
         return;
     s->record_cases = RECORD_LIST;
     s->record_list = malloc(node->count * sizeof *s->record_list);

@@ -193,7 +193,8 @@ static bool read_vary(struct reader *r)
     const bool list = vary && vary->kind == TREE_LIST;
     bool good = true;
 
-    if (!vary || (list && !field_list(&r->problems, "optimise.vary", "words and mappings", vary)))
+    if (!vary ||
+        (list && !field_list(&r->problems, "optimise.vary", "words and mappings", vary, 0, NULL)))
         return false;
     for (size_t i = 0; i < (list ? vary->count : 1); i++) {
         struct axis_reader a = {.r = r,
@@ -223,11 +224,9 @@ static bool read_grow(struct reader *r)
         memcpy(search->grow, usual, sizeof usual);
         return true;
     }
-    if (!field_list(&r->problems, "optimise.grow", "a list of numbers of starts", grow))
+    if (!field_list(&r->problems, "optimise.grow", "a list of numbers of starts", grow,
+                    SCENARIO_MAX_STAGES, "stages"))
         return false;
-    if (grow->count > SCENARIO_MAX_STAGES)
-        return problem_add(&r->problems, grow->mark, "optimise.grow: more than %d stages",
-                           SCENARIO_MAX_STAGES);
     for (size_t i = 0; i < grow->count; i++) {
         char name[32];
         double number = 0;

@@ -94,6 +94,9 @@ bool axis_read_path(struct axis_reader *a, const struct tree_node *node)
 
     if (node->kind != TREE_SCALAR)
         return field_mismatch(&a->r->problems, a->name, "a path such as ground.friction", node);
+    if (axis->paths == SCENARIO_MAX_PATHS)
+        return problem_add(&a->r->problems, node->mark, "%s: more than %d paths", a->name,
+                           SCENARIO_MAX_PATHS);
     swept.field = schema_find_concrete(a->r->schema, node->text, swept.index);
     if (!swept.field)
         return unknown_path(a, node);
@@ -135,14 +138,11 @@ static bool read_paths(struct axis_reader *a)
         return axis_complain(a, "path and paths exclude each other");
     if (path)
         return axis_read_path(a, path);
-    if (!field_list(&a->r->problems, a->name, "a list of paths", paths))
+    bool good =
+        field_list(&a->r->problems, a->name, "a list of paths", paths, SCENARIO_MAX_PATHS, "paths");
+    if (!good)
         return false;
-    if (paths->count > SCENARIO_MAX_PATHS - (size_t)a->axis->paths) {
-        return problem_add(&a->r->problems, paths->mark, "%s: more than %d paths", a->name,
-                           SCENARIO_MAX_PATHS);
-    }
-    bool good = true;
-    for (size_t k = 0; k < paths->count; k++)
+    for (size_t k = 0; k < paths->count && (good || a->axis->paths < SCENARIO_MAX_PATHS); k++)
         good = axis_read_path(a, paths->item[k]) && good;
     return good;
 }
@@ -163,18 +163,12 @@ static bool read_row(struct axis_reader *a, const char *key, const struct tree_n
                      double *value)
 {
     const size_t paths = (size_t)(a->axis->paths - a->first);
-    char wanted[80];
-    bool good = true;
 
     if (!a->rows)
         return read_one(a, key, node, a->first, value);
-    snprintf(wanted, sizeof wanted, "a list of %zu values, one for each path", paths);
-    if (node->kind != TREE_LIST)
-        return field_mismatch(&a->r->problems, a->name, wanted, node);
-    if (node->count != paths) {
-        return problem_add(&a->r->problems, node->mark, "%s: expected %s, found %zu", a->name,
-                           wanted, node->count);
-    }
+    bool good = field_items(&a->r->problems, a->name, node, paths, "values, one for each path");
+    if (!good)
+        return false;
     for (size_t k = 0; k < paths; k++)
         good = read_one(a, key, node->item[k], a->first + (int)k, &value[k]) && good;
     return good;
@@ -185,7 +179,7 @@ bool axis_read_list(struct axis_reader *a, const struct tree_node *values, doubl
 {
     const size_t paths = (size_t)(a->axis->paths - a->first);
     bool good = true;
-    if (!field_list(&a->r->problems, a->name, "a list of values", values))
+    if (!field_list(&a->r->problems, a->name, "a list of values", values, 0, NULL))
         return false;
     *count = values->count;
     *value = calloc(*count * paths, sizeof **value);
@@ -198,8 +192,8 @@ bool axis_read_list(struct axis_reader *a, const struct tree_node *values, doubl
 
 bool axis_read_ends(struct axis_reader *a, const char *wanted, double *from, double *to)
 {
-    const struct tree_node *const first = tree_find(a->node, "from"), *const last =
-                                                                          tree_find(a->node, "to");
+    const struct tree_node *const first = tree_find(a->node, "from");
+    const struct tree_node *const last = tree_find(a->node, "to");
     char text[160];
     for (int k = a->first; k < a->axis->paths; k++) {
         if (a->axis->enumeration[k]) {
@@ -372,15 +366,10 @@ void sweep_read(struct reader *r, const struct tree_node *grid)
 {
     struct scenario *s = r->s;
 
-    if (!field_list(&r->problems, "sweep.grid", "a list of axes", grid)) {
-        r->axes_bad = true;
+    r->axes_bad =
+        !field_list(&r->problems, "sweep.grid", "a list of axes", grid, SCENARIO_MAX_AXES, "axes");
+    if (r->axes_bad)
         return;
-    }
-    if (grid->count > SCENARIO_MAX_AXES) {
-        problem_add(&r->problems, grid->mark, "sweep.grid: more than %d axes", SCENARIO_MAX_AXES);
-        r->axes_bad = true;
-        return;
-    }
     for (size_t i = 0; i < grid->count; i++) {
         struct axis_reader a = {.r = r,
                                 .axis = &s->axis[i],
@@ -521,6 +510,18 @@ const struct scenario_axis *scenario_axis_of(const struct scenario *s, size_t of
             if (s->axis[a].offset[*k] == offset)
                 return &s->axis[a];
     return NULL;
+}
+
+bool scenario_takes(const struct scenario *s, size_t offset, int word)
+{
+    int base, k;
+    const struct scenario_axis *const axis = scenario_axis_of(s, offset, &k);
+
+    for (size_t i = 0; axis && axis->value && i < axis->count; i++)
+        if ((int)scenario_axis_value(axis, i, k) == word)
+            return true;
+    memcpy(&base, (const char *)&s->base + offset, sizeof base);
+    return !(axis && axis->value) && base == word;
 }
 
 void scenario_extent(const struct scenario *s, size_t offset, double *least, double *largest)

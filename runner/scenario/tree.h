@@ -83,7 +83,8 @@ struct tree_node *tree_new(struct tree *tree, enum tree_kind kind, struct mark m
 /* Appends to a list, or, with a key, to a mapping. */
 bool tree_append(struct tree *tree, struct tree_node *parent, const struct tree_key *key,
                  struct tree_node *item);
-/* Where the value of a key of a mapping is, and its place there; NULL: there is none, as of NULL. */
+/* Where the value of a key of a mapping is, and its place there; NULL: there is none, as of NULL.
+ */
 struct tree_node **tree_place(const struct tree_node *map, const char *key, size_t *index);
 
 /* Reads a text, of the scenario itself (set 0) or of the --set of that number, whose value may be
