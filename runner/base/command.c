@@ -352,9 +352,7 @@ size_t command_word(const struct command *command, const char *option, const cha
                     const char *const *known, size_t count)
 {
     enum { MANY = 8 };
-    size_t k = 0;
-    while (k < count && strcmp(word, known[k]) != 0)
-        k++;
+    const size_t k = word_place(word, known, count);
     if (k < count)
         return k;
     const char *near = count > MANY ? nearest_word(word, known, count) : NULL;

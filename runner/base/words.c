@@ -1,5 +1,6 @@
 /* words.c - edit distances to known words; letters. */
 #include "words.h"
+#include "numbers.h"
 
 #include <stdarg.h>
 #include <stdio.h>
@@ -8,17 +9,12 @@
 
 enum { LONGEST_WORD = 63 };
 
-static size_t minimum(size_t a, size_t b)
-{
-    return a < b ? a : b;
-}
-
 /* Damerau-Levenshtein distance in its restricted form (a pair is swapped at most once). Words
  * longer than LONGEST_WORD are compared by their beginning: no known word is that long. */
 static size_t edit_distance(const char *a, const char *b)
 {
     size_t rows[3][LONGEST_WORD + 1];
-    size_t m = minimum(strlen(a), LONGEST_WORD), n = minimum(strlen(b), LONGEST_WORD);
+    size_t m = smaller(strlen(a), LONGEST_WORD), n = smaller(strlen(b), LONGEST_WORD);
     size_t *before = rows[0], *previous = rows[1], *current = rows[2];
 
     for (size_t j = 0; j <= n; j++)
@@ -28,9 +24,9 @@ static size_t edit_distance(const char *a, const char *b)
         for (size_t j = 1; j <= n; j++) {
             size_t differs = a[i - 1] != b[j - 1];
             current[j] =
-                minimum(minimum(previous[j], current[j - 1]) + 1, previous[j - 1] + differs);
+                smaller(smaller(previous[j], current[j - 1]) + 1, previous[j - 1] + differs);
             if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
-                current[j] = minimum(current[j], before[j - 2] + 1);
+                current[j] = smaller(current[j], before[j - 2] + 1);
         }
         size_t *oldest = before;
         before = previous;
@@ -40,10 +36,18 @@ static size_t edit_distance(const char *a, const char *b)
     return previous[n];
 }
 
+size_t word_place(const char *word, const char *const *known, size_t count)
+{
+    size_t k = 0;
+    while (k < count && strcmp(word, known[k]) != 0)
+        k++;
+    return k;
+}
+
 const char *nearest_word(const char *word, const char *const *known, size_t count)
 {
     const char *nearest = NULL;
-    size_t length = minimum(strlen(word), LONGEST_WORD);
+    size_t length = smaller(strlen(word), LONGEST_WORD);
     const size_t third = length / 3, admitted = third > 2 ? third : length > 3 ? 2 : 1;
     size_t best = admitted + 1;
 
@@ -52,7 +56,7 @@ const char *nearest_word(const char *word, const char *const *known, size_t coun
             return known[i];
         size_t distance = edit_distance(word, known[i]);
         /* As many edits as letters, of either word, would be another word altogether. */
-        if (distance < best && distance < minimum(length, strlen(known[i]))) {
+        if (distance < best && distance < smaller(length, strlen(known[i]))) {
             best = distance;
             nearest = known[i];
         }

@@ -6,6 +6,9 @@
 #include <stddef.h>
 #include <stdint.h>
 
+/* Which of known[count] a word is; `count`: none. */
+size_t word_place(const char *word, const char *const *known, size_t count);
+
 /* The known word nearest to `word` (Damerau-Levenshtein, at most 2 edits or a third of its
  * length, one where it has three letters or less), or NULL. */
 const char *nearest_word(const char *word, const char *const *known, size_t count);

@@ -32,10 +32,8 @@ bool allowed_make(struct allowed *allowed, const struct scenario *s, uint64_t in
 
 bool allowed_glued_in(const struct scenario *s)
 {
-    double model[STANCE_MAX_ROBOT];
     stance_equilibrium equilibrium;
-    stance_message ignored;
-    return resolve_equilibrium(s->scene, &s->base, model, &equilibrium, &ignored) &&
+    return resolve_equilibrium(s->scene, &s->base, NULL, &equilibrium, NULL) &&
            allowed_glued(&equilibrium);
 }
 

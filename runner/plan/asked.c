@@ -85,10 +85,10 @@ int asked_first(const struct command *command, const struct scenario *s,
     struct plan_error error = {0};
     stance_case *const c = calloc(1, sizeof *c);
     const char *why = c ? error.message.text : strerror(ENOMEM);
-    int method, code = EXIT_USAGE;
+    int code = EXIT_USAGE;
     const bool made = c && plan_make(&plan, s, true, 0, false, &error);
     if (made && plan_compute_designs(&plan, &alone, &error) && plan_check_cases(&plan, &error)) {
-        why = plan_resolve(&plan, 0, c, &method) ? NULL : "the first case does not exist";
+        why = plan_resolve(&plan, 0, c, NULL) ? NULL : "the first case does not exist";
         code = why ? EXIT_USAGE : work(s, c, request);
     }
     if (why)

@@ -32,14 +32,11 @@ static int print(json_t *facts, bool json, const char *text)
 static int report_at(const struct scenario *s, const char *text)
 {
     struct scenario_values values = s->base;
-    double model[STANCE_MAX_ROBOT];
-    stance_equilibrium ignored;
-    stance_message message;
 
     values.law = 0;
     const bool controller = scenario_law(&s->base)->designed &&
                             ((s->base.design_point.given && values.state_given) ||
-                             resolve_equilibrium(s->scene, &values, model, &ignored, &message));
+                             resolve_equilibrium(s->scene, &values, NULL, NULL, NULL));
     int line = 1, column = 1;
     if (!scenario_place(s, text, &line, &column))
         scenario_place(s, controller ? "controller:" : "initial:", &line, &column);

@@ -4,7 +4,7 @@
  */
 #include "design.h"
 
-#include "runner/base/message.h"
+#include "runner/base/problem.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -21,15 +21,12 @@ static bool refuse(stance_message *message, const char *what, stance_error error
 const char *design_supports(const stance_scene *scene, const stance_equilibrium *equilibrium,
                             char *buffer, size_t size)
 {
-    size_t length = 0;
-    buffer[0] = '\0';
-    for (int c = 0; c < scene->contacts && length < size; c++) {
-        if (equilibrium->supports >> c & 1) {
-            length += (size_t)snprintf(buffer + length, size - length, "%s%s",
-                                       length > 0 ? ", " : "", scene->contact_name[c]);
-        }
-    }
-    return buffer;
+    const char *names[STANCE_MAX_CONTACTS];
+    size_t count = 0;
+    for (int c = 0; c < scene->contacts; c++)
+        if (equilibrium->supports >> c & 1)
+            names[count++] = scene->contact_name[c];
+    return word_list(buffer, size, names, count);
 }
 
 static stance_plant plant_of(const struct design_report *r)

@@ -19,8 +19,7 @@ void ground_case(const struct scenario *s, const struct scenario_values *values,
     stance_case_robot(s->scene, c);
 }
 
-/* m along the ground; *rises: m/s, off it. */
-static double along(const stance_case *c, const double *position, const double *velocity,
+double ground_along(const stance_case *c, const double *position, const double *velocity,
                     int contact, double *rises)
 {
     double place[2], speed[2];
@@ -37,7 +36,8 @@ void ground_gaps(const stance_case *c, const double *position, double gap[STANCE
     c->scene->gaps(c->scene, c->robot, position, gap);
     ground_pieces_find(c, NULL, &pieces);
     for (int k = 0; c->body.plates > 0 && k < c->scene->contacts; k++) {
-        const double place = c->scene->grip[k] < 0 ? NAN : along(c, position, rest, k, &ignored);
+        const double place =
+            c->scene->grip[k] < 0 ? NAN : ground_along(c, position, rest, k, &ignored);
         if (!(fabs(place) < FARTHEST))
             continue; /* the stop of a joint, or nowhere */
         stance_ground_at(c, pieces.from, place, &height, &end);
@@ -58,7 +58,7 @@ static double place_of(const stance_case *c, const struct ground_motion *m, size
                        double *rises)
 {
     const size_t k = row * (size_t)c->scene->coordinates;
-    return along(c, m->position + k, m->velocity + k, contact, rises);
+    return ground_along(c, m->position + k, m->velocity + k, contact, rises);
 }
 
 /* What is laid once so many footfalls have been, before the next one. */

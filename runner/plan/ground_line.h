@@ -10,6 +10,9 @@
  * robot: no more than what the functions below ask for. */
 void ground_case(const struct scenario *s, const struct scenario_values *values, uint64_t index,
                  stance_case *c);
+/* Where a contact is, m along the ground; *rises: m/s, off it. */
+double ground_along(const stance_case *c, const double *position, const double *velocity,
+                    int contact, double *rises);
 /* Gaps of the contacts in a position, as a scene's `gaps` has them, over the ground that there is
  * before any footfall. */
 void ground_gaps(const stance_case *c, const double *position, double gap[STANCE_MAX_CONTACTS]);

@@ -4,6 +4,7 @@
 #include "engine/tree.h"
 
 #include "runner/base/message.h"
+#include "runner/base/words.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -14,27 +15,12 @@ enum { OWN_CHECKS = 64, CHECKS = 256, CHECK_STEPS = 50 };
 /* Steps that kernels which are built in compute in less time than it takes to compile others. */
 static const double brief_steps = 2e6;
 
-static bool listed(const char *word, const char *const *list, size_t count)
-{
-    for (size_t i = 0; i < count; i++)
-        if (strcmp(word, list[i]) == 0)
-            return true;
-    return false;
-}
-
 /* Whether cases of the plan have a method. */
 static bool uses_method(const struct plan *plan, int method)
 {
-    const struct scenario *const s = plan->scenario;
-    int k;
-    const struct scenario_axis *const axis =
-        scenario_axis_of(s, offsetof(struct scenario_values, method), &k);
-    if (plan->single || !axis)
-        return plan_method(plan, 0) == method;
-    for (size_t i = 0; i < axis->count; i++)
-        if ((int)scenario_axis_value(axis, i, k) == method)
-            return true;
-    return false;
+    return plan->single
+               ? plan_method(plan, 0) == method
+               : scenario_takes(plan->scenario, offsetof(struct scenario_values, method), method);
 }
 
 void kernels_instruction_sets(const struct plan *plan, char text[INSTRUCTION_SETS_SIZE])
@@ -63,9 +49,9 @@ static size_t list_methods(const struct plan *plan, const struct kernels_choice 
     size_t count = 0;
     for (int m = 0; stance_methods()[m]; m++) {
         const stance_method *const method = stance_methods()[m];
-        const bool used = choice->methods > 0
-                              ? listed(method->name, choice->method, choice->methods)
-                              : uses_method(plan, m);
+        const bool used = choice->methods > 0 ? word_place(method->name, choice->method,
+                                                           choice->methods) < choice->methods
+                                              : uses_method(plan, m);
         for (size_t i = 0; used && i < isas && count < OBJECTS_MOST; i++) {
             wanted[count++] = (struct objects_wanted){
                 method, isa[i],
@@ -144,11 +130,10 @@ static size_t list_checks(const struct plan *plan, stance_case *check, double *s
     size_t count = 0;
     *steps = 0;
     for (uint64_t i = 0; i < tried; i++) {
-        int method;
         const uint64_t row =
             tried == plan->rows ? i : (uint64_t)((double)plan->rows * i / OWN_CHECKS);
         if (plan->design_status[plan_design(plan, plan_case(plan, row))] != STANCE_DONE ||
-            !plan_resolve(plan, row, &check[count], &method))
+            !plan_resolve(plan, row, &check[count], NULL))
             continue;
         *steps += (double)plan->rows / (double)tried * (double)check[count].steps;
         if (check[count].steps > CHECK_STEPS)

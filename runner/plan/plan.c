@@ -62,30 +62,22 @@ static bool plan_trajectories(struct plan *plan, bool trace, struct plan_error *
     return true;
 }
 
-static bool method_runs(const struct scenario *s, int method, struct plan_error *error)
-{
-    const stance_method *m = stance_methods()[method];
-    if (instruction_set_kernel(s->scene, m))
-        return true;
-    return complain(&error->message, "method '%s' cannot run scene '%s' in this build", m->name,
-                    s->scene->name);
-}
-
 static bool methods_run(struct plan *plan, struct plan_error *error)
 {
     const struct scenario *s = plan->scenario;
+    const size_t method = offsetof(struct scenario_values, method);
     int k;
-    const struct scenario_axis *axis =
-        scenario_axis_of(s, offsetof(struct scenario_values, method), &k);
+    const struct scenario_axis *axis = scenario_axis_of(s, method, &k);
     plan->methods_swept = axis != NULL;
-    for (size_t i = 0; axis && i < axis->count; i++) {
-        if (!method_runs(s, (int)scenario_axis_value(axis, i, k), error)) {
-            error->line = axis->line;
-            error->column = axis->column;
-            return false;
-        }
+    for (int m = 0; stance_methods()[m]; m++) {
+        if (!scenario_takes(s, method, m) || instruction_set_kernel(s->scene, stance_methods()[m]))
+            continue;
+        error->line = axis ? axis->line : 0;
+        error->column = axis ? axis->column : 0;
+        return complain(&error->message, "method '%s' cannot run scene '%s' in this build",
+                        stance_methods()[m]->name, s->scene->name);
     }
-    return plan->methods_swept || method_runs(s, s->base.method, error);
+    return true;
 }
 
 int plan_error_print(const struct scenario *s, const struct plan_error *error)
@@ -267,7 +259,8 @@ bool plan_resolve(const struct plan *plan, uint64_t row, stance_case *out, int *
     size_t design = plan_design(plan, index);
 
     scenario_case_values(s, index, &values);
-    *method = values.method;
+    if (method)
+        *method = values.method;
     if (plan->design_status[design] != STANCE_DONE)
         return false;
     const struct resolved_design own = plan_design_at(plan, design);

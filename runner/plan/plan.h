@@ -103,8 +103,8 @@ void plan_take_design(struct plan *plan, size_t place, const struct plan *from, 
 
 /* Method of a row, as index into stance_methods(). */
 int plan_method(const struct plan *plan, uint64_t row);
-/* Parameters of a row; *method as index into stance_methods(). false: the case does not exist,
- * because its design or its initial state does not. */
+/* Parameters of a row; *method (may be NULL) as index into stance_methods(). false: the case does
+ * not exist, because its design or its initial state does not. */
 bool plan_resolve(const struct plan *plan, uint64_t row, stance_case *out, int *method);
 
 /* Case i of PLAN_COST_CASES, which plan_cost tries, in an order that is spread evenly over the

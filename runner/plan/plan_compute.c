@@ -17,11 +17,6 @@ enum {
     CORNER_AXES = 11, /* 2048 corners */
 };
 
-static size_t smaller(size_t a, size_t b)
-{
-    return a < b ? a : b;
-}
-
 /* ---- designs ------------------------------------------------------------------------------ */
 
 /* At the key that the message begins with, or else at another. */

@@ -1,6 +1,8 @@
 /* refine.c - cells, whether they are mixed, and what they ask for. */
 #include "refine.h"
 
+#include "runner/base/numbers.h"
+
 #include <Random123/philox.h>
 
 #include <stdlib.h>
@@ -58,11 +60,6 @@ struct refine_map refine_map_of(const struct scenario *scenario)
         map.samples = scenario->axis[a].sample ? map.count[a] : 0;
     }
     return map;
-}
-
-static size_t smaller(size_t a, size_t b)
-{
-    return a < b ? a : b;
 }
 
 static size_t quotient_up(size_t a, size_t b)
@@ -262,19 +259,13 @@ static void widen(uint8_t *cell, struct shape shape, size_t margin)
     for (size_t line = 0; line < shape.outer * shape.inner; line++) {
         uint8_t *at = cell + line / shape.inner * shape.length * shape.inner + line % shape.inner;
         size_t left = 0; /* cells that are still near */
-        for (size_t k = 0; k < shape.length; k++) {
-            uint8_t *one = at + k * shape.inner;
-            left = *one & MIXED ? margin + 1 : left;
-            if (left > 0) {
-                *one |= NEAR;
-                left--;
-            }
-        }
-        left = 0;
-        for (size_t k = shape.length; k-- > 0;) {
-            uint8_t *one = at + k * shape.inner;
-            left = *one & MIXED ? margin + 1 : left;
-            *one = (uint8_t)((*one & LABEL) | (left > 0 || *one & NEAR ? MIXED : 0));
+        for (size_t k = 0; k < 2 * shape.length; k++) {
+            const bool back = k >= shape.length;
+            uint8_t *one = at + (back ? 2 * shape.length - 1 - k : k) * shape.inner;
+            left = *one & MIXED ? margin + 1 : k == shape.length ? 0 : left;
+            *one |= left > 0 ? NEAR : 0;
+            if (back)
+                *one = (uint8_t)((*one & LABEL) | (*one & NEAR ? MIXED : 0));
             left -= left > 0;
         }
     }

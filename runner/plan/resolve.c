@@ -75,7 +75,13 @@ bool resolve_equilibrium(const stance_scene *scene, const struct scenario_values
 {
     const bool law = scenario_law(values)->designed;
     const bool own = law && values->design_point.given;
+    double unasked[STANCE_MAX_ROBOT];
+    stance_equilibrium any;
+    stance_message ignored;
 
+    model = model ? model : unasked;
+    equilibrium = equilibrium ? equilibrium : &any;
+    message = message ? message : &ignored;
     message->text[0] = '\0';
     for (int i = 0; i < STANCE_MAX_ROBOT; i++)
         model[i] = law && !isnan(values->model[i]) ? values->model[i] : values->robot[i];
@@ -301,24 +307,17 @@ void resolve_start(const stance_scene *scene, const struct scenario_values *valu
         scene->stand(scene, values->robot, scenario_supports(scene, values), position, velocity);
 }
 
-/* Where a contact is along the ground. */
-static double along(const stance_scene *scene, const stance_case *out, int c)
-{
-    double point[2], speed[2], sine, cosine;
-    stance_sincos(out->robot[STANCE_ROBOT_SLOPE], &sine, &cosine);
-    scene->contact_point(scene, out->robot, out->position, out->velocity, c, point, speed);
-    return cosine * point[0] - sine * point[1];
-}
-
 /* May a foot be in the ground, as one that lands ahead only and is no further than another? */
 static bool passes_through(const stance_scene *scene, const stance_case *out, int c,
                            const double *gap)
 {
+    double ignored;
+    const double place = ground_along(out, out->position, out->velocity, c, &ignored);
     bool behind = false;
     for (int k = 0; k < scene->contacts && out->lands_ahead; k++) {
         const bool other = scene->grip[k] >= 0 && scene->grip[k] != scene->grip[c];
         if (other && (out->contacts >> k & 1) && fabs(gap[k]) <= DEEPEST_START)
-            behind |= along(scene, out, c) <= along(scene, out, k);
+            behind |= place <= ground_along(out, out->position, out->velocity, k, &ignored);
     }
     return behind;
 }
@@ -537,11 +536,9 @@ bool resolve_case(const struct scenario *s, const struct scenario_values *values
 static int find_free(const struct scenario *s, bool *column)
 {
     const int columns = 2 * s->scene->postures;
-    double model[STANCE_MAX_ROBOT];
     stance_equilibrium equilibrium;
-    stance_message ignored;
     int count = 0;
-    if (resolve_equilibrium(s->scene, &s->base, model, &equilibrium, &ignored))
+    if (resolve_equilibrium(s->scene, &s->base, NULL, &equilibrium, NULL))
         resolve_free(s->scene, &equilibrium, column);
     else
         memset(column, true, (size_t)columns * sizeof *column);

@@ -52,7 +52,7 @@ bool resolve_keep_design_inputs(const stance_scene *scene, struct scenario_value
 
 /* The robot that the design believes in, model[STANCE_MAX_ROBOT], and the equilibrium it is made
  * at: the controller's, or for laws without one the initial one. false: `message` says why there is
- * none. */
+ * none. Each may be NULL. */
 bool resolve_equilibrium(const stance_scene *scene, const struct scenario_values *values,
                          double *model, stance_equilibrium *equilibrium, stance_message *message);
 

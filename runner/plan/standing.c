@@ -32,12 +32,9 @@ static double place(double given, int side, int i)
 static bool stands(struct question *q, int k, double value)
 {
     const double given = q->posture[k];
-    double model[STANCE_MAX_ROBOT];
-    stance_equilibrium ignored;
-    stance_message unsaid;
     q->posture[k] = value;
     q->asked++;
-    const bool good = resolve_equilibrium(q->s->scene, &q->values, model, &ignored, &unsaid);
+    const bool good = resolve_equilibrium(q->s->scene, &q->values, NULL, NULL, NULL);
     q->posture[k] = given;
     return good;
 }
@@ -83,15 +80,13 @@ void standing_ranges(const struct scenario *s, const struct scenario_values *val
                      stance_message *message)
 {
     struct question q = {.s = s, .values = *values};
-    double model[STANCE_MAX_ROBOT], range[2];
-    stance_equilibrium ignored;
-    stance_message unsaid;
+    double range[2];
     const size_t used = strlen(message->text);
     if (!strstr(message->text, "no equilibrium: "))
         return;
     q.values.law = 0; /* the start's own, or else that of the controller */
     q.posture = q.values.equilibrium.posture;
-    if (values->state_given || resolve_equilibrium(s->scene, &q.values, model, &ignored, &unsaid)) {
+    if (values->state_given || resolve_equilibrium(s->scene, &q.values, NULL, NULL, NULL)) {
         q.values.law = values->law;
         if (values->design_point.given)
             q.posture = q.values.design_point.posture;

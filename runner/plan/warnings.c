@@ -200,8 +200,7 @@ static bool look_at_angles(const struct plan *plan, stance_case *c, const char *
 {
     const stance_scene *const scene = plan->scenario->scene;
     for (int end = 0; end < 2; end++) {
-        int method;
-        if (!plan_resolve(plan, end ? plan->rows - 1 : 0, c, &method))
+        if (!plan_resolve(plan, end ? plan->rows - 1 : 0, c, NULL))
             continue;
         for (int i = 0; i < scene->coordinates; i++) {
             if (strcmp(scene->coordinate[i].unit, "rad") != 0 || fabs(c->position[i]) <= 2 * M_PI)
@@ -215,14 +214,21 @@ static bool look_at_angles(const struct plan *plan, stance_case *c, const char *
     return false;
 }
 
-/* Of a sample of parameters shares are wanted, to which the equilibrium is a start as any other. */
-static bool is_map(const struct scenario *s)
+/* Whether axes, or (`sample`) that of the sample alone, move starts; or (`other`) something else.
+ */
+static bool moves(const struct scenario *s, bool sample, bool other)
 {
     for (int a = 0; a < s->axes; a++)
-        for (int k = 0; k < s->axis[a].paths && s->axis[a].sample; k++)
-            if (!scenario_is_start(s->axis[a].path[k]))
-                return false;
-    return true;
+        for (int k = 0; k < s->axis[a].paths && (s->axis[a].sample || !sample); k++)
+            if (scenario_is_start(s->axis[a].path[k]) != other)
+                return true;
+    return false;
+}
+
+/* Whether an axis goes from offsets below 0 to above it. */
+static bool passes_equilibrium(const struct scenario_axis *axis)
+{
+    return axis->from * axis->to < 0 && strncmp(axis->path[0], "initial.offset.", 15) == 0;
 }
 
 /* How far, in cells, 0 lies from the nearest of so many points of an axis. */
@@ -232,15 +238,14 @@ static double missed(const struct scenario_axis *axis, size_t count)
     return fabs(place - round(place));
 }
 
-/* Axes of offsets from below 0 to above it none of whose points is there. */
+/* Axes of offsets from below 0 to above it none of whose points is there; of a sample of parameters
+ * shares are wanted, to which the equilibrium is a start as any other. */
 static void look_at_counts(const struct scenario *s, const char *who)
 {
-    for (int a = 0; a < s->axes && is_map(s); a++) {
+    for (int a = 0; a < s->axes && !moves(s, true, true); a++) {
         const struct scenario_axis *axis = &s->axis[a];
         size_t better = axis->count;
-        if (axis->count < 2 || axis->from * axis->to >= 0 ||
-            strncmp(axis->path[0], "initial.offset.", 15) != 0 ||
-            !scenario_is_start(axis->path[0]) ||
+        if (axis->count < 2 || !passes_equilibrium(axis) || !scenario_is_start(axis->path[0]) ||
             missed(axis, axis->count) <= MUCH * (double)(axis->count - 1))
             continue;
         while (missed(axis, better) > 1e-6 && better < 2 * axis->count)
@@ -259,8 +264,7 @@ static void look_at_lines(const struct scenario *s, const char *who)
     for (int a = 0; a < s->axes; a++) {
         const struct scenario_axis *axis = &s->axis[a];
         const size_t last = axis->count - 1;
-        if (axis->sample || axis->from * axis->to >= 0 ||
-            strncmp(axis->path[0], "initial.offset.", 15) != 0)
+        if (axis->sample || !passes_equilibrium(axis))
             continue;
         for (int k = 1; k < axis->paths; k++) {
             const double from = scenario_axis_value(axis, 0, k),
@@ -332,9 +336,7 @@ static void look_at_edge(const struct plan *plan, stance_case *c, const char *wh
 {
     const stance_scene *const scene = plan->scenario->scene;
     const double trifle = 1e-6; /* rad */
-    int method;
-    bool rests =
-        scene->mechanism->body[0].joint == STANCE_FREE && plan_resolve(plan, 0, c, &method);
+    bool rests = scene->mechanism->body[0].joint == STANCE_FREE && plan_resolve(plan, 0, c, NULL);
     for (int i = 0; rests && i < scene->coordinates; i++)
         rests = c->velocity[i] == 0;
     if (rests && carried(plan, c, trifle) != carried(plan, c, -trifle))
@@ -380,19 +382,10 @@ bool warnings_print(const struct plan *plan, const char *who)
 
 /* ---- ranges ------------------------------------------------------------------------------- */
 
-static bool moves_starts(const struct scenario *s)
-{
-    for (int a = 0; a < s->axes; a++)
-        for (int k = 0; k < s->axis[a].paths; k++)
-            if (scenario_is_start(s->axis[a].path[k]))
-                return true;
-    return false;
-}
-
 void warnings_of_ends(const struct scenario *s, const uint64_t *outcome, uint64_t cases, bool tried,
                       const char *who)
 {
-    const bool held = cases > 0 && outcome[STANCE_STABILISED] == cases && moves_starts(s),
+    const bool held = cases > 0 && outcome[STANCE_STABILISED] == cases && moves(s, false, false),
                lost = cases > 1 && outcome[STANCE_FELL] == cases && s->base.settle &&
                       scenario_law(&s->base)->designed;
     char all[80];

@@ -15,16 +15,16 @@ enum { WIDTH = 78, TEXT_INDENT = 4 };
 /* ---- text ------------------------------------------------------------------------------------ */
 
 /* Prints words, broken at WIDTH. */
-static void print_wrapped(FILE *out, const char *text, int indent)
+static void print_wrapped(FILE *out, const char *text)
 {
-    int column = indent;
-    fprintf(out, "%*s", indent, "");
+    int column = TEXT_INDENT;
+    fprintf(out, "%*s", TEXT_INDENT, "");
     while (*text) {
         int length = (int)strcspn(text, " ");
-        if (column > indent && column + 1 + length > WIDTH) {
-            fprintf(out, "\n%*s", indent, "");
-            column = indent;
-        } else if (column > indent) {
+        if (column > TEXT_INDENT && column + 1 + length > WIDTH) {
+            fprintf(out, "\n%*s", TEXT_INDENT, "");
+            column = TEXT_INDENT;
+        } else if (column > TEXT_INDENT) {
             fputc(' ', out);
             column++;
         }
@@ -135,8 +135,8 @@ static void print_row(FILE *out, const struct scenario_field *field)
     snprintf(line, sizeof line, "%s%s", kind_text(field, kind, sizeof kind),
              default_text(field, fallback, sizeof fallback));
     fprintf(out, "%s\n", field->path);
-    print_wrapped(out, field->text, TEXT_INDENT);
-    print_wrapped(out, line, TEXT_INDENT);
+    print_wrapped(out, field->text);
+    print_wrapped(out, line);
 }
 
 static void print_field(FILE *out, const struct schema *schema, const struct scenario_field *field)
@@ -146,21 +146,19 @@ static void print_field(FILE *out, const struct schema *schema, const struct sce
 
     print_row(out, field);
     if (field->more)
-        print_wrapped(out, field->more, TEXT_INDENT);
+        print_wrapped(out, field->more);
     if (use_text(field, use, sizeof use)[0])
-        print_wrapped(out, use, TEXT_INDENT);
-    if (field->sweep) {
-        print_wrapped(out,
-                      field->design ? "May be swept; each value is a controller design of its own."
-                                    : "May be swept.",
-                      TEXT_INDENT);
-    }
+        print_wrapped(out, use);
+    if (field->sweep)
+        print_wrapped(out, field->design
+                               ? "May be swept; each value is a controller design of its own."
+                               : "May be swept.");
     const bool is_list = field->type == FIELD_AXES || field->type == FIELD_FACTORS;
     snprintf(path, sizeof path, "%s%s", field->path, is_list ? "[]" : "");
     size_t n = schema_children(schema, path, names, SCHEMA_MAX_FIELDS);
     if (n > 0) {
         snprintf(line, sizeof line, "Keys: %s", word_list(list, sizeof list, names, n));
-        print_wrapped(out, line, TEXT_INDENT);
+        print_wrapped(out, line);
     }
 }
 
@@ -212,14 +210,12 @@ static json_t *number_schema(const struct scenario_field *field)
 {
     json_t *schema = json_pack("{s:s}", "type",
                                field->whole || field->type == FIELD_INTEGER ? "integer" : "number");
-    if (isfinite(field->low)) {
+    if (isfinite(field->low))
         json_object_set_new(schema, field->low_open ? "exclusiveMinimum" : "minimum",
                             json_number(field->low));
-    }
-    if (isfinite(field->high)) {
+    if (isfinite(field->high))
         json_object_set_new(schema, field->high_open ? "exclusiveMaximum" : "maximum",
                             json_number(field->high));
-    }
     if (field->words)
         return json_pack("{s:[o,{s:s}]}", "anyOf", schema, "const", field->words[0]);
     return schema;
@@ -384,21 +380,18 @@ static json_t *field_schema(const struct schema *schema, const struct scenario_f
     return object;
 }
 
-/* A mapping with the keys below `path`. */
 /* Whether a key stands for any name. */
 static bool is_pattern(const struct schema *schema, const char *name)
 {
-    const stance_scene *const scene = schema->scene;
-    if (schema_any_plate(schema) && strcmp(name, PLATE_PATTERN) == 0)
-        return true;
-    return schema->pattern &&
-           (strcmp(name, scene->mechanism->body[0].name) == 0 ||
-            (name[0] == 'v' && strcmp(name + 1, scene->mechanism->body[0].name) == 0) ||
-            strcmp(name, scene->mechanism->element[0].name) == 0 ||
-            strcmp(name, scene->mechanism->point[0].name) == 0 ||
-            strcmp(name, scene->mechanism->actuator[0].name) == 0);
+    const stance_mechanism *const m = schema->scene->mechanism;
+    bool is = schema_any_plate(schema) && strcmp(name, PLATE_PATTERN) == 0;
+    for (int part = 0; part < ROBOT_PARTS && schema->pattern; part++)
+        is = is || strcmp(name + (part == PART_BODY && name[0] == 'v'),
+                          part_name(m, (enum part)part, 0)) == 0;
+    return is;
 }
 
+/* A mapping with the keys below `path`. */
 static json_t *map_schema(const struct schema *schema, const char *path)
 {
     const char *names[SCHEMA_MAX_FIELDS];
@@ -489,11 +482,8 @@ static size_t paths_with(const char *word, bool words, const struct schema *sche
         for (size_t i = 0; i < schemas[k].count && n < SHOWN_PATHS; i++) {
             const struct scenario_field *field = &schemas[k].field[i];
             bool found = !words && strcmp(schema_last_name(field->path), word) == 0;
-            for (size_t w = 0; words && w < field->word_count; w++)
-                found = found || strcmp(field->words[w], word) == 0;
-            for (size_t l = 0; l < n; l++)
-                found = found && strcmp(list[l], field->path) != 0;
-            if (found)
+            found |= words && word_place(word, field->words, field->word_count) < field->word_count;
+            if (found && word_place(field->path, list, n) == n)
                 list[n++] = field->path;
         }
     }
@@ -568,17 +558,16 @@ static bool fits_pattern(const struct schema *schema, const char *row, const cha
 static const struct scenario_field *find_row(const struct schema *schema, const char *path)
 {
     char general[sizeof schema->field->path];
-    size_t index[2], n = 0;
-    const struct scenario_field *field = schema_find(schema, path);
-    field = field ? field : schema_find_concrete(schema, path, index);
+    size_t n = 0;
     for (const char *at = path; *at && n < sizeof general - 1; n++) {
         general[n] = *at++;
         if (general[n] == '[')
             at += strspn(at, "0123456789");
     }
     general[n] = '\0';
+    const struct scenario_field *field = schema_find(schema, general);
     const bool exact = field != NULL;
-    for (size_t i = 0; i < schema->count && schema->documents && !exact; i++)
+    for (size_t i = 0; i < schema->count && !exact; i++)
         if (fits_pattern(schema, schema->field[i].path, general))
             field = &schema->field[i]; /* a rate comes after its coordinate */
     return field;

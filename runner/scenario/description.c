@@ -138,23 +138,17 @@ static bool names_path(const struct tree_node *node, const char *path)
     return found;
 }
 
-/* The value below keys, or NULL. */
-static const struct tree_node *find_below(const struct tree_node *node, const char *const *key)
-{
-    for (; node && *key; key++)
-        node = tree_find(node, *key);
-    return node;
-}
-
 /* Whether the sweep varies the number at a path below robot, ground or the model. */
 static bool is_varied(const struct description *d, const char *of, const char *path)
 {
-    static const char *const lists[][4] = {{"sweep", "grid"}, {"sweep", "sample", "vary"}};
+    const struct tree_node *const sweep = tree_find(d->r->tree.root, "sweep"),
+                                  *const lists[] = {tree_find(sweep, "grid"),
+                                                    tree_find(tree_find(sweep, "sample"), "vary")};
     char whole[DESCRIPTION_PATH + 24];
     bool found = false;
     snprintf(whole, sizeof whole, "%s.%s", of, path);
     for (size_t k = 0; k < sizeof lists / sizeof lists[0]; k++) {
-        const struct tree_node *const list = find_below(d->r->tree.root, lists[k]);
+        const struct tree_node *const list = lists[k];
         for (size_t i = 0;
              list && list->kind == TREE_LIST && i < list->count && i < SCENARIO_MAX_AXES; i++)
             found = found || names_path(tree_find(list->item[i], "path"), whole) ||
@@ -180,10 +174,10 @@ static void choose_key(struct description *d, const struct part_key *key, int i)
         varies[n] = is_varied(d, part_kinds[key->part].in, path);
         wanted = wanted || varies[n] || is_varied(d, "controller.model", path);
     }
-    wanted =
-        wanted || find_below(d->r->tree.root,
-                             (const char *const[]){"controller", "model", part_kinds[key->part].key,
-                                                   name, key->field.path, NULL});
+    const struct tree_node *const model =
+        tree_find(tree_find(d->r->tree.root, "controller"), "model");
+    wanted = wanted || tree_find(tree_find(tree_find(model, part_kinds[key->part].key), name),
+                                 key->field.path);
     for (int n = 0; wanted && n < count; n++) {
         if (m->numbers < STANCE_ROBOT_FALL_HEIGHT) {
             m->number[m->numbers] = place + n;

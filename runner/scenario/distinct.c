@@ -28,26 +28,23 @@ struct listed {
     size_t place;
 };
 
-/* By their values, then by their place in the list. */
-static int compare_points(const void *left, const void *right)
+/* By their values: below 0, 0 (the same point), above 0. */
+static int compare(const struct scenario_axis *axis, size_t a, size_t b)
 {
-    const struct scenario_axis *const axis = ((const struct listed *)left)->axis;
-    const size_t a = ((const struct listed *)left)->place,
-                 b = ((const struct listed *)right)->place;
     for (int k = 0; k < axis->paths; k++) {
         const double x = scenario_axis_value(axis, a, k), y = scenario_axis_value(axis, b, k);
         if (x != y) /* 0 and -0 are the same */
             return x < y ? -1 : 1;
     }
-    return a < b ? -1 : a > b;
+    return 0;
 }
 
-static bool same_point(const struct scenario_axis *axis, size_t a, size_t b)
+/* ... then by their place in the list. */
+static int compare_points(const void *left, const void *right)
 {
-    bool same = true;
-    for (int k = 0; k < axis->paths; k++)
-        same = same && scenario_axis_value(axis, a, k) == scenario_axis_value(axis, b, k);
-    return same;
+    const struct listed *const a = left, *const b = right;
+    const int order = compare(a->axis, a->place, b->place);
+    return order ? order : a->place < b->place ? -1 : a->place > b->place;
 }
 
 bool axis_check_values(struct axis_reader *a, const struct tree_node *values)
@@ -60,7 +57,7 @@ bool axis_check_values(struct axis_reader *a, const struct tree_node *values)
     for (size_t i = 0; i < n; i++)
         order[i] = (struct listed){a->axis, i};
     qsort(order, n, sizeof *order, compare_points);
-    while (at < n && !same_point(a->axis, order[at - 1].place, order[at].place))
+    while (at < n && compare(a->axis, order[at - 1].place, order[at].place) != 0)
         at++;
     const bool good = at >= n;
     if (!good) {
@@ -85,7 +82,7 @@ bool axis_check_points(struct axis_reader *a)
     if (!axis->value && step > 8 * DBL_EPSILON * largest)
         return true;
     for (size_t i = 1; i < axis->count; i++)
-        if (same_point(axis, i - 1, i))
+        if (compare(axis, i - 1, i) == 0)
             return problem_add(&a->r->problems, tree_find(a->node, "count")->mark,
                                "%s: points %zu and %zu of this range are the same number, %.17g: "
                                "there are fewer than count between from and to",

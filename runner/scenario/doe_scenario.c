@@ -79,10 +79,12 @@ static bool read_range(struct axis_reader *a, struct scenario_factor *f)
     if (!f->value)
         return problem_no_memory(&a->r->problems);
     double *const from = f->value, *const to = f->value + f->paths;
+    double spacing;
     bool good = axis_read_ends(a, "give from and to, or values", from, to), differ = false;
     if (good && !tree_find(a->node, "to"))
         return axis_complain(a, "to is missing");
-    good = axis_read_spacing(a, "sweep.sample.vary[].spacing", &f->log) && good;
+    good = axis_read_key(a, "spacing", &spacing) && good;
+    f->log = spacing != 0;
     for (int k = 0; good && k < f->paths; k++) {
         differ = differ || from[k] != to[k];
         if (f->log && a->axis->whole[f->first + k])
@@ -98,7 +100,7 @@ static bool read_range(struct axis_reader *a, struct scenario_factor *f)
 
 static bool read_factor(struct axis_reader *a, struct scenario_factor *f)
 {
-    if (!axis_begin(a, "sweep.sample.vary[]", "a mapping with path, from, to"))
+    if (!axis_begin(a, "a mapping with path, from, to"))
         return false;
     f->first = a->first;
     f->paths = a->axis->paths - f->first;
@@ -159,12 +161,9 @@ static bool read_factors(struct reader *r, struct scenario_axis *axis)
     const struct tree_node *vary = reader_seen(r, "sweep.sample.vary")->node;
     bool good = true;
 
-    if (!vary || !field_list(&r->problems, "sweep.sample.vary", "a list of factors", vary))
+    if (!vary || !field_list(&r->problems, "sweep.sample.vary", "a list of factors", vary,
+                             DOE_MAX_FACTORS, "factors"))
         return false;
-    if (vary->count > DOE_MAX_FACTORS) {
-        return problem_add(&r->problems, vary->mark, "sweep.sample.vary: more than %d factors",
-                           DOE_MAX_FACTORS);
-    }
     sample->factor = calloc(vary->count, sizeof *sample->factor);
     axis->meaning = calloc(SCENARIO_MAX_PATHS, sizeof *axis->meaning);
     if (!sample->factor || !axis->meaning)
@@ -174,7 +173,8 @@ static bool read_factors(struct reader *r, struct scenario_axis *axis)
                                 .axis = axis,
                                 .swept = r->swept[r->s->axes - 1],
                                 .node = vary->item[j],
-                                .number = r->s->axes - 1};
+                                .number = r->s->axes - 1,
+                                .path = "sweep.sample.vary[]"};
         snprintf(a.name, sizeof a.name, "sweep.sample.vary[%zu]", j);
         sample->design.factors = j + 1; /* as many as there are to free */
         good = read_factor(&a, &sample->factor[j]) &&

@@ -201,14 +201,12 @@ bool field_word(struct problems *problems, const struct scenario_field *field, c
                  word_list(list, sizeof list, field->words, field->word_count));
         return field_mismatch(problems, name, wanted, node);
     }
-    for (size_t i = 0; i < field->word_count; i++) {
-        if (strcmp(node->text, field->words[i]) == 0) {
-            *place = (int)i;
-            return true;
-        }
-    }
-    return field_unknown(problems, name, "word", node->text, node->mark, field->words,
-                         field->word_count);
+    const size_t k = word_place(node->text, field->words, field->word_count);
+    if (k == field->word_count)
+        return field_unknown(problems, name, "word", node->text, node->mark, field->words,
+                             field->word_count);
+    *place = (int)k;
+    return true;
 }
 
 bool field_value(struct problems *problems, const struct scenario_field *field, const char *name,
@@ -272,13 +270,14 @@ bool field_items(struct problems *problems, const char *name, const struct tree_
 }
 
 bool field_list(struct problems *problems, const char *name, const char *wanted,
-                const struct tree_node *node)
+                const struct tree_node *node, size_t most, const char *what)
 {
     if (node->kind != TREE_LIST)
         return no_list(problems, name, wanted, node);
     if (node->count == 0)
         return problem_add(problems, node->mark, "%s: the list is empty", name);
-    return true;
+    return most == 0 || node->count <= most ||
+           problem_add(problems, node->mark, "%s: more than %zu %s", name, most, what);
 }
 
 bool field_words(struct problems *problems, const struct scenario_field *field, const char *name,
@@ -291,7 +290,7 @@ bool field_words(struct problems *problems, const struct scenario_field *field, 
     if (node->kind == TREE_SCALAR && node->text[0] &&
         !field_word(problems, field, name, node, &one))
         return false;
-    if (!field_list(problems, name, "a list of names", node))
+    if (!field_list(problems, name, "a list of names", node, 0, NULL))
         return false;
     for (size_t i = 0; i < node->count; i++) {
         int place;

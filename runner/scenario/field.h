@@ -56,9 +56,9 @@ bool field_mismatch(struct problems *problems, const char *name, const char *wan
 bool field_items(struct problems *problems, const char *name, const struct tree_node *node,
                  size_t items, const char *what);
 
-/* A non-empty list. */
+/* A non-empty list of at most so many `what`, 0: of any number. */
 bool field_list(struct problems *problems, const char *name, const char *wanted,
-                const struct tree_node *node);
+                const struct tree_node *node, size_t most, const char *what);
 
 /* "NAME: unknown WHAT 'WORD'; did you mean 'NEAR'? (known: ...)"; `name` may be empty. Returns
  * false. */

@@ -307,11 +307,8 @@ static bool read_data(struct reader *r, const struct tree_node *data, struct law
 {
     const struct scenario_field any = {.type = FIELD_NUMBER, .low = -INFINITY, .high = INFINITY};
     if (!field_list(&r->problems, "controller.data", "a list of numbers, or the name of a file",
-                    data))
+                    data, MOST_DATA, "numbers"))
         return false;
-    if (data->count > MOST_DATA)
-        return problem_add(&r->problems, data->mark, "controller.data: more than %d numbers",
-                           MOST_DATA);
     law->data = malloc(data->count * sizeof *law->data);
     if (!law->data)
         return problem_no_memory(&r->problems);

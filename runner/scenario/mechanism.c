@@ -7,6 +7,8 @@
 #include "mechanism.h"
 #include "description.h"
 
+#include "runner/base/words.h"
+
 #include <ctype.h>
 #include <math.h>
 #include <stdlib.h>
@@ -86,14 +88,10 @@ static bool check_keys(struct description *d, const struct tree_node *map, const
                        const char *const *known, size_t count)
 {
     bool good = true;
-    for (size_t i = 0; i < map->count; i++) {
-        size_t k = 0;
-        while (k < count && strcmp(map->key[i].name, known[k]) != 0)
-            k++;
-        if (k == count)
+    for (size_t i = 0; i < map->count; i++)
+        if (word_place(map->key[i].name, known, count) == count)
             good = field_unknown(&d->r->problems, name, "key", map->key[i].name, map->key[i].mark,
                                  known, count);
-    }
     return good;
 }
 
@@ -114,11 +112,8 @@ static bool check_part(struct description *d, enum part part, const struct entry
 static bool read_names(struct description *d, enum part part)
 {
     const struct part_kind *const kind = &part_kinds[part];
-    const struct tree_node *const in = tree_find(d->r->tree.root, kind->in), *const map =
-                                                                                 in ? tree_find(
-                                                                                          in,
-                                                                                          kind->key)
-                                                                                    : NULL;
+    const struct tree_node *const in = tree_find(d->r->tree.root, kind->in);
+    const struct tree_node *const map = tree_find(in, kind->key);
     char path[DESCRIPTION_PATH];
     snprintf(path, sizeof path, "%s.%s", kind->in, kind->key);
     if (!map)
@@ -155,6 +150,7 @@ static bool read_body(struct description *d, enum part part, const struct entry 
     const struct tree_node *const node = tree_find(entry->map, key);
     char path[DESCRIPTION_PATH];
     description_path(path, part, entry, key);
+    const size_t count = (size_t)d->count[PART_BODY];
     *body = -1;
     if (!node)
         return strcmp(key, "body") != 0 ||
@@ -162,11 +158,10 @@ static bool read_body(struct description *d, enum part part, const struct entry 
                                   part == PART_ACTUATOR ? "drives" : "belongs to");
     if (node->kind != TREE_SCALAR)
         return field_mismatch(&d->r->problems, path, "the name of a body", node);
-    for (int b = 0; b < d->count[PART_BODY]; b++)
-        if (strcmp(d->body_name[b], node->text) == 0)
-            *body = b;
-    return *body >= 0 || field_unknown(&d->r->problems, path, "body", node->text, node->mark,
-                                       d->body_name, (size_t)d->count[PART_BODY]);
+    const size_t place = word_place(node->text, d->body_name, count);
+    *body = place < count ? (int)place : -1;
+    return place < count || field_unknown(&d->r->problems, path, "body", node->text, node->mark,
+                                          d->body_name, count);
 }
 
 /* The word of a key of a part, if it is given, by its place. False: a problem. */
@@ -279,8 +274,7 @@ static bool sort_bodies(struct description *d)
 static void fill_point(struct description *d, int i)
 {
     const struct entry *const entry = &d->entry[PART_POINT][i];
-    snprintf(d->m->point[i].name, STANCE_NAME, "%s", entry->key->name);
-    d->m->point[i].body = d->place[entry->body];
+    part_put(d->m, PART_POINT, i, entry->key->name, d->place[entry->body]);
     d->m->point[i].swings |= tree_find(entry->map, "frequency") != NULL;
     if (tree_find(entry->map, "impulse") || tree_find(entry->map, "force"))
         d->m->point[i].pushed = tree_find(entry->map, "impulse") ? STANCE_IMPULSE : STANCE_FORCE;
@@ -290,9 +284,8 @@ static void fill_plates(struct description *d)
 {
     d->m->plates = d->count[PART_PLATE];
     for (int i = 0; i < d->m->plates; i++) {
-        const struct entry *const entry = &d->entry[PART_PLATE][i];
-        snprintf(d->m->plate[i].name, STANCE_NAME, "%s", entry->key->name);
-        d->m->plate[i].kind = entry->ground;
+        part_put(d->m, PART_PLATE, i, d->entry[PART_PLATE][i].key->name, -1);
+        d->m->plate[i].kind = d->entry[PART_PLATE][i].ground;
     }
 }
 
@@ -306,26 +299,24 @@ static void fill_structure(struct description *d)
     m->actuators = d->count[PART_ACTUATOR];
     for (int b = 0; b < m->bodies; b++) {
         const struct entry *const entry = &d->entry[PART_BODY][d->back[b]];
-        snprintf(m->body[b].name, STANCE_NAME, "%s", entry->key->name);
+        part_put(m, PART_BODY, b, entry->key->name,
+                 entry->parent < 0 ? -1 : d->place[entry->parent]);
         m->body[b].joint = entry->joint;
-        m->body[b].parent = entry->parent < 0 ? -1 : d->place[entry->parent];
         const struct tree_node *const own = tree_find(entry->map, "coordinate");
         if (own && own->kind == TREE_SCALAR)
             snprintf(m->body[b].coordinate, STANCE_NAME, "%s", own->text);
     }
     for (int i = 0; i < m->elements; i++) {
         const struct entry *const entry = &d->entry[PART_CONTACT][i];
-        snprintf(m->element[i].name, STANCE_NAME, "%s", entry->key->name);
-        m->element[i].body = d->place[entry->body];
+        part_put(m, PART_CONTACT, i, entry->key->name, d->place[entry->body]);
         m->element[i].sole = tree_find(entry->map, "from") || tree_find(entry->map, "to");
     }
     for (int i = 0; i < m->points; i++)
         fill_point(d, i);
     fill_plates(d);
-    for (int i = 0; i < m->actuators; i++) {
-        snprintf(m->actuator[i].name, STANCE_NAME, "%s", d->entry[PART_ACTUATOR][i].key->name);
-        m->actuator[i].body = d->place[d->entry[PART_ACTUATOR][i].body];
-    }
+    for (int i = 0; i < m->actuators; i++)
+        part_put(m, PART_ACTUATOR, i, d->entry[PART_ACTUATOR][i].key->name,
+                 d->place[d->entry[PART_ACTUATOR][i].body]);
 }
 
 /* Does a body move along the root's rail alone? */
@@ -409,9 +400,8 @@ static bool check_coordinate(struct description *d, int b)
         return problem_add(&d->r->problems, node->mark, "%s: '%s' is no name: %s", path,
                            shown(word, text), fault);
     for (int other = 0; other < d->m->bodies; other++) {
-        const char *const own = d->m->body[other].coordinate, *const its =
-                                                                  own[0] ? own
-                                                                         : d->m->body[other].name;
+        const char *const own = d->m->body[other].coordinate;
+        const char *const its = own[0] ? own : d->m->body[other].name;
         if (other == b || d->m->body[other].joint == STANCE_FIXED)
             continue;
         if (strcmp(its, text) == 0 || (text[0] == 'v' && strcmp(its, text + 1) == 0) ||
@@ -529,9 +519,7 @@ static bool read_point(struct description *d, const struct tree_key *key,
 /* What a file adds to a scene that is carried. */
 static bool read_carried(struct description *d, const stance_mechanism *carried)
 {
-    const struct tree_node *const robot = tree_find(d->r->tree.root, "robot"),
-                                  *const map =
-                                      robot ? tree_find(robot, part_kinds[PART_POINT].key) : NULL;
+    const struct tree_node *const map = tree_find(tree_find(d->r->tree.root, "robot"), "points");
     bool good = true;
     enter_carried(d, carried);
     if (map && map->kind != TREE_MAP)
@@ -621,11 +609,10 @@ stance_scene *mechanism_pattern(void)
         return NULL;
     m->bodies = m->elements = m->points = m->actuators = 1;
     m->body[0].joint = STANCE_FREE;
-    m->body[0].parent = -1;
-    snprintf(m->body[0].name, STANCE_NAME, "BODY");
-    snprintf(m->element[0].name, STANCE_NAME, "CONTACT");
-    snprintf(m->point[0].name, STANCE_NAME, "POINT");
-    snprintf(m->actuator[0].name, STANCE_NAME, "ACTUATOR");
+    part_put(m, PART_BODY, 0, "BODY", -1);
+    part_put(m, PART_CONTACT, 0, "CONTACT", 0);
+    part_put(m, PART_POINT, 0, "POINT", 0);
+    part_put(m, PART_ACTUATOR, 0, "ACTUATOR", 0);
     stance_mechanism_defaults(&m->value);
     if (stance_mechanism_scene(m, &scene, &message) != STANCE_OK)
         scene = NULL;

@@ -131,8 +131,8 @@ static bool make_lists(struct reader *r)
 {
     size_t index;
     struct tree_node *const controller = tree_find(r->tree.root, "controller");
-    struct tree_node *const weights = controller ? tree_find(controller, "weights") : NULL;
-    struct tree_node **const gains = controller ? tree_place(controller, "gains", &index) : NULL;
+    struct tree_node *const weights = tree_find(controller, "weights");
+    struct tree_node **const gains = tree_place(controller, "gains", &index);
     return !r->s->scene || ((!weights || weights->kind != TREE_MAP || make_weights(r, weights)) &&
                             (!gains || make_gains(r, gains)));
 }
@@ -162,7 +162,7 @@ static void put_indices(const struct reader *r, const char *given, char *out, si
     snprintf(out, size, "controller");
     while (*at && *at != '=' && tree_path_step(&at, false, name, &index)) {
         const bool named = name[0], states = strcmp(list, "weights") == 0 && named &&
-                                             state_of(scene, name) >= 0 && node &&
+                                             state_of(scene, name) >= 0 &&
                                              tree_find(node, "states");
         if (states)
             node = tree_find(node, "states");
@@ -181,7 +181,7 @@ static void put_indices(const struct reader *r, const char *given, char *out, si
             list[0] = '\0';
         } else {
             add_text(out, size, ".%s", name);
-            node = node && node->kind == TREE_MAP ? tree_find(node, name) : NULL;
+            node = tree_find(node, name);
             memcpy(list, name, sizeof list);
         }
     }

@@ -110,6 +110,7 @@ struct axis_reader {
     struct swept_field *swept;    /* [axis->paths] */
     const struct tree_node *node; /* the mapping */
     int number;                   /* of the axis */
+    const char *path;             /* of its row: sweep.grid[], sweep.sample.vary[], ... */
     char name[AXIS_NAME];         /* sweep.grid[0], sweep.sample.vary[0], optimise.vary[0] */
     int first;                    /* path of the mapping, ... */
     bool rows;                    /* ... which may have several: then a point is a list */
@@ -117,7 +118,10 @@ struct axis_reader {
 
 /* sweep.c: the mapping itself, its keys those of the schema below `path`, and its path or paths,
  * behind those that the axis has; `values` stands without a range. False: a problem. */
-bool axis_begin(struct axis_reader *a, const char *path, const char *wanted);
+bool axis_begin(struct axis_reader *a, const char *wanted);
+/* sweep.c: the number, or word, of one of these keys; its default where it is not given, or, false,
+ * a problem. */
+bool axis_read_key(struct axis_reader *a, const char *key, double *value);
 /* sweep.c: one more path of the axis, from a node. False: a problem. */
 bool axis_read_path(struct axis_reader *a, const struct tree_node *node);
 /* No two points of an axis may be the same: those of a list, of a range (distinct.c). */
@@ -129,8 +133,6 @@ bool axis_check_points(struct axis_reader *a);
 bool axis_read_list(struct axis_reader *a, const struct tree_node *values, double **value,
                     size_t *count);
 bool axis_read_ends(struct axis_reader *a, const char *wanted, double *from, double *to);
-/* sweep.c: whether `spacing` is log. False: a problem. */
-bool axis_read_spacing(struct axis_reader *a, const char *path, bool *log);
 /* sweep.c: unit and text of path k. */
 void axis_describe(const struct axis_reader *a, int k, char unit[24], char text[160]);
 /* A problem of the mapping as a whole. Returns false. */

@@ -55,9 +55,8 @@ static const char *key_of_word(const struct reader *r, const char *path, const c
         if (strncmp(child->path, path, length) != 0 || child->path[length] != '.' ||
             strchr(key, '.') || child->type != FIELD_WORD)
             continue;
-        for (size_t w = 0; w < child->word_count; w++)
-            if (strcmp(child->words[w], text) == 0)
-                return key;
+        if (word_place(text, child->words, child->word_count) < child->word_count)
+            return key;
     }
     return NULL;
 }
@@ -122,11 +121,6 @@ static const struct scenario_field *elsewhere(const struct reader *r, const char
     return NULL;
 }
 
-/* Keys of former versions, and what to write instead. */
-static const char *const removed_keys[][2] = {
-    {"stop.capture", "leave it out; where a map takes long sweep.refine simulates fewer cases"},
-};
-
 static void unknown_key(struct reader *r, const struct tree_key *key, const char *path,
                         const char *name, const char *const *known, size_t count)
 {
@@ -139,14 +133,12 @@ static void unknown_key(struct reader *r, const struct tree_key *key, const char
 
     snprintf(near_path, sizeof near_path, "%s%s%.64s", path, path[0] ? "." : "", key->name);
     shown(word, key->name);
-    for (size_t k = 0; k < sizeof removed_keys / sizeof *removed_keys; k++) {
-        if (strcmp(near_path, removed_keys[k][0]) == 0) {
-            problem_add(&r->problems, key->mark, "%s is no longer there: %s", near_path,
-                        removed_keys[k][1]);
-            return;
-        }
-    }
-    if (!near && !full && r->s->scene && schema_scene_with(near_path)) {
+    if (strcmp(near_path, "stop.capture") == 0) { /* of former versions */
+        problem_add(&r->problems, key->mark,
+                    "%s is no longer there: leave it out; where a map takes long sweep.refine "
+                    "simulates fewer cases",
+                    near_path);
+    } else if (!near && !full && r->s->scene && schema_scene_with(near_path)) {
         problem_add(&r->problems, key->mark, "%s%sthe scene %s has no key '%s' (known: %s)", name,
                     colon, r->s->scene->name, word, word_list(list, sizeof list, known, count));
         if (strcmp(path, "initial") == 0)
@@ -168,9 +160,7 @@ void reader_check_keys(struct reader *r, const struct tree_node *map, const char
     size_t count = schema_children(r->schema, path, known, SCHEMA_MAX_FIELDS);
 
     for (size_t i = 0; i < map->count; i++) {
-        bool found = false;
-        for (size_t k = 0; k < count && !found; k++)
-            found = strcmp(map->key[i].name, known[k]) == 0;
+        const bool found = word_place(map->key[i].name, known, count) < count;
         if (!found && (problems_full(&r->problems) || !mended_key(r, map, i, path, name)))
             unknown_key(r, &map->key[i], path, name, known, count);
     }
@@ -195,8 +185,8 @@ void reader_no_mapping(struct reader *r, const struct scenario_field *field,
                           : child->type == FIELD_NUMBER && child->required &&
                                 child->use == USE_ALWAYS &&
                                 number_parse(node->text, &number, &finite);
-        for (size_t w = 0; !pair && w < child->word_count; w++)
-            meant = meant || strcmp(child->words[w], node->text) == 0;
+        meant = meant || (!pair && word_place(node->text, child->words, child->word_count) <
+                                       child->word_count);
         if (!meant)
             continue;
         if (!pair)

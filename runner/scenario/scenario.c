@@ -304,7 +304,7 @@ static void read_record_list(struct reader *r, const struct tree_node *node)
                                          .high = r->axes_bad ? 0x1p53 : (double)(s->cases - 1)};
     double number;
 
-    if (!field_list(&r->problems, "record.cases", "none, all or a list of cases", node))
+    if (!field_list(&r->problems, "record.cases", "none, all or a list of cases", node, 0, NULL))
         return;
     s->record_cases = RECORD_LIST;
     s->record_list = malloc(node->count * sizeof *s->record_list);
@@ -398,16 +398,10 @@ static bool robot_fits(struct reader *r, const struct tree_node *scene)
                               path, of->name, MECHANISM_WORD, of->name);
 }
 
-static bool has_key(const struct reader *r, const char *map, const char *key)
-{
-    const struct tree_node *const node = tree_find(r->tree.root, map);
-    return node && node->kind == TREE_MAP && tree_find(node, key);
-}
-
 /* False: out of memory, or nothing more is to be said. */
 static bool read_scene(struct reader *r)
 {
-    const struct tree_node *scene = tree_find(r->tree.root, "scene");
+    const struct tree_node *const root = r->tree.root, *const scene = tree_find(root, "scene");
     int place;
 
     r->schema = schema_of(NULL, NULL, &r->own_schema);
@@ -419,7 +413,8 @@ static bool read_scene(struct reader *r)
         if (!robot_fits(r, scene))
             return false;
         const stance_scene *const carried = r->s->scene;
-        if (!carried || has_key(r, "robot", "points") || has_key(r, "ground", "plates"))
+        if (!carried || tree_find(tree_find(root, "robot"), "points") ||
+            tree_find(tree_find(root, "ground"), "plates"))
             r->s->scene = r->s->own_scene = mechanism_read(r, carried);
         const struct schema *const known =
             r->s->scene ? schema_of(r->s->scene, &r->s->law, &r->own_schema) : NULL;

@@ -260,6 +260,9 @@ double scenario_axis_value(const struct scenario_axis *axis, size_t i, int k);
 bool scenario_ends(const double *value, size_t count, size_t stride, size_t ends[2]);
 /* The axis that varies the field at an offset, which is its path *k; NULL: none does. */
 const struct scenario_axis *scenario_axis_of(const struct scenario *s, size_t offset, int *k);
+/* Whether a word, or whole number, takes a value in some case: of those that list them, an axis; of
+ * a range, which has no words, its base. */
+bool scenario_takes(const struct scenario *s, size_t offset, int word);
 /* Least and largest value that a number takes, base or swept. */
 void scenario_extent(const struct scenario *s, size_t offset, double *least, double *largest);
 /* Gives the last axis the first `count` points of the design that sweep.sample describes, made with

@@ -47,19 +47,6 @@ static bool is_sound(struct reader *r, const char *key)
     return true;
 }
 
-static bool takes_word(const struct reader *r, size_t offset, int word)
-{
-    const struct scenario *s = r->s;
-    int base, k;
-    const struct scenario_axis *axis = scenario_axis_of(s, offset, &k);
-
-    for (size_t i = 0; axis && axis->value && i < axis->count; i++)
-        if ((int)scenario_axis_value(axis, i, k) == word)
-            return true;
-    memcpy(&base, (const char *)&s->base + offset, sizeof base);
-    return !(axis && axis->value) && base == word;
-}
-
 static struct situation find_situation(struct reader *r)
 {
     struct scenario_values *const base = &r->s->base;
@@ -67,7 +54,8 @@ static struct situation find_situation(struct reader *r)
 
     is.law_known = is_sound(r, "controller.kind");
     for (int d = 0; d <= DESIGN_GAINS; d++)
-        is.designs |= takes_word(r, offsetof(struct scenario_values, design), d) ? 1u << d : 0;
+        is.designs |=
+            scenario_takes(r->s, offsetof(struct scenario_values, design), d) ? 1u << d : 0;
     is.from_equilibrium = reader_seen(r, "initial.equilibrium")->node != NULL;
     is.from_state = reader_seen(r, "initial.state")->node != NULL;
     if (!is.from_equilibrium && !is.from_state) {
@@ -115,7 +103,7 @@ static const char *word_here(struct reader *r, const char *key)
     const struct scenario_field *const field = schema_find(r->schema, key);
     const struct tree_node *const node = reader_seen(r, key)->node;
     for (int i = 0; field && field->offset != NO_OFFSET && i < (int)field->word_count; i++)
-        if (takes_word(r, field->offset, i))
+        if (scenario_takes(r->s, field->offset, i))
             return field->words[i];
     return node && node->kind == TREE_SCALAR ? node->text : key;
 }
@@ -185,15 +173,7 @@ static void check_required(struct reader *r, const struct situation *is)
 static bool has_equilibrium(struct reader *r, const char *path)
 {
     const struct seen *const map = reader_seen(r, path);
-    const stance_scene *const scene = r->s->scene;
-    bool there = map->node || map->bad || map->excused;
-    char name[96];
-    for (int i = 0; i <= scene->postures; i++) {
-        snprintf(name, sizeof name, "%s.%s", path,
-                 i < scene->postures ? scene->coordinate[scene->posture[i]].name : "branch");
-        there = there || reader_given(reader_seen(r, name)) || reader_seen(r, name)->excused;
-    }
-    return there;
+    return map->node || map->bad || any_below(r, path, false) || any_below(r, path, true);
 }
 
 /* What a mechanism stands on: a state in which it stands has no translation of its own. */
@@ -364,7 +344,7 @@ static void check_support(struct reader *r, const struct situation *is)
         return;
     for (int foot = 1; foot <= s->scene->contacts; foot++) {
         if (!(s->base.contacts >> (foot - 1) & 1) &&
-            takes_word(r, offsetof(struct scenario_values, support_foot), foot)) {
+            scenario_takes(r->s, offsetof(struct scenario_values, support_foot), foot)) {
             reader_refuse(r, "ground.contacts", ": %s, the support foot, is not among them",
                           s->scene->contact_name[foot - 1]);
         }
@@ -394,7 +374,7 @@ static void check_lands(struct reader *r)
     const stance_scene *const scene = r->s->scene;
     int feet = 0;
     if (r->axes_bad || reader_seen(r, "ground.contacts")->bad ||
-        !takes_word(r, offsetof(struct scenario_values, lands_ahead), 1))
+        !scenario_takes(r->s, offsetof(struct scenario_values, lands_ahead), 1))
         return;
     for (int c = 0; c < scene->contacts; c++)
         feet += scene->grip[c] == c && (r->s->base.contacts >> c & 1);

@@ -6,15 +6,23 @@
 #include <stdio.h>
 #include <string.h>
 
+#define MEMBERS(counted, member, belongs, number)                                                  \
+    offsetof(stance_mechanism, counted), offsetof(stance_mechanism, member[0].name),               \
+        offsetof(stance_mechanism, member[0].belongs), sizeof(((stance_mechanism *)0)->member[0]), \
+        offsetof(stance_mechanism_numbers, number),                                                \
+        sizeof(((stance_mechanism_numbers *)0)->number[0])
 const struct part_kind part_kinds[PARTS] = {
     [PART_BODY] = {"robot", "bodies", "body", STANCE_MAX_BODIES,
-                   "rigid bodies, each with its joint"},
+                   MEMBERS(bodies, body, parent, body), "rigid bodies, each with its joint"},
     [PART_CONTACT] = {"robot", "contacts", "contact", STANCE_MAX_ELEMENTS,
+                      MEMBERS(elements, element, body, element),
                       "what may touch the ground: points, discs, soles"},
     [PART_POINT] = {"robot", "points", "point", STANCE_MAX_NAMED,
-                    "points of bodies that have a name"},
-    [PART_ACTUATOR] = {"robot", "actuators", "actuator", STANCE_MAX_ACTUATORS, "motors in joints"},
-    [PART_PLATE] = {"ground", "plates", "piece of the ground", STANCE_MAX_PLATES, NULL},
+                    MEMBERS(points, point, body, point), "points of bodies that have a name"},
+    [PART_ACTUATOR] = {"robot", "actuators", "actuator", STANCE_MAX_ACTUATORS,
+                       MEMBERS(actuators, actuator, body, limit), "motors in joints"},
+    [PART_PLATE] = {"ground", "plates", "piece of the ground", STANCE_MAX_PLATES,
+                    MEMBERS(plates, plate, kind, plate), NULL},
 };
 
 /* In the order of stance_joint. */
@@ -216,31 +224,29 @@ const struct part_key *part_key(enum part part, const char *name)
 
 int part_count(const stance_mechanism *m, enum part part)
 {
-    const int count[] = {[PART_BODY] = m->bodies,
-                         [PART_CONTACT] = m->elements,
-                         [PART_POINT] = m->points,
-                         [PART_ACTUATOR] = m->actuators,
-                         [PART_PLATE] = m->plates};
-    return count[part];
+    return *(const int *)(const void *)((const char *)m + part_kinds[part].count);
 }
 
 const char *part_name(const stance_mechanism *m, enum part part, int i)
 {
-    return part == PART_BODY       ? m->body[i].name
-           : part == PART_CONTACT  ? m->element[i].name
-           : part == PART_POINT    ? m->point[i].name
-           : part == PART_ACTUATOR ? m->actuator[i].name
-           : m->plates > 0         ? m->plate[i].name
-                                   : PLATE_PATTERN;
+    const struct part_kind *const kind = &part_kinds[part];
+    return part == PART_PLATE && m->plates == 0
+               ? PLATE_PATTERN
+               : (const char *)m + kind->name + (size_t)i * kind->size;
 }
 
 int part_body(const stance_mechanism *m, enum part part, int i)
 {
-    return part == PART_BODY       ? m->body[i].parent
-           : part == PART_CONTACT  ? m->element[i].body
-           : part == PART_POINT    ? m->point[i].body
-           : part == PART_ACTUATOR ? m->actuator[i].body
-                                   : -1;
+    const size_t at = part_kinds[part].body + (size_t)i * part_kinds[part].size;
+    return part == PART_PLATE ? -1 : *(const int *)(const void *)((const char *)m + at);
+}
+
+void part_put(stance_mechanism *m, enum part part, int i, const char *name, int body)
+{
+    char *const at = (char *)m + (size_t)i * part_kinds[part].size;
+    snprintf(at + part_kinds[part].name, STANCE_NAME, "%s", name);
+    if (part != PART_PLATE)
+        memcpy(at + part_kinds[part].body, &body, sizeof body);
 }
 
 int part_numbers(const struct part_key *key)
@@ -250,27 +256,14 @@ int part_numbers(const struct part_key *key)
 
 int part_place(const stance_mechanism *m, const struct part_key *key, int i)
 {
-    static const size_t begins[] = {
-        [PART_BODY] = offsetof(stance_mechanism_numbers, body),
-        [PART_CONTACT] = offsetof(stance_mechanism_numbers, element),
-        [PART_POINT] = offsetof(stance_mechanism_numbers, point),
-        [PART_ACTUATOR] = offsetof(stance_mechanism_numbers, limit),
-        [PART_PLATE] = offsetof(stance_mechanism_numbers, plate),
-    };
-    static const size_t size[] = {
-        [PART_BODY] = sizeof(stance_body_numbers),
-        [PART_CONTACT] = sizeof(stance_element_numbers),
-        [PART_POINT] = sizeof(stance_point_numbers),
-        [PART_ACTUATOR] = sizeof(double),
-        [PART_PLATE] = sizeof(stance_plate_numbers),
-    };
+    const struct part_kind *const kind = &part_kinds[key->part];
     if (part_numbers(key) == 0 ||
         (key->part == PART_BODY && !(key->joints >> m->body[i].joint & 1)) ||
         (key->part == PART_POINT && key->pushes && !(key->pushes >> m->point[i].pushed & 1)) ||
         (key->part == PART_PLATE && !(key->grounds >> m->plate[i].kind & 1)) ||
         (key->part == PART_CONTACT && !(m->element[i].sole ? key->of_sole : key->of_point)))
         return -1;
-    return (int)((begins[key->part] + (size_t)i * size[key->part] + key->field.offset) /
+    return (int)((kind->numbers + (size_t)i * kind->numbers_size + key->field.offset) /
                  sizeof(double));
 }
 

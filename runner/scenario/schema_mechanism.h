@@ -26,6 +26,9 @@ enum part {
 struct part_kind {
     const char *in, *key, *one; /* "robot", "bodies", "body" */
     int most;
+    /* Where it stands in stance_mechanism, the first of a list whose members begin with their name,
+     * and its numbers in stance_mechanism_numbers. */
+    size_t count, name, body, size, numbers, numbers_size;
     const char *text;
 };
 extern const struct part_kind part_kinds[PARTS];
@@ -53,6 +56,8 @@ int part_count(const stance_mechanism *m, enum part part);
 const char *part_name(const stance_mechanism *m, enum part part, int i);
 /* The body that it belongs to; of a body its parent, or -1, as of a plate. */
 int part_body(const stance_mechanism *m, enum part part, int i);
+/* Makes part i be called so and belong to a body, unless it is a plate. */
+void part_put(stance_mechanism *m, enum part part, int i, const char *name, int body);
 
 /* How many numbers a key takes: 0, 1, 2. */
 int part_numbers(const struct part_key *key);

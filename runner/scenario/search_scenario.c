@@ -141,25 +141,13 @@ static bool read_word(struct axis_reader *a)
            add[word](a);
 }
 
-static bool read_number(struct axis_reader *a, const char *key, double *value)
-{
-    const struct tree_node *const node = tree_find(a->node, key);
-    char path[48], name[AXIS_NAME + 16];
-    *value = NAN;
-    snprintf(path, sizeof path, "optimise.vary[].%s", key);
-    snprintf(name, sizeof name, "%s.%s", a->name, key);
-    return !node ||
-           field_number(&a->r->problems, schema_find(a->r->schema, path), name, node, value);
-}
-
 /* {path, from, to, spacing, unit} */
 static bool read_entry(struct axis_reader *a)
 {
     struct problems *const problems = &a->r->problems;
     const size_t before = problems->count + problems->lost;
-    double from, to, unit;
-    bool ratios = false;
-    reader_check_keys(a->r, a->node, "optimise.vary[]", a->name);
+    double from, to, unit, spacing;
+    reader_check_keys(a->r, a->node, a->path, a->name);
     const struct tree_node *const path = tree_find(a->node, "path");
     if (problems->count + problems->lost != before)
         return false;
@@ -170,13 +158,13 @@ static bool read_entry(struct axis_reader *a)
     struct scenario_varied *const varied = last_varied(a);
     const struct scenario_field *const field = a->swept[a->axis->paths - 1].field;
     const char *const name = a->axis->path[a->axis->paths - 1];
-    bool good = read_number(a, "from", &from);
-    good = read_number(a, "to", &to) && good;
-    good = read_number(a, "unit", &unit) && good;
-    good = axis_read_spacing(a, "optimise.vary[].spacing", &ratios) && good;
+    bool good = axis_read_key(a, "from", &from);
+    good = axis_read_key(a, "to", &to) && good;
+    good = axis_read_key(a, "unit", &unit) && good;
+    good = axis_read_key(a, "spacing", &spacing) && good;
     if (!good)
         return false;
-    const bool bounded = !isnan(from) || !isnan(to);
+    const bool bounded = !isnan(from) || !isnan(to), ratios = spacing != 0;
     const char *const wrong = bounded && isnan(from) ? "from is missing"
                               : bounded && isnan(to) ? "to is missing"
                               : !bounded && isnan(unit) && field->columns == 0
@@ -205,14 +193,16 @@ static bool read_vary(struct reader *r)
     const bool list = vary && vary->kind == TREE_LIST;
     bool good = true;
 
-    if (!vary || (list && !field_list(&r->problems, "optimise.vary", "words and mappings", vary)))
+    if (!vary ||
+        (list && !field_list(&r->problems, "optimise.vary", "words and mappings", vary, 0, NULL)))
         return false;
     for (size_t i = 0; i < (list ? vary->count : 1); i++) {
         struct axis_reader a = {.r = r,
                                 .axis = &search->axis,
                                 .swept = r->sought,
                                 .node = list ? vary->item[i] : vary,
-                                .number = r->s->axes - 1};
+                                .number = r->s->axes - 1,
+                                .path = "optimise.vary[]"};
         snprintf(a.name, sizeof a.name, list ? "optimise.vary[%zu]" : "optimise.vary", i);
         good = (a.node->kind == TREE_MAP ? read_entry(&a) : read_word(&a)) && good;
     }
@@ -234,11 +224,9 @@ static bool read_grow(struct reader *r)
         memcpy(search->grow, usual, sizeof usual);
         return true;
     }
-    if (!field_list(&r->problems, "optimise.grow", "a list of numbers of starts", grow))
+    if (!field_list(&r->problems, "optimise.grow", "a list of numbers of starts", grow,
+                    SCENARIO_MAX_STAGES, "stages"))
         return false;
-    if (grow->count > SCENARIO_MAX_STAGES)
-        return problem_add(&r->problems, grow->mark, "optimise.grow: more than %d stages",
-                           SCENARIO_MAX_STAGES);
     for (size_t i = 0; i < grow->count; i++) {
         char name[32];
         double number = 0;

@@ -24,23 +24,15 @@ const char *axis_key(const struct scenario *s, int axis, char name[AXIS_NAME])
 static bool unknown_path(struct axis_reader *a, const struct tree_node *node)
 {
     const struct schema *schema = a->r->schema;
-    char path[SCHEMA_MAX_FIELDS][96], word[SHOWN_SIZE];
+    char path[SCHEMA_MAX_FIELDS][128], word[SHOWN_SIZE];
     const char *known[SCHEMA_MAX_FIELDS], *near;
     size_t n = 0;
 
-    for (size_t i = 0; i < schema->count; i++) {
-        if (!schema->field[i].sweep)
-            continue;
-        size_t length = 0;
-        for (const char *s = schema->field[i].path; *s && length + 2 < sizeof path[0]; s++) {
-            path[n][length++] = *s;
-            if (*s == '[')
-                path[n][length++] = '0';
+    for (size_t i = 0; i < schema->count; i++)
+        if (schema->field[i].sweep) {
+            known[n] = schema_item_path(&schema->field[i], 0, path[n]);
+            n++;
         }
-        path[n][length] = '\0';
-        known[n] = path[n];
-        n++;
-    }
     near = mend_path(node->text, known, n);
     near = near ? near : nearest_word(node->text, known, n);
     shown(word, node->text);
@@ -102,6 +94,9 @@ bool axis_read_path(struct axis_reader *a, const struct tree_node *node)
 
     if (node->kind != TREE_SCALAR)
         return field_mismatch(&a->r->problems, a->name, "a path such as ground.friction", node);
+    if (axis->paths == SCENARIO_MAX_PATHS)
+        return problem_add(&a->r->problems, node->mark, "%s: more than %d paths", a->name,
+                           SCENARIO_MAX_PATHS);
     swept.field = schema_find_concrete(a->r->schema, node->text, swept.index);
     if (!swept.field)
         return unknown_path(a, node);
@@ -143,14 +138,11 @@ static bool read_paths(struct axis_reader *a)
         return axis_complain(a, "path and paths exclude each other");
     if (path)
         return axis_read_path(a, path);
-    if (!field_list(&a->r->problems, a->name, "a list of paths", paths))
+    bool good =
+        field_list(&a->r->problems, a->name, "a list of paths", paths, SCENARIO_MAX_PATHS, "paths");
+    if (!good)
         return false;
-    if (paths->count > SCENARIO_MAX_PATHS - (size_t)a->axis->paths) {
-        return problem_add(&a->r->problems, paths->mark, "%s: more than %d paths", a->name,
-                           SCENARIO_MAX_PATHS);
-    }
-    bool good = true;
-    for (size_t k = 0; k < paths->count; k++)
+    for (size_t k = 0; k < paths->count && (good || a->axis->paths < SCENARIO_MAX_PATHS); k++)
         good = axis_read_path(a, paths->item[k]) && good;
     return good;
 }
@@ -171,18 +163,12 @@ static bool read_row(struct axis_reader *a, const char *key, const struct tree_n
                      double *value)
 {
     const size_t paths = (size_t)(a->axis->paths - a->first);
-    char wanted[80];
-    bool good = true;
 
     if (!a->rows)
         return read_one(a, key, node, a->first, value);
-    snprintf(wanted, sizeof wanted, "a list of %zu values, one for each path", paths);
-    if (node->kind != TREE_LIST)
-        return field_mismatch(&a->r->problems, a->name, wanted, node);
-    if (node->count != paths) {
-        return problem_add(&a->r->problems, node->mark, "%s: expected %s, found %zu", a->name,
-                           wanted, node->count);
-    }
+    bool good = field_items(&a->r->problems, a->name, node, paths, "values, one for each path");
+    if (!good)
+        return false;
     for (size_t k = 0; k < paths; k++)
         good = read_one(a, key, node->item[k], a->first + (int)k, &value[k]) && good;
     return good;
@@ -193,7 +179,7 @@ bool axis_read_list(struct axis_reader *a, const struct tree_node *values, doubl
 {
     const size_t paths = (size_t)(a->axis->paths - a->first);
     bool good = true;
-    if (!field_list(&a->r->problems, a->name, "a list of values", values))
+    if (!field_list(&a->r->problems, a->name, "a list of values", values, 0, NULL))
         return false;
     *count = values->count;
     *value = calloc(*count * paths, sizeof **value);
@@ -206,8 +192,8 @@ bool axis_read_list(struct axis_reader *a, const struct tree_node *values, doubl
 
 bool axis_read_ends(struct axis_reader *a, const char *wanted, double *from, double *to)
 {
-    const struct tree_node *const first = tree_find(a->node, "from"), *const last =
-                                                                          tree_find(a->node, "to");
+    const struct tree_node *const first = tree_find(a->node, "from");
+    const struct tree_node *const last = tree_find(a->node, "to");
     char text[160];
     for (int k = a->first; k < a->axis->paths; k++) {
         if (a->axis->enumeration[k]) {
@@ -239,17 +225,15 @@ static bool read_values(struct axis_reader *a, const struct tree_node *values)
     return good && axis_check_values(a, values);
 }
 
-bool axis_read_spacing(struct axis_reader *a, const char *path, bool *log)
+bool axis_read_key(struct axis_reader *a, const char *key, double *value)
 {
-    const struct tree_node *spacing = tree_find(a->node, "spacing");
-    char name[AXIS_NAME + 16];
-    int word = 0;
-
-    snprintf(name, sizeof name, "%s.spacing", a->name);
-    const bool good = !spacing || field_word(&a->r->problems, schema_find(a->r->schema, path), name,
-                                             spacing, &word);
-    *log = word != 0;
-    return good;
+    const struct tree_node *const node = tree_find(a->node, key);
+    char path[AXIS_NAME], name[AXIS_NAME + 16];
+    snprintf(path, sizeof path, "%s.%.16s", a->path, key);
+    snprintf(name, sizeof name, "%s.%.14s", a->name, key);
+    const struct scenario_field *const field = schema_find(a->r->schema, path);
+    *value = field->fallback;
+    return !node || field_value(&a->r->problems, field, name, node, value);
 }
 
 /* The points of a range that is logarithmic, or along which several paths move: from[paths] to
@@ -307,22 +291,17 @@ static bool check_range(struct axis_reader *a, int k, double from, double to)
 static bool read_range(struct axis_reader *a)
 {
     struct scenario_axis *axis = a->axis;
-    const struct tree_node *const count = tree_find(a->node, "count");
-    double first[SCENARIO_MAX_PATHS] = {0}, last[SCENARIO_MAX_PATHS] = {0};
-    char name[AXIS_NAME + 16];
-    double number = 0;
+    double first[SCENARIO_MAX_PATHS] = {0}, last[SCENARIO_MAX_PATHS] = {0}, count, spacing;
 
     bool good = axis_read_ends(a, "give from, to and count, or values", first, last);
-    if (!count)
+    if (!tree_find(a->node, "count"))
         return good && axis_complain(a, "count is missing");
-    snprintf(name, sizeof name, "%s.count", a->name);
-    good = field_number(&a->r->problems, schema_find(a->r->schema, "sweep.grid[].count"), name,
-                        count, &number) &&
-           good;
-    good = axis_read_spacing(a, "sweep.grid[].spacing", &axis->log) && good;
+    good = axis_read_key(a, "count", &count) && good;
+    good = axis_read_key(a, "spacing", &spacing) && good;
     if (!good)
         return false;
-    axis->count = (size_t)number;
+    axis->count = (size_t)count;
+    axis->log = spacing != 0;
     axis->from = first[0];
     axis->to = last[0];
     for (int k = 0; k < axis->paths; k++)
@@ -345,14 +324,14 @@ void axis_describe(const struct axis_reader *a, int k, char unit[24], char text[
     snprintf(text, 160, "%s", field->text);
 }
 
-bool axis_begin(struct axis_reader *a, const char *path, const char *wanted)
+bool axis_begin(struct axis_reader *a, const char *wanted)
 {
     static const char *const range_keys[] = {"from", "to", "count", "spacing"};
     struct problems *problems = &a->r->problems;
     const size_t before = problems->count + problems->lost;
     if (a->node->kind != TREE_MAP)
         return field_mismatch(problems, a->name, wanted, a->node);
-    reader_check_keys(a->r, a->node, path, a->name);
+    reader_check_keys(a->r, a->node, a->path, a->name);
     a->first = a->axis->paths;
     a->rows = tree_find(a->node, "paths") != NULL;
     if (problems->count + problems->lost != before || !read_paths(a))
@@ -370,7 +349,7 @@ static bool read_axis(struct axis_reader *a)
 
     axis->line = a->node->mark.line;
     axis->column = a->node->mark.column;
-    if (!axis_begin(a, "sweep.grid[]", "a mapping with path, from, to, count"))
+    if (!axis_begin(a, "a mapping with path, from, to, count"))
         return false;
     snprintf(axis->name, sizeof axis->name, "%s", axis->path[0]);
     axis_describe(a, 0, axis->unit, axis->text);
@@ -387,21 +366,17 @@ void sweep_read(struct reader *r, const struct tree_node *grid)
 {
     struct scenario *s = r->s;
 
-    if (!field_list(&r->problems, "sweep.grid", "a list of axes", grid)) {
-        r->axes_bad = true;
+    r->axes_bad =
+        !field_list(&r->problems, "sweep.grid", "a list of axes", grid, SCENARIO_MAX_AXES, "axes");
+    if (r->axes_bad)
         return;
-    }
-    if (grid->count > SCENARIO_MAX_AXES) {
-        problem_add(&r->problems, grid->mark, "sweep.grid: more than %d axes", SCENARIO_MAX_AXES);
-        r->axes_bad = true;
-        return;
-    }
     for (size_t i = 0; i < grid->count; i++) {
         struct axis_reader a = {.r = r,
                                 .axis = &s->axis[i],
                                 .swept = r->swept[i],
                                 .node = grid->item[i],
-                                .number = (int)i};
+                                .number = (int)i,
+                                .path = "sweep.grid[]"};
         snprintf(a.name, sizeof a.name, "sweep.grid[%zu]", i);
         s->axes = (int)i + 1;
         if (!read_axis(&a)) {
@@ -535,6 +510,18 @@ const struct scenario_axis *scenario_axis_of(const struct scenario *s, size_t of
             if (s->axis[a].offset[*k] == offset)
                 return &s->axis[a];
     return NULL;
+}
+
+bool scenario_takes(const struct scenario *s, size_t offset, int word)
+{
+    int base, k;
+    const struct scenario_axis *const axis = scenario_axis_of(s, offset, &k);
+
+    for (size_t i = 0; axis && axis->value && i < axis->count; i++)
+        if ((int)scenario_axis_value(axis, i, k) == word)
+            return true;
+    memcpy(&base, (const char *)&s->base + offset, sizeof base);
+    return !(axis && axis->value) && base == word;
 }
 
 void scenario_extent(const struct scenario *s, size_t offset, double *least, double *largest)

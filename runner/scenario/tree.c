@@ -91,7 +91,7 @@ bool tree_append(struct tree *tree, struct tree_node *parent, const struct tree_
 
 struct tree_node **tree_place(const struct tree_node *map, const char *key, size_t *index)
 {
-    for (size_t i = 0; map->kind == TREE_MAP && map->item && i < map->count; i++) {
+    for (size_t i = 0; map && map->kind == TREE_MAP && map->item && i < map->count; i++) {
         if (strcmp(map->key[i].name, key) == 0) {
             *index = i;
             return &map->item[i];

@@ -65,7 +65,7 @@ bool tree_name_letter(char c);
  * False at a malformed step; a path ends where **at is zero. `first`: nothing came before. */
 bool tree_path_step(const char **at, bool first, char name[TREE_MAX_NAME], size_t *index);
 
-/* The value of a key of a mapping, or NULL. */
+/* The value of a key of a mapping, or NULL, as of what is none, or NULL. */
 struct tree_node *tree_find(const struct tree_node *map, const char *key);
 
 /* The tree as YAML: the same bytes for the same nodes. Freed by the caller; NULL: no memory. */
@@ -83,7 +83,8 @@ struct tree_node *tree_new(struct tree *tree, enum tree_kind kind, struct mark m
 /* Appends to a list, or, with a key, to a mapping. */
 bool tree_append(struct tree *tree, struct tree_node *parent, const struct tree_key *key,
                  struct tree_node *item);
-/* Where the value of a key of a mapping is, and its place there; NULL: there is none. */
+/* Where the value of a key of a mapping is, and its place there; NULL: there is none, as of NULL.
+ */
 struct tree_node **tree_place(const struct tree_node *map, const char *key, size_t *index);
 
 /* Reads a text, of the scenario itself (set 0) or of the --set of that number, whose value may be
