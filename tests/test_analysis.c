@@ -1,5 +1,6 @@
 /* test_analysis.c - statistics, reading of results, summary, comparison and pictures, against files
  * that make_sample_results.py makes from formulas. */
+#include "scratch.h"
 #include "support.h"
 #include "tests.h"
 
@@ -9,14 +10,11 @@
 #include "runner/store/compare.h"
 
 #include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 extern const struct command command_summary, command_compare, command_plot;
 
 /* ---- files and commands ------------------------------------------------------------------- */
 
-static char scratch[256];                     /* directory of everything that the tests write */
 static char output[1 << 18], errors[1 << 14]; /* of the last command */
 
 static const char *sample(const char *name)
@@ -32,24 +30,14 @@ static int make_samples(void **state)
 {
     char command[700];
     const char *python = getenv("PYTHON");
-    (void)state;
-    snprintf(scratch, sizeof scratch, "/tmp/stance-test-XXXXXX");
-    if (!mkdtemp(scratch))
+    if (scratch_make(state) != 0)
         return -1;
     snprintf(command, sizeof command, "%s tests/make_sample_results.py %s",
              python ? python : "/usr/bin/python3", scratch);
     return system(command);
 }
 
-static int remove_samples(void **state)
-{
-    char command[300];
-    (void)state;
-    snprintf(command, sizeof command, "rm -rf %s", scratch);
-    return system(command);
-}
-
-static CMFixtureFunction before_tests = make_samples, after_tests = remove_samples;
+static CMFixtureFunction before_tests = make_samples, after_tests = scratch_remove;
 
 static void read_back(const char *path, char *text, size_t size)
 {

@@ -5,17 +5,9 @@
  * method and instruction set go round, so that each pair has its share. Without arguments one
  * mechanism, or with STANCE_TEST_LONG twenty and all pairs.
  */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-#include <stdlib.h>
-#include <unistd.h>
-
-#include "long.h"
 #include "random_mechanism.h"
+#include "scratch.h"
+#include "tests.h"
 
 #include "runner/objects/objects.h"
 
@@ -119,9 +111,8 @@ static long compare_mechanism(int tree, const char *method, const char *isa, int
 static const char *only_method, *only_isa; /* NULL: they go round */
 static int first_mechanism = 1, mechanisms = 1, cases_each = 200;
 
-static void random_mechanisms(void **state)
+TEST(random_mechanisms)
 {
-    (void)state;
     int isas = 0, turn = 0;
     long differ = 0;
     while (stance_isa(isas))
@@ -141,24 +132,18 @@ static void random_mechanisms(void **state)
     assert_int_equal(differ, 0);
 }
 
-int main(int argc, char **argv)
+/* Its arguments say which. */
+static int which(int argc, char **argv)
 {
-    char cache[] = "/tmp/stance-test-XXXXXX", command[60];
     if (long_tests())
         mechanisms = 20;
     if (argc > 3) {
-        first_mechanism = atoi(argv[1]), mechanisms = atoi(argv[2]), cases_each = atoi(argv[3]);
-        if (cases_each > MOST_CASES)
-            cases_each = MOST_CASES;
+        first_mechanism = atoi(argv[1]), mechanisms = atoi(argv[2]);
+        cases_each = atoi(argv[3]) < MOST_CASES ? atoi(argv[3]) : MOST_CASES;
     }
     if (argc > 5)
         only_method = argv[4], only_isa = argv[5];
-    if (!mkdtemp(cache))
-        return EXIT_FAILURE;
-    compile_sooner(cache);
-    setenv("STANCE_CACHE", cache, 1);
-    const struct CMUnitTest tests[] = {cmocka_unit_test(random_mechanisms)};
-    const int failed = cmocka_run_group_tests(tests, NULL, NULL);
-    snprintf(command, sizeof command, "rm -r %s", cache);
-    return system(command) == 0 ? failed : EXIT_FAILURE;
+    return -1;
 }
+static int (*instead)(int argc, char **argv) = which;
+static CMFixtureFunction before_tests = cache_make, after_tests = scratch_remove;

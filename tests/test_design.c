@@ -2,6 +2,7 @@
  * force on the foot, against tests/reference/design.json (other equations, other libraries: see
  * design.py), closed formulas and a simulation. */
 #include "linear.h"
+#include "tests.h"
 
 #define REFERENCE "tests/reference/design.json"
 
@@ -92,9 +93,8 @@ static void check_regulator(const struct sample *s)
     assert_eigenvalues(N, loop, re, im, 1e-9, s->name);
 }
 
-static void regulators(void **state)
+TEST(regulators)
 {
-    (void)state;
     for_each_record(check_regulator);
 }
 
@@ -114,16 +114,14 @@ static void check_limit(const struct sample *s)
     assert_near(distance[0] / distance[1], 2, 0.1, s->name);
 }
 
-static void regulator_limits(void **state)
+TEST(regulator_limits)
 {
-    (void)state;
     for_each_record(check_limit);
 }
 
 /* x' = a x + u: k = a + sqrt(a^2 + q/r); sampled, the scalar equation is a quadratic. */
-static void scalar_regulator(void **state)
+TEST(scalar_regulator)
 {
-    (void)state;
     const double a = 1.5, b = 1, q = 3, r = 0.5, T = 0.4, e = exp(a * T), bd = (e - 1) / a;
     double k;
     assert_int_equal(stance_lqr(PLANT(1, 1, &a, &b), 0, &q, &r, &k, NULL), STANCE_OK);
@@ -140,9 +138,8 @@ static void scalar_regulator(void **state)
     assert_near(k, (sd + e * x * bd) / (rd + bd * bd * x), 1e-12, "sampled");
 }
 
-static void regulator_messages(void **state)
+TEST(regulator_messages)
 {
-    (void)state;
     const double A[4] = {0, 1, 0, 0}, B[2] = {0, 1}, Q[2] = {1, 1}, R = 1;
     const double escaping[4] = {2, 0, 0, -1};
     double K[2];
@@ -199,9 +196,8 @@ static void check_placement(const struct sample *s)
     assert_true(got.sweeps > 0 && got.condition >= 1);
 }
 
-static void placements(void **state)
+TEST(placements)
 {
-    (void)state;
     for_each_record(check_placement);
 }
 
@@ -233,16 +229,14 @@ static void check_placement_limit(const struct sample *s)
     }
 }
 
-static void placement_limits(void **state)
+TEST(placement_limits)
 {
-    (void)state;
     for_each_record(check_placement_limit);
 }
 
 /* With one input the gain is unique: Ackermann's formula for a double integrator held over T. */
-static void sampled_double_integrator(void **state)
+TEST(sampled_double_integrator)
 {
-    (void)state;
     const double A[4] = {0, 1, 0, 0}, B[2] = {0, 1}, re[2] = {-1, -2}, im[2] = {0, 0};
     const double T[4] = {1e-6, 1e-3, 0.1, 2};
     for (int k = 0; k < 4; k++) {
@@ -258,9 +252,8 @@ static void sampled_double_integrator(void **state)
     }
 }
 
-static void placement_messages(void **state)
+TEST(placement_messages)
 {
-    (void)state;
     const double A[4] = {0, 1, 0, 0}, B[2] = {0, 1}, escaping[4] = {2, 0, 0, -1};
     const double re[2] = {-1, -2}, im[2] = {0, 0}, turn[2] = {7, -7}, odd[2] = {1, 1};
     double K[2];
@@ -293,9 +286,8 @@ static void placement_messages(void **state)
 
 /* What A is rounded to changes gains by no more: its eigenvalues come in pairs of opposite signs,
  * whose order is rounding's. */
-static void schur_is_steady(void **state)
+TEST(schur_is_steady)
 {
-    (void)state;
     const double re[N] = {-3, -3.3, -3.6, -3.9, -4.2, -4.6}, im[N] = {0};
     double robot[STANCE_MAX_ROBOT], A[N * N], B[N * M], rounded[N * N], K[2][N * M];
     uint64_t seed = 4;
@@ -320,9 +312,8 @@ static void schur_is_steady(void **state)
 /* An equilibrium that no torque can hold: both legs level, the hip at the height of the foot, the
  * trunk longer than the rest is heavy. The angular momentum about the foot is then a mode of its
  * own, and torques at the hip do not reach it. */
-static void uncontrollable_equilibrium(void **state)
+TEST(uncontrollable_equilibrium)
 {
-    (void)state;
     const double robot[STANCE_MAX_ROBOT] = {0.5, 2, 2,
                                             4,   4, [STANCE_ROBOT_GRAVITY] = STANCE_GRAVITY},
                  level = 2 * M_PI / 3;
@@ -382,18 +373,16 @@ static void check_critical(const struct sample *s)
     assert_near(radius, number_of(s, "delayed_radius"), 1e-9, s->name);
 }
 
-static void critical_sample_times(void **state)
+TEST(critical_sample_times)
 {
-    (void)state;
     for_each_record(check_critical);
 }
 
 /* x' = u = -k x: z = 1 - kT, lost at kT = 2; a sample late, z^2 - z + kT = 0, lost at kT = 1; d
  * samples late, z^(d + 1) - z^d + kT = 0, where z = exp(i a) asks for kT = 2 sin(a / 2) at a = pi /
  * (2d + 1). */
-static void delayed_integrator(void **state)
+TEST(delayed_integrator)
 {
-    (void)state;
     const double a = 0, b = 1, k = 4;
     double T, re[2], im[2];
     assert_int_equal(stance_critical_sample_time(PLANT(1, 1, &a, &b), SAMPLING(&k, 0, 0), 10, &T),
@@ -420,9 +409,8 @@ static void delayed_integrator(void **state)
  * variance v does to it, sampled: x+ = (1 - kT) x - kT n has the variance v kT / (2 - kT), one of a
  * command T v / (k (2 - kT)); a sample late, of x+ = x + T u, u+ = -k (x + n), by hand:
  * with g = kT the variance v g (1 + g) / ((1 - g) (2 + g)). */
-static void integrator_with_actuator_and_noise(void **state)
+TEST(integrator_with_actuator_and_noise)
 {
-    (void)state;
     const double a = 0, b = 1, k = 4, T = 0.1, none = 0, v = 0.3, g = k * T;
     double A[4], B[2], K[2], loop[4], re[2], im[2], rms;
     for (double lag = 1e-3; lag < 1; lag *= 3) {
@@ -470,15 +458,13 @@ static void check_lyapunov(const struct sample *s)
     assert_matrix(N * N, P, wanted, 2e-10, s->name);
 }
 
-static void lyapunov_functions(void **state)
+TEST(lyapunov_functions)
 {
-    (void)state;
     for_each_record(check_lyapunov);
 }
 
-static void lyapunov_messages(void **state)
+TEST(lyapunov_messages)
 {
-    (void)state;
     const double weight[2] = {1, 1}, border[4] = {0, 1, -1, 0};
     double P[4];
     stance_message message;
@@ -491,9 +477,8 @@ static void lyapunov_messages(void **state)
 }
 
 /* P = diag(1, 4), the half plane x + y <= 1: tangent where the gradients are parallel. */
-static void sublevel_sets(void **state)
+TEST(sublevel_sets)
 {
-    (void)state;
     const double P[4] = {1, 0, 0, 4}, a[4] = {1, 1, -1, 0}, d[2] = {1, 3};
     stance_sublevel_set set;
     assert_int_equal(stance_sublevel(2, P, &(stance_bounds){2, a, d}, &set), STANCE_OK);
@@ -527,9 +512,8 @@ static void check_force(const struct sample *s)
     assert_matrix(2 * M, by_torque, wanted, 1e-11, s->name);
 }
 
-static void forces_on_the_foot(void **state)
+TEST(forces_on_the_foot)
 {
-    (void)state;
     for_each_record(check_force);
 }
 
@@ -572,17 +556,15 @@ static void check_levels(const struct sample *s)
     }
 }
 
-static void levels(void **state)
+TEST(levels)
 {
-    (void)state;
     for_each_record(check_levels);
 }
 
 /* One short step of the simulator with both the posture and the torques off the equilibrium: the
  * force that it finds is the linear one, but for squares. */
-static void force_in_simulation(void **state)
+TEST(force_in_simulation)
 {
-    (void)state;
     const stance_scene *scene = stance_scene_find("biped");
     const stance_kernel *kernel = kernel_of("implicit", "scalar");
     uint64_t seed = 5;
@@ -620,30 +602,4 @@ static void force_in_simulation(void **state)
         assert_near(found[1][0][0], force[0], 5e-4, "normal force");
         assert_near(found[1][0][1], force[1], 5e-4, "tangential force");
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(regulators),
-        cmocka_unit_test(regulator_limits),
-        cmocka_unit_test(scalar_regulator),
-        cmocka_unit_test(regulator_messages),
-        cmocka_unit_test(placements),
-        cmocka_unit_test(placement_limits),
-        cmocka_unit_test(sampled_double_integrator),
-        cmocka_unit_test(placement_messages),
-        cmocka_unit_test(schur_is_steady),
-        cmocka_unit_test(uncontrollable_equilibrium),
-        cmocka_unit_test(critical_sample_times),
-        cmocka_unit_test(delayed_integrator),
-        cmocka_unit_test(integrator_with_actuator_and_noise),
-        cmocka_unit_test(lyapunov_functions),
-        cmocka_unit_test(lyapunov_messages),
-        cmocka_unit_test(sublevel_sets),
-        cmocka_unit_test(forces_on_the_foot),
-        cmocka_unit_test(levels),
-        cmocka_unit_test(force_in_simulation),
-    };
-    return cmocka_run_group_tests_name("design", tests, NULL, NULL);
 }

@@ -8,6 +8,10 @@
 #include "mechanism_text.h"
 #include "reading.h"
 
+#ifdef STANCE_MUJOCO
+#include "tests.h"
+#endif
+
 #include "runner/plan/mjcf.h"
 #include "runner/plan/plan.h"
 
@@ -148,12 +152,11 @@ static void compare_states(const char *name, const stance_scene *scene, const st
     twin_free(&t);
 }
 
-static void shipped(void **state)
+TEST(shipped)
 {
     static const char *const names[] = {"cart_pole", "acrobot",      "rabbit",      "flat_feet",
                                         "pushed",    "rolling_disc", "compass_gait"};
     const struct parallel alone = parallel_alone();
-    (void)state;
     for (size_t k = 0; k < sizeof names / sizeof *names; k++) {
         static struct scenario s;
         struct plan plan;
@@ -176,7 +179,7 @@ static void shipped(void **state)
 
 /* What is not shipped: a tree with springs, rotors, a fixed body and a reference of its own on a
  * slope; one that is pinned; a tilted rail with a rotor; a chain. */
-static void others(void **state)
+TEST(others)
 {
     static const struct {
         const char *name, *text;
@@ -223,7 +226,6 @@ static void others(void **state)
          "actuator m f 40\n",
          1.62, 0},
     };
-    (void)state;
     for (size_t k = 0; k < sizeof list / sizeof *list; k++) {
         stance_scene *const scene = mechanism_scene(list[k].text);
         stance_case c = {.friction = 0.5, .step = 1e-3, .contacts = ~0u, .torque_limit = INFINITY};
@@ -236,15 +238,6 @@ static void others(void **state)
         compare_states(list[k].name, scene, &c, STATES);
         stance_scene_free(scene);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(shipped),
-        cmocka_unit_test(others),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }
 
 #else

@@ -1,6 +1,7 @@
 /* The fused operations of every instruction set against the C library's fma(), bit by bit: random
  * operands, and those that are hard to round. */
 #include "support.h"
+#include "tests.h"
 
 #include "lanes_fma.h"
 
@@ -223,20 +224,18 @@ static void check(void (*kind)(uint64_t *, double *))
     }
 }
 
-#define KINDS(K)                                                                                   \
-    K(anything)                                                                                    \
-    K(moderate) K(cancelling) K(tying) K(halving) K(apart) K(tiny) K(huge) K(few_bits) K(special)
-#define TEST(kind)                                                                                 \
-    static void fused_##kind##_operands(void **state)                                              \
+#define KIND(kind)                                                                                 \
+    TEST(kind##_operands)                                                                          \
     {                                                                                              \
-        (void)state;                                                                               \
         check(kind);                                                                               \
     }
-KINDS(TEST)
-
-int main(void)
-{
-#define ENTRY(kind) cmocka_unit_test(fused_##kind##_operands),
-    const struct CMUnitTest tests[] = {KINDS(ENTRY)};
-    return cmocka_run_group_tests_name("fma", tests, NULL, NULL);
-}
+KIND(anything)
+KIND(moderate)
+KIND(cancelling)
+KIND(tying)
+KIND(halving)
+KIND(apart)
+KIND(tiny)
+KIND(huge)
+KIND(few_bits)
+KIND(special)

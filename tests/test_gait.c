@@ -6,12 +6,6 @@
  * Westervelt, Grizzle and Koditschek's (IEEE Trans. Autom. Control 48 (2003) 42): 0.649552458326 of
  * the gait `exactly`.
  */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -19,6 +13,7 @@
 #include <jansson.h>
 
 #include "linear.h"
+#include "tests.h"
 
 #include "analysis/gait/gait.h"
 #include "runner/plan/instruction_set.h"
@@ -105,9 +100,8 @@ static const struct truth truths[] = {
      NAN, 2e-9},
 };
 
-static void gaits_are_those_of_another_program(void **state)
+TEST(gaits_are_those_of_another_program)
 {
-    (void)state;
     for (size_t i = 0; i < sizeof truths / sizeof *truths; i++) {
         const struct truth *const t = &truths[i];
         struct walker *const w = walk(t->file, 1, 40, t->set, t->sets);
@@ -133,16 +127,15 @@ static void gaits_are_those_of_another_program(void **state)
 }
 
 /* Following the clock in place of the stance leg's angle is all that differs. */
-static void by_the_clock_it_does_not_hold(void **state)
+TEST(by_the_clock_it_does_not_hold)
 {
     struct walker *const w = walk("scenarios/gaits/walks_by_the_clock.yaml", 1, 1, SET(events));
-    (void)state;
     assert_true(w->found && !w->gait.stable);
     assert_near(w->gait.re[0], -5.1, 0.05, "multiplier");
     leave(w);
 }
 
-static void what_has_no_gait_says_why(void **state)
+TEST(what_has_no_gait_says_why)
 {
     static const struct {
         const char *file, *set[4], *says;
@@ -163,7 +156,6 @@ static void what_has_no_gait_says_why(void **state)
          {"sweep={}", "robot.bodies.leg2.mass=5.5"},
          "differ: a gait repeats"},
     };
-    (void)state;
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
         size_t sets = 0;
         while (sets < 4 && wrong[i].set[sets])
@@ -178,7 +170,7 @@ static void what_has_no_gait_says_why(void **state)
 
 /* Costs, frictions and clearances of an independent program: of the paper's biped, P1 and P3, and
  * RABBIT, to the digits that it has. */
-static void gaits_have_margins(void **state)
+TEST(gaits_have_margins)
 {
     static const struct {
         const char *file;
@@ -190,7 +182,6 @@ static void gaits_have_margins(void **state)
     };
     static const char *const fine[] = {"method.tolerance=1e-10", "method.step=0.0002",
                                        "controller.sample_time=0", "sweep={}"};
-    (void)state;
     for (size_t i = 0; i < sizeof truth / sizeof *truth; i++) {
         struct walker *const w = walk(truth[i].file, 1, 40, SET(fine));
         struct gait_margins m;
@@ -209,7 +200,7 @@ static void gaits_have_margins(void **state)
 
 /* Of a slope that is one of two at random in each step, by the return map itself: the standard
  * deviations over 4000 steps are as the norm says, to what so many steps tell. */
-static void slopes_at_random_vary_a_gait_as_the_norm_says(void **state)
+TEST(slopes_at_random_vary_a_gait_as_the_norm_says)
 {
     static const char *const slope[2][4] = {
         {"method.tolerance=1e-10", "method.step=0.005", "sweep={}", "ground.slope=-0.0005"},
@@ -223,7 +214,6 @@ static void slopes_at_random_vary_a_gait_as_the_norm_says(void **state)
     struct gait_sensitivity is;
     double sum[2] = {0}, square[2] = {0};
     uint64_t random = 12345;
-    (void)state;
     assert_true(w[2]->found);
     assert_true(gait_sensitivity_find(&w[2]->scenario, &w[2]->map, &w[2]->gait, &along, &is,
                                       &w[2]->message));
@@ -282,7 +272,7 @@ static void last_step(const struct walker *w, int steps, const stance_result *r,
 /* Of steps of the ground at random, each up or down from the one before by one of two heights, laid
  * as the robot comes to them: the last ones vary over cases as the norm says, to what so many tell.
  */
-static void steps_of_the_ground_vary_a_gait_as_the_norm_says(void **state)
+TEST(steps_of_the_ground_vary_a_gait_as_the_norm_says)
 {
     enum { LAID = 6, CASES = 600 };
     static const char *const set[] = {"method.step=0.005", "sweep={}", RANDOM};
@@ -292,7 +282,6 @@ static void steps_of_the_ground_vary_a_gait_as_the_norm_says(void **state)
     struct gait_sensitivity is;
     double sum[2] = {0}, square[2] = {0};
     uint64_t random = 12345;
-    (void)state;
     assert_true(c && r);
     assert_true(w->found);
     assert_true(
@@ -325,7 +314,7 @@ static void steps_of_the_ground_vary_a_gait_as_the_norm_says(void **state)
 
 /* A step of the ground under RABBIT, whose feet touch wherever they are: what comes of one, in each
  * step from there on, squared and added up is the norm, too. */
-static void what_a_step_of_the_ground_does_adds_up_to_the_norm(void **state)
+TEST(what_a_step_of_the_ground_does_adds_up_to_the_norm)
 {
     enum { STEPS = 12 };
     static const char *const set[] = {"method.tolerance=1e-10", "method.step=0.005", "sweep={}",
@@ -335,7 +324,6 @@ static void what_a_step_of_the_ground_does_adds_up_to_the_norm(void **state)
     stance_result *const r = calloc(4 * STEPS, sizeof *r);
     struct gait_sensitivity is;
     double square[2] = {0};
-    (void)state;
     assert_true(c && r);
     assert_true(w->found);
     assert_true(
@@ -362,18 +350,4 @@ static void what_a_step_of_the_ground_does_adds_up_to_the_norm(void **state)
     leave(w);
     free(c);
     free(r);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(gaits_have_margins),
-        cmocka_unit_test(steps_of_the_ground_vary_a_gait_as_the_norm_says),
-        cmocka_unit_test(what_a_step_of_the_ground_does_adds_up_to_the_norm),
-        cmocka_unit_test(slopes_at_random_vary_a_gait_as_the_norm_says),
-        cmocka_unit_test(gaits_are_those_of_another_program),
-        cmocka_unit_test(by_the_clock_it_does_not_hold),
-        cmocka_unit_test(what_has_no_gait_says_why),
-    };
-    return cmocka_run_group_tests_name("gait", tests, NULL, NULL);
 }

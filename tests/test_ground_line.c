@@ -2,6 +2,7 @@
  * it.
  */
 #include "reading.h"
+#include "tests.h"
 
 #include "runner/plan/ground_line.h"
 
@@ -29,19 +30,18 @@ static stance_case *a_case(uint64_t index)
     return &c;
 }
 
-static int begin(void **state)
+static int begin(void **state __attribute__((unused)))
 {
-    (void)state;
     read_good(&scenario, text, NULL, 0);
     return 0;
 }
 
-static int end(void **state)
+static int end(void **state __attribute__((unused)))
 {
-    (void)state;
     scenario_free(&scenario);
     return 0;
 }
+static CMFixtureFunction before_each = begin, after_each = end;
 
 /* Along the ground and off its plane. */
 static void lay(const double point[2], double out[2])
@@ -50,14 +50,13 @@ static void lay(const double point[2], double out[2])
     out[1] = point[0] * sin(0.1) + point[1] * cos(0.1);
 }
 
-static void lines_have_corners(void **state)
+TEST(lines_have_corners)
 {
     static const double corner[][2] = {{-1, 0},     {1, 0},      {1, -0.5}, {2, -0.5}, {2, -0.3},
                                        {2.5, -0.3}, {2.5, -0.1}, {3, -0.1}, {3, -0.1}, {4, -0.1}};
     const stance_case *const c = a_case(0);
     struct ground_pieces pieces;
     double point[64][2], at[2], low = INFINITY, high = -INFINITY;
-    (void)state;
     ground_pieces_find(c, NULL, &pieces);
     assert_true(isinf(pieces.laid[3]) && pieces.laid[3] > 0);
     assert_int_equal(ground_line(c, &pieces, 0, -1, 4, point, 64), 10);
@@ -83,13 +82,12 @@ static void lines_have_corners(void **state)
 }
 
 /* The same rough ground for the same place in the study and the same seed; another for others. */
-static void rough_ground_is_its_own(void **state)
+TEST(rough_ground_is_its_own)
 {
     const char *const sets[] = {"sweep.grid=[{path: initial.state.z, values: [1, 2]}, "
                                 "{path: ground.plates.rough.seed, values: [4, 5]}]"};
     double own[3], height, unused;
     struct ground_pieces pieces;
-    (void)state;
     scenario_free(&scenario);
     for (int k = 0; k < 3; k++) { /* by `seed`, then twice by its place */
         read_good(&scenario, text, sets, k == 0);
@@ -110,7 +108,7 @@ static void rough_ground_is_its_own(void **state)
 }
 
 /* Two ends of a rod that come down in turn; the third footfall lays a piece ahead of the second. */
-static void footfalls_lay_pieces(void **state)
+TEST(footfalls_lay_pieces)
 {
     enum { ROWS = 7 };
     const stance_case *const c = a_case(0);
@@ -119,7 +117,6 @@ static void footfalls_lay_pieces(void **state)
     static const int pushes[ROWS] = {-1, 0, 1, 0, -1, 0, 1};
     struct ground_pieces pieces;
     double point[64][2], at[2];
-    (void)state;
     memset(velocity, 0, sizeof velocity);
     memset(force, 0, sizeof force);
     for (int k = 0; k < ROWS; k++) {
@@ -150,26 +147,14 @@ static void footfalls_lay_pieces(void **state)
     assert_near(pieces.laid[3], 3, 0);
 }
 
-static void gaps_are_over_plates(void **state)
+TEST(gaps_are_over_plates)
 {
     const stance_case *const c = a_case(0);
     double position[3] = {1 * cos(0.1), -1 * sin(0.1), -0.1}, gap[STANCE_MAX_CONTACTS],
            plane[STANCE_MAX_CONTACTS];
-    (void)state;
     c->scene->gaps(c->scene, c->robot, position, plane);
     ground_gaps(c, position, gap); /* one end at 0.5 m, the other at 1.5 m along the ground */
     assert_near(plane[0], 0, 1e-12);
     assert_near(gap[0], plane[0], 1e-12);
     assert_near(gap[1], plane[1] + 0.5, 1e-12);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(lines_have_corners, begin, end),
-        cmocka_unit_test_setup_teardown(rough_ground_is_its_own, begin, end),
-        cmocka_unit_test_setup_teardown(footfalls_lay_pieces, begin, end),
-        cmocka_unit_test_setup_teardown(gaps_are_over_plates, begin, end),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

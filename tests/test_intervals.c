@@ -1,6 +1,7 @@
 /* test_intervals.c - how often the intervals of shares over a sample hold the truth. */
 #include "long.h"
 #include "support.h"
+#include "tests.h"
 
 #include "cases.h"
 
@@ -80,11 +81,10 @@ static struct interval measure(enum doe_method method, const struct response *re
 
 /* Independent points and blocks: 93 to 97 %. Latin hypercubes and Sobol' sequences: conservative.
  */
-static void intervals_hold_as_often_as_they_say(void **state)
+TEST(intervals_hold_as_often_as_they_say)
 {
     const bool patient = long_tests();
     static const enum doe_method methods[] = {DOE_RANDOM, DOE_LHS, DOE_SOBOL, DOE_SALTELLI};
-    (void)state;
     for (size_t m = 0; m < sizeof methods / sizeof methods[0]; m++) {
         const int seeds = patient ? 4000 : 100;
         const double slack = 3.5 * sqrt(0.95 * 0.05 / seeds);
@@ -114,10 +114,9 @@ static void intervals_hold_as_often_as_they_say(void **state)
 
 /* Shares of what differs in size from point to point: what is lost of a domain, of those starts
  * that were in it. E(m) = 32, E(k) = 64 E((0.1 + 0.8 u) (0.2 + 0.6 u v)). */
-static void shares_of_parts_hold(void **state)
+TEST(shares_of_parts_hold)
 {
     const double wanted = (0.1 * 0.2 + 0.1 * 0.6 / 4 + 0.8 * 0.2 / 2 + 0.8 * 0.6 / 6) / 0.5;
-    (void)state;
     for (int count = 32; count <= 128; count *= 4) {
         int held = 0;
         for (int seed = 0; seed < 1000; seed++) {
@@ -140,7 +139,7 @@ static void shares_of_parts_hold(void **state)
 
 /* Four parts of a sample whose shares differ by less than a case in 32 have intervals of their own,
  * and narrow ones: what scatters are the points, not their cases. */
-static void shares_over_a_grid_are_no_coins(void **state)
+TEST(shares_over_a_grid_are_no_coins)
 {
     enum { PARTS = 4, EACH = 32, POINTS = PARTS * EACH, PLACES = 200 };
     static uint8_t kind[PLACES * POINTS];
@@ -153,7 +152,6 @@ static void shares_over_a_grid_are_no_coins(void **state)
                         .sample = 1,
                         .block = 1};
     struct interval interval[PARTS], rows[PLACES];
-    (void)state;
     for (int p = 0; p < POINTS; p++) {
         part[p] = (uint32_t)(p / EACH);
         for (int g = 0; g < PLACES; g++)
@@ -186,7 +184,15 @@ static void shares_over_a_grid_are_no_coins(void **state)
 
 /* ---- basins over samples ------------------------------------------------------------------- */
 
-static int seeds = 200; /* of each kind; 1000 when long */
+static int seeds; /* of each kind */
+
+static int choose_seeds(void **state __attribute__((unused)))
+{
+    seeds = long_tests() ? 1000 : 200;
+    return 0;
+}
+static CMFixtureFunction before_tests = choose_seeds;
+
 enum { GRID = 41, MOST_POINTS = 32 * (FACTORS + 2) };
 static uint8_t kind_of[GRID * MOST_POINTS];
 static double grid_place[GRID], point_place[MOST_POINTS];
@@ -232,7 +238,7 @@ static double all_or_nothing(const double *u)
 
 /* Within a cell the place of the edge in it is the whole error, and the bound is certain; points of
  * designs are more even than independent ones; what few points have is told by a wide end. */
-static void volumes_over_sampled_parameters(void **state)
+TEST(volumes_over_sampled_parameters)
 {
     static const struct {
         const char *name;
@@ -245,7 +251,6 @@ static void volumes_over_sampled_parameters(void **state)
                  {"all or nothing", all_or_nothing, 0.2, true}};
     static const enum doe_method methods[] = {DOE_RANDOM, DOE_LHS, DOE_SOBOL, DOE_SALTELLI};
     static const double levels[] = {0.95, 0.8, 0.99};
-    (void)state;
     for (int i = 0; i < GRID; i++)
         grid_place[i] = -1 + 2.0 * i / (GRID - 1);
     for (size_t k = 0; k < sizeof kinds / sizeof kinds[0]; k++) {
@@ -295,12 +300,11 @@ static void volumes_over_sampled_parameters(void **state)
 
 /* Sampled starts of which any share is inside, from nearly none to nearly all: the interval, and
  * the likely error either way. */
-static void volumes_over_sampled_starts(void **state)
+TEST(volumes_over_sampled_starts)
 {
     enum { POINTS = 64 };
     static const double shares[][2] = {{0.005, 0.05}, {0.05, 0.3}, {0.3, 0.7}, {0.95, 0.995}};
     static const double levels[] = {0.95, 0.8, 0.99};
-    (void)state;
     for (size_t k = 0; k < 4; k++) {
         for (size_t l = 0; l < 3; l++) {
             int held = 0, either = 0;
@@ -349,7 +353,7 @@ static void volumes_over_sampled_starts(void **state)
 /* ---- shares along a path, and losses ------------------------------------------------------- */
 
 /* Bins of 32 points along a factor, of which other factors decide. */
-static void bins_of_a_sample(void **state)
+TEST(bins_of_a_sample)
 {
     enum { BINS = 8, POINTS = 32 * BINS };
     static uint8_t kind[POINTS];
@@ -365,7 +369,6 @@ static void bins_of_a_sample(void **state)
                               .cases = POINTS,
                               .kind = kind};
     double held = 0;
-    (void)state;
     for (int seed = 0; seed < seeds; seed++) {
         struct doe_bins bins;
         stance_message message;
@@ -387,12 +390,11 @@ static void bins_of_a_sample(void **state)
 }
 
 /* What the domain of one file has lost in another one: little of much, and of single starts. */
-static void losses_of_a_domain(void **state)
+TEST(losses_of_a_domain)
 {
     enum { POINTS = 128 };
     static uint8_t kind[2][GRID * POINTS];
     static char none[] = "";
-    (void)state;
     for (int gridded = 0; gridded < 2; gridded++) {
         struct results r[2];
         const size_t places = gridded ? GRID : 1;
@@ -428,20 +430,4 @@ static void losses_of_a_domain(void **state)
         print_message("# losses of %s: %.1f %%\n", gridded ? "maps" : "single starts", held / 10.0);
         assert_true(held >= 930 && held <= 970 + 10);
     }
-}
-
-int main(void)
-{
-    if (long_tests())
-        seeds = 1000;
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(intervals_hold_as_often_as_they_say),
-        cmocka_unit_test(shares_of_parts_hold),
-        cmocka_unit_test(shares_over_a_grid_are_no_coins),
-        cmocka_unit_test(volumes_over_sampled_parameters),
-        cmocka_unit_test(volumes_over_sampled_starts),
-        cmocka_unit_test(bins_of_a_sample),
-        cmocka_unit_test(losses_of_a_domain),
-    };
-    return cmocka_run_group_tests_name("intervals", tests, NULL, NULL);
 }

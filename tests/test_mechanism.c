@@ -74,34 +74,36 @@ static void biped_moves(const stance_scene *s)
     stance_robot_fallback(s, robot);
     stance_robot_fallback(biped(), own);
     for (int i = 0; i < 1000; i++) {
-        double q[5], v[5], gap[2][2], point[2][2], speed[2][2], A[2][25], q2[5], v2[5];
-        for (int k = 0; k < ROBOT_COUNT && s == biped();
-             k++) /* its numbers are the closed form's */
+        double q[5], v[5], q2[5], v2[5], gap[2], at[2], speed[2], wanted[2], A[2][25];
+        const int foot = i % 2;
+        for (int k = 0; k < ROBOT_COUNT && s == biped(); k++) /* the closed form's own numbers */
             robot[k] = own[k] = biped()->robot[k].fallback * uniform(&seed, 0.5, 1.2);
         for (int k = 0; k < 5; k++) {
             q[k] = q2[k] = uniform(&seed, -3, 3);
             v[k] = v2[k] = uniform(&seed, -10, 10);
         }
-        s->gaps(s, robot, q, gap[0]);
-        closed_biped.gaps(&closed_biped, own, q, gap[1]);
-        same(gap[0], gap[1], 2, 1, "gaps");
+        s->gaps(s, robot, q, gap);
         for (int c = 0; c < 2; c++) {
-            s->contact_point(s, robot, q, v, c, point[0], speed[0]);
-            closed_biped.contact_point(&closed_biped, own, q, v, c, point[1], speed[1]);
-            same(point[0], point[1], 2, 1, "contact point");
-            same(speed[0], speed[1], 2, 10, "contact speed");
+            const struct closed_point p = closed_point(own, q, FOOT + c);
+            closed_speed(&p, v, wanted);
+            s->contact_point(s, robot, q, v, c, at, speed);
+            assert_near(gap[c], p.at[1], 1e-12, "gap");
+            same(at, p.at, 2, 1, "contact point");
+            same(speed, wanted, 2, 10, "contact speed");
         }
         s->inertia(s, robot, q, A[0]);
-        closed_biped.inertia(&closed_biped, own, q, A[1]);
+        closed_inertia(own, q, A[1]);
         same(A[0], A[1], 25, 10, "inertia");
-        assert_near(s->energy(s, robot, q, v), closed_biped.energy(&closed_biped, own, q, v), 1e-10,
-                    "energy");
-        s->stand(s, robot, 1u << i % 2, q, v);
-        closed_biped.stand(&closed_biped, own, 1u << i % 2, q2, v2);
-        same(q, q2, 5, 1, "stands");
-        same(v, v2, 5, 10, "stands still");
-        s->gaps(s, robot, q, gap[0]);
-        assert_true(gap[0][i % 2] >= 0 && gap[0][i % 2] <= 1e-15);
+        assert_near(s->energy(s, robot, q, v), closed_energy(own, q, v), 1e-10, "energy");
+        s->stand(s, robot, 1u << foot, q, v);
+        const struct closed_point stands = closed_point(own, q, FOOT + foot);
+        closed_speed(&stands, v, speed);
+        same(stands.at, (double[]){0, 0}, 2, 1, "stands");
+        same(speed, (double[]){0, 0}, 2, 10, "stands still");
+        same(q + 2, q2 + 2, 3, 0, "posture");
+        same(v + 2, v2 + 2, 3, 0, "its rates");
+        s->gaps(s, robot, q, gap);
+        assert_true(gap[foot] >= 0 && gap[foot] <= 1e-15);
     }
 }
 
@@ -121,35 +123,33 @@ static void biped_rests(const stance_scene *s)
                 choice.posture[k] = uniform(&seed, -1.5, 1.5);
             choice.posture[i / 2 % 3] = NAN;
         }
-        stance_equilibrium e[2];
+        stance_equilibrium e;
         stance_message message;
-        double A[2][36], B[2][12], force[2][2], by[2][12], by_torque[2][4];
-        if (closed_biped.equilibrium(&closed_biped, own, &choice, &e[0], NULL) != STANCE_OK)
+        const int foot = i % 2;
+        double posture[3], torque[2], weight[4] = {0};
+        double A[2][36], B[2][12], force[2], by[2][12], by_torque[2][4];
+        if (!closed_equilibrium(own, &choice, posture, torque))
             continue;
-        if (s->equilibrium(s, robot, &choice, &e[1], &message) != STANCE_OK) {
-            assert_true(fabs(e[0].torque[0]) > 10 || fabs(e[0].torque[1]) > 10);
+        if (s->equilibrium(s, robot, &choice, &e, &message) != STANCE_OK) {
+            assert_true(fabs(torque[0]) > 10 || fabs(torque[1]) > 10);
             continue;
         }
         found++;
         assert_int_equal(message.text[0], 0);
-        for (int k = 2; k < 5; k++)
-            assert_near(remainder(e[1].position[k] - e[0].position[k], 2 * M_PI), 0, 1e-12,
-                        "posture");
-        same(e[1].position, e[0].position, 2, 1, "position");
-        same(e[1].torque, e[0].torque, 2, 10, "torque");
-        same(e[1].force[0], e[0].force[0], 4, 100, "force");
-        assert_true(e[1].freedoms == 3 && e[1].freedom[2] == 4 && e[1].condition < 1 + 1e-12);
-        assert_near(e[1].friction, 0, 1e-12, "friction");
-        for (int k = 0; k < 2; k++) {
-            const stance_scene *const scene = k ? s : &closed_biped;
-            const double *const r = k ? robot : own;
-            assert_int_equal(scene->linearise(scene, r, &e[k], A[k], B[k]), STANCE_OK);
-            assert_int_equal(scene->contact_force(scene, r, &e[k], force[k], by[k], by_torque[k]),
-                             STANCE_OK);
-        }
+        for (int k = 0; k < 3; k++)
+            assert_near(remainder(e.position[2 + k] - posture[k], 2 * M_PI), 0, 1e-12, "posture");
+        same(closed_point(own, e.position, FOOT + foot).at, (double[]){0, 0}, 2, 1, "position");
+        same(e.torque, torque, 2, 10, "torque");
+        weight[2 * foot] = closed_mass(own) * STANCE_GRAVITY;
+        same(e.force[0], weight, 4, 100, "force");
+        assert_true(e.freedoms == 3 && e.freedom[2] == 4 && e.condition < 1 + 1e-12);
+        assert_near(e.friction, 0, 1e-12, "friction");
+        assert_int_equal(s->linearise(s, robot, &e, A[1], B[1]), STANCE_OK);
+        assert_int_equal(s->contact_force(s, robot, &e, force, by[1], by_torque[1]), STANCE_OK);
+        closed_linearise(own, e.position, foot, A[0], B[0], by[0], by_torque[0]);
         same(A[1], A[0], 36, 100, "A");
         same(B[1], B[0], 12, 10, "B");
-        same(force[1], force[0], 2, 100, "contact force");
+        same(force, weight + 2 * foot, 2, 100, "contact force");
         same(by[1], by[0], 12, 1000, "contact force by state");
         same(by_torque[1], by_torque[0], 4, 10, "contact force by torque");
     }

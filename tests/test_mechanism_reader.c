@@ -7,43 +7,63 @@
 #include "engine/mechanism.h"
 #include "runner/plan/resolve.h"
 
-/* RABBIT, with every name on a line of its own. */
-static const char good[] = "stance: 1\n"
-                           "scene: mechanism\n"
-                           "robot:\n"
-                           "  bodies:\n"
-                           "    trunk: {joint: free, mass: 20, inertia: 2.22, centre: [0, 0.2]}\n"
-                           "    shank1: {joint: hinge, parent: thigh1, at: [0, -0.4], mass: 3.2, "
-                           "inertia: 0.93, centre: [0, -0.128], limits: [-2.5, 0]}\n"
-                           "    thigh1: {joint: hinge, parent: trunk, mass: 6.8, inertia: 1.08, "
-                           "centre: [0, -0.163]}\n"
-                           "    thigh2: {joint: hinge, parent: trunk, like: thigh1}\n"
-                           "    shank2: {joint: hinge, parent: thigh2, like: shank1}\n"
-                           "    rotor: {joint: fixed, parent: trunk, mass: 0.5, at: [0, 0.1]}\n"
-                           "  contacts:\n"
-                           "    foot1: {body: shank1, at: [0, -0.4]}\n"
-                           "    foot2: {body: shank2, from: [-0.05, -0.4], to: [0.1, -0.4]}\n"
-                           "  points:\n"
-                           "    head: {body: trunk, at: [0, 0.625]}\n"
-                           "  actuators:\n"
-                           "    hip1: {body: thigh1, limit: 150}\n"
-                           "    knee1: {body: shank1}\n"
-                           "ground: {friction: 0.6, slope: 0.1, gravity: 1.62, contacts: [foot2]}\n"
-                           "initial: {state: {trunk: -0.1, shank1: -0.3, shank2: -0.5, vtrunk: 1}, "
-                           "support: [foot2]}\n"
-                           "stop: {time: 5}\n";
+/* RABBIT, with every name on a line of its own, and a cart on a rail; what is said where a piece of
+ * one is another. */
+enum { RABBIT, CART, MOST = 200 };
+static char base[2][2048];
+static struct mistake {
+    int base;
+    char from[400], to[2048], said[1100];
+} mistake[MOST];
+static int mistakes;
 
-/* A cart on a rail. */
-static const char cart[] = "stance: 1\n"
-                           "scene: mechanism\n"
-                           "robot:\n"
-                           "  bodies:\n"
-                           "    cart: {joint: slide, axis: [1, 0], mass: 1, limits: [-2, 2]}\n"
-                           "    pole: {joint: hinge, parent: cart, mass: 0.1, centre: [0, 0.5]}\n"
-                           "  actuators:\n"
-                           "    push: {body: cart, limit: 20}\n"
-                           "initial: {state: {pole: 0.1}}\n"
-                           "stop: {time: 5}\n";
+/* As the head of the file says; # is `number`. */
+static char *spell(char *out, const char *from, const char *end, int number)
+{
+    for (; from < end; from++)
+        if (*from == '@') {
+            const char *const close = strchr(from + 1, '@');
+            char *item;
+            const long times = strtol(from + 1, &item, 10);
+            for (int k = 0; k < times; k++)
+                out = spell(out, item, close, k);
+            from = close;
+        } else if (*from == '\\') {
+            *out++ = '\n', from++;
+        } else if (*from == '#') {
+            out += sprintf(out, "%d", number);
+        } else {
+            *out++ = *from;
+        }
+    *out = '\0';
+    return out;
+}
+
+static int read_mistakes(void **state __attribute__((unused)))
+{
+    FILE *const in = fopen("tests/mechanism_mistakes.txt", "r");
+    char line[1024];
+    bool in_base = false;
+    for (int of = -1; in && fgets(line, sizeof line, in);) {
+        struct mistake *const m = &mistake[mistakes];
+        if (strncmp(line, "base ", 5) == 0) {
+            in_base = true, of++;
+        } else if (strcmp(line, "end\n") == 0) {
+            in_base = false;
+        } else if (in_base) {
+            strcat(base[of], line);
+        } else if (*line == '|') {
+            const char *const to = strchr(line + 1, '|') + 1;
+            spell(m->from, line + 1, to - 1, 0);
+            spell(m->to, to, strchr(to, '|'), 0);
+            m->base = of;
+        } else if (*line == '=' && ++mistakes < MOST) {
+            snprintf(m->said, sizeof m->said, "bad.yaml:%s", line + 2);
+        }
+    }
+    return in ? fclose(in) : -1;
+}
+static CMFixtureFunction before_tests = read_mistakes;
 
 /* The text with `from` replaced by `to`; freed by the caller. */
 static char *edited(const char *text, const char *from, const char *to)
@@ -79,7 +99,7 @@ static double quantity(const struct scenario *s, const double *robot, const char
 TEST(description_becomes_a_scene)
 {
     struct scenario s;
-    read_good(&s, good, NULL, 0);
+    read_good(&s, base[RABBIT], NULL, 0);
     const stance_mechanism *const m = s.scene->mechanism;
     assert_true(m && m->bodies == 6 && m->elements == 2 && m->points == 1 && m->actuators == 2);
     for (int b = 0; b < m->bodies; b++)
@@ -118,7 +138,7 @@ TEST(numbers_vary)
         "{paths: [robot.bodies.thigh1.mass, robot.bodies.thigh2.mass], values: [[5, 6]]}]"};
     struct scenario s;
     struct scenario_values v;
-    read_good(&s, good, sets, 3);
+    read_good(&s, base[RABBIT], sets, 3);
     assert_near(quantity(&s, s.base.robot, "bodies.thigh2.mass"), 7, 0); /* like thigh1 */
     assert_int_equal(s.cases, 6);
     scenario_case_values(&s, 5, &v);
@@ -143,22 +163,21 @@ TEST(numbers_vary)
 /* The text that files store makes the same scene, and the same text again. */
 TEST(text_reads_back)
 {
-    static const char *const texts[] = {good, cart};
     for (int i = 0; i < 2; i++) {
         struct scenario s, again;
-        read_good(&s, texts[i], NULL, 0);
+        read_good(&s, base[i], NULL, 0);
         read_good(&again, s.text, NULL, 0);
         assert_string_equal(s.text, again.text);
         assert_true(scenario_same_scene(&s, &again));
         assert_memory_equal(&s.base, &again.base, sizeof s.base);
         scenario_free(&again);
         const char *const set = i ? "robot.bodies.pole.mass=2" : "robot.bodies.trunk.mass=2";
-        read_good(&again, texts[i], &set, 1);
+        read_good(&again, base[i], &set, 1);
         assert_true(scenario_same_scene(&s, &again)); /* but for a number */
         scenario_free(&again);
         const char *const more =
             i ? "robot.bodies.pole.damping=2" : "robot.contacts.foot1.body=trunk";
-        read_good(&again, texts[i], &more, 1);
+        read_good(&again, base[i], &more, 1);
         assert_false(scenario_same_scene(&s, &again));
         scenario_free(&again);
         scenario_free(&s);
@@ -192,7 +211,7 @@ TEST(designs_act_on_names)
     static const double gain[4] = {-3.16227766, 49.53696991, -5.91436222, 12.84512014};
     struct resolved_design design;
     stance_case c;
-    resolve(cart, sets, 3, &design, &c, NULL);
+    resolve(base[CART], sets, 3, &design, &c, NULL);
     for (int i = 0; i < 4; i++)
         assert_near(design.gain[0][i], gain[i], 1e-3);
     assert_true(isinf(c.torque_limit));
@@ -212,7 +231,7 @@ TEST(held_coordinates_have_no_gains)
     struct resolved_design design;
     stance_case c;
     int held = 0;
-    resolve(good, sets, 4, &design, &c, NULL);
+    resolve(base[RABBIT], sets, 4, &design, &c, NULL);
     for (int k = 0; k < 5; k++) {
         bool any = false;
         for (int i = 0; i < 4; i++)
@@ -220,7 +239,7 @@ TEST(held_coordinates_have_no_gains)
         held += !any;
     }
     assert_int_equal(held, 1);
-    resolve(good, sets, 5, &design, &c,
+    resolve(base[RABBIT], sets, 5, &design, &c,
             "controller.poles: 4 of them; where the contacts hold there are 8 states; idle there, "
             "with their rates: shank2");
 }
@@ -243,7 +262,7 @@ TEST(targets_stand_on_both_feet)
     stance_message message;
     stance_case c;
     stance_result end;
-    read_good(&s, good, sets, 6);
+    read_good(&s, base[RABBIT], sets, 6);
     assert_true(resolve_design(s.scene, &s.base, &design, &message));
     assert_true(resolve_case(&s, &s.base, &design, 0, &c, &message));
     assert_int_equal(c.supports, 3);
@@ -265,7 +284,7 @@ TEST(states_stand)
     struct resolved_design design;
     struct scenario s;
     stance_case c;
-    read_good(&s, good, sets, 2);
+    read_good(&s, base[RABBIT], sets, 2);
     stance_message message;
     double gap[STANCE_MAX_CONTACTS];
     assert_true(resolve_design(s.scene, &s.base, &design, &message) &&
@@ -273,49 +292,39 @@ TEST(states_stand)
     s.scene->gaps(s.scene, c.robot, c.position, gap);
     assert_near(gap[0], 0, 1e-15);
     scenario_free(&s);
-    resolve(good, sets, 3, &design, &c,
+    resolve(base[RABBIT], sets, 3, &design, &c,
             "initial.state.shank1: shank1 would start at 0.1 rad, above its upper limit of 0 rad");
 }
 
 /* ---- wrong ones ------------------------------------------------------------------------------ */
 
-static const struct {
-    const char *from, *to; /* in `good` */
-    const char *wanted;    /* LINE:COLUMN: message */
-} wrong[] = {
-#include "mechanism_errors.h"
-};
-enum { WRONG = sizeof wrong / sizeof wrong[0] };
-
 TEST(wrong_ones_are_told)
 {
     int failed = 0;
-    for (int i = 0; i < WRONG; i++) {
-        const bool own = strstr(good, wrong[i].from) != NULL;
-        char *const text = edited(own ? good : cart, wrong[i].from, wrong[i].to);
-        char wanted[1024];
+    for (const struct mistake *m = mistake; m < mistake + mistakes; m++) {
+        char *const text = edited(base[m->base], m->from, m->to);
         struct scenario s;
-        snprintf(wanted, sizeof wanted, "bad.yaml:%s\n", wrong[i].wanted);
-        if (read_as(&s, "bad.yaml", text, NULL, 0)) {
-            print_error("%s -> %s: accepted, not %s", wrong[i].from, wrong[i].to, wanted);
+        const bool accepted = read_as(&s, "bad.yaml", text, NULL, 0);
+        if (accepted)
             scenario_free(&s);
-            failed++;
-        } else if (strcmp(errors, wanted) != 0) {
-            print_error("%s -> %s: %snot %s", wrong[i].from, wrong[i].to, errors, wanted);
+        if (accepted || strcmp(errors, m->said) != 0) {
+            print_error("%s -> %s: %snot %s", m->from, m->to, accepted ? "accepted, " : errors,
+                        m->said);
             failed++;
         }
         free(text);
     }
     assert_int_equal(failed, 0);
-    assert_true(WRONG >= 60);
+    assert_in_range(mistakes, 120, MOST - 1);
 }
 
 /* Pieces of the ground, of a described robot and of one that is carried: their numbers, which of
  * them an axis gives, and what the file keeps. */
 TEST(ground_becomes_plates)
 {
-    static const char *const scene[] = {good, "stance: 1\nscene: rod\ninitial: {state: {}}\n"
-                                              "stop: {time: 5}\n"};
+    static const char *const scene[] = {base[RABBIT],
+                                        "stance: 1\nscene: rod\ninitial: {state: {}}\n"
+                                        "stop: {time: 5}\n"};
     const char *const sets[] = {
         "ground.plates={step: {from: 0.5, height: -0.05}, up: {from: 1, friction_factor: 0.5}, "
         "stairs: {kind: stairs, from: 2, width: 0.3, height: 0.05}, "

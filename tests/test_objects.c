@@ -5,8 +5,9 @@
  * where they come from; tests/whole_objects.sh runs such jobs under all circumstances. `alone`:
  * there are no built-in ones to compare with or to fall back on, as for what is really new.
  */
-#include "long.h"
+#include "scratch.h"
 #include "support.h"
+#include "tests.h"
 
 #include "runner/base/units.h"
 #include "runner/objects/objects.h"
@@ -57,8 +58,9 @@ static void ask(struct asked *asked, const char *scene, char *methods, const cha
     }
 }
 
-static int job(char **word)
+static int compare(int argc, char **argv)
 {
+    char *const *const word = argv + 1;
     static const char *const origin[] = {
         [OBJECT_KEPT] = "kept",        [OBJECT_COMPILED] = "compiled",
         [OBJECT_UNKEPT] = "compiled",  [OBJECT_REFERENCE] = "built in",
@@ -66,6 +68,8 @@ static int job(char **word)
     struct asked asked;
     struct object object[MOST];
     stance_message message;
+    if (argc < 4)
+        return -1;
     struct parallel ranks = parallel_start();
     ask(&asked, word[0], word[1], word[2], word[3] && strcmp(word[3], "alone") == 0);
     const double begin = clock_seconds();
@@ -88,21 +92,19 @@ static int job(char **word)
     parallel_finish(&ranks);
     return code == EXIT_DONE && !good ? EXIT_CASES_FAILED : (int)code;
 }
+static int (*instead)(int argc, char **argv) = compare;
+
+static CMFixtureFunction before_tests = cache_make, after_tests = scratch_remove;
 
 /* ---- tests --------------------------------------------------------------------------------- */
 
 /* Objects of several scenes in one process, some of them gone: each is its own. */
-static void one_after_the_other(void **state)
+TEST(one_after_the_other)
 {
-    (void)state;
     static const char *const scene[] = {"ball", "rod", "block"};
     enum { SCENES = sizeof scene / sizeof scene[0] };
-    char cache[] = "/tmp/stance-test-XXXXXX", command[60];
     const struct parallel alone = parallel_alone();
     struct object object[SCENES], again;
-    assert_non_null(mkdtemp(cache));
-    setenv("STANCE_CACHE", cache, 1);
-    compile_sooner(cache);
     for (int turn = 0; turn < 2; turn++) { /* compiled, kept */
         for (int k = 0; k < SCENES; k++) {
             struct asked asked;
@@ -122,8 +124,6 @@ static void one_after_the_other(void **state)
             assert_true(same(&object[k], stance_scene_find(scene[k])));
         objects_release(object, SCENES);
     }
-    snprintf(command, sizeof command, "rm -r %s", cache);
-    assert_int_equal(system(command), 0);
 }
 
 /* An image of `size` bytes under a label. */
@@ -137,9 +137,8 @@ static struct image sealed(size_t size, const struct image_label *label)
     return image;
 }
 
-static void labels(void **state)
+TEST(labels)
 {
-    (void)state;
     const struct image_label given[] = {
         {"0123456789abcdef0123456789abcdef-0123456789abcdef0123456789abcdef",
          "gcc (Debian 12.2.0-14+deb12u1) 12.2.0"},
@@ -156,9 +155,8 @@ static void labels(void **state)
 }
 
 /* Whatever is cut off, added or turned over is seen. */
-static void damage(void **state)
+TEST(damage)
 {
-    (void)state;
     const struct image_label label = {"key", "compiler"};
     struct image image = sealed(500, &label);
     struct image_label read;
@@ -171,13 +169,4 @@ static void damage(void **state)
     }
     assert_true(image_label(&image, &read));
     image_free(&image);
-}
-
-int main(int argc, char **argv)
-{
-    if (argc > 3)
-        return job(argv + 1);
-    const struct CMUnitTest tests[] = {cmocka_unit_test(labels), cmocka_unit_test(damage),
-                                       cmocka_unit_test(one_after_the_other)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

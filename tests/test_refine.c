@@ -2,6 +2,7 @@
  * implementation that goes through cells one by one with the definition of refine.h in hand.
  */
 #include "support.h"
+#include "tests.h"
 
 #include "runner/plan/refine.h"
 
@@ -243,9 +244,8 @@ static int ragged(const struct refine_map *map, const size_t *at)
     return uniform(&state, 0, 1) < 0.01 ? 4 : at[0] > at[map->axes - 1] ? 2 : 3;
 }
 
-static void test_second_implementation(void **unused)
+TEST(test_second_implementation)
 {
-    (void)unused;
     const label_function labels[] = {half_plane, failures, ball, ragged};
     const size_t counts[][2] = {{33, 31}, {24, 37}, {17, 5}};
     for (size_t l = 0; l < 4; l++)
@@ -262,9 +262,8 @@ static void test_second_implementation(void **unused)
             }
 }
 
-static void test_more_axes(void **unused)
+TEST(test_more_axes)
 {
-    (void)unused;
     const struct refine_map solid = {.axes = 3,
                                      .count = {11, 10, 12},
                                      .refined = {true, true, true},
@@ -304,9 +303,8 @@ static int disc(const struct refine_map *map, const size_t *at)
 }
 
 /* A smooth boundary is found to the last point, with work that grows like its length. */
-static void test_smooth(void **unused)
+TEST(test_smooth)
 {
-    (void)unused;
     uint64_t before = 0;
     for (size_t n = 128; n <= 1024; n *= 2) {
         const struct refine_map map = {
@@ -334,9 +332,8 @@ static int island(const struct refine_map *map, const size_t *at)
 }
 
 /* Seen by a probe, an island is mapped whole; how often that is follows from its size. */
-static void test_probes(void **unused)
+TEST(test_probes)
 {
-    (void)unused;
     enum { SEEDS = 400, N = 128, INNER = 120 };
     const double share = 0.01;
     int seen = 0;
@@ -365,9 +362,8 @@ static void test_probes(void **unused)
     assert_true(fabs(probes - n * share) < 4 * sqrt(n * share * (1 - share)));
 }
 
-static void test_extremes(void **unused)
+TEST(test_extremes)
 {
-    (void)unused;
     struct refine_map map = {
         .axes = 2, .count = {40, 40}, .refined = {true, true}, .start = 8, .probes = 1};
     struct refine *refine = refine_make(&map);
@@ -380,16 +376,4 @@ static void test_extremes(void **unused)
     assert_non_null(refine);
     assert_int_equal(run(refine, &map, half_plane, 64), 1600);
     refine_free(refine);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_second_implementation),
-        cmocka_unit_test(test_more_axes),
-        cmocka_unit_test(test_smooth),
-        cmocka_unit_test(test_probes),
-        cmocka_unit_test(test_extremes),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

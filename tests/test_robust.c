@@ -1,5 +1,6 @@
 /* test_robust.c - signs of life and what others make of them. */
 #include "support.h"
+#include "tests.h"
 
 #include "runner/run/heartbeat.h"
 
@@ -31,6 +32,7 @@ static int remove_place(void **state)
     free(place);
     return 0;
 }
+static CMFixtureFunction before_each = make_place, after_each = remove_place;
 
 static void put(const char *file, const char *text)
 {
@@ -40,7 +42,7 @@ static void put(const char *file, const char *text)
     fclose(to);
 }
 
-static void test_pulse(void **state)
+TEST(test_pulse)
 {
     const struct place *place = *state;
     struct parallel alone = parallel_alone();
@@ -83,7 +85,7 @@ static void test_pulse(void **state)
 }
 
 /* Whatever the note holds. */
-static void test_strange_notes(void **state)
+TEST(test_strange_notes)
 {
     static const char *const notes[] = {
         "",
@@ -106,13 +108,4 @@ static void test_strange_notes(void **state)
     heartbeat_read(place->file, &note);
     assert_true(note.exists && !note.running && note.age > 1e6);
     assert_string_equal(note.host, "a?[2Jb");
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(test_pulse, make_place, remove_place),
-        cmocka_unit_test_setup_teardown(test_strange_notes, make_place, remove_place),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,6 +1,7 @@
 /* test_runner.c - options, checksums, plan, results file and lock, each alone and on one rank. */
 #include "runner/base/words.h"
 #include "support.h"
+#include "tests.h"
 
 #include "runner/base/checksum.h"
 #include "runner/base/command.h"
@@ -18,9 +19,8 @@
 /* ---- checksums ---------------------------------------------------------------------------- */
 
 /* RFC 3720, appendix B.4, and the check value of the CRC catalogues. */
-static void test_crc32c(void **state)
+TEST(test_crc32c)
 {
-    (void)state;
     uint8_t zeros[32] = {0}, ones[32], rising[32];
     memset(ones, 0xff, sizeof ones);
     for (int i = 0; i < 32; i++)
@@ -41,9 +41,8 @@ static void test_crc32c(void **state)
 }
 
 /* FIPS 180-4's examples, and the lengths around a block's end by what they continue to. */
-static void test_sha256(void **state)
+TEST(test_sha256)
 {
-    (void)state;
     char text[CHECKSUM_SHA256_TEXT], *million = malloc(1000000);
     const char *two = "abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq";
     checksum_sha256("", 0, text);
@@ -61,9 +60,8 @@ static void test_sha256(void **state)
 
 /* ---- words and options -------------------------------------------------------------------- */
 
-static void test_nearest_word(void **state)
+TEST(test_nearest_word)
 {
-    (void)state;
     const char *const known[] = {"check", "design", "run", "status", "summary", "sample_time"};
     assert_string_equal(nearest_word("chekc", known, 6), "check"); /* a swap is one edit */
     assert_string_equal(nearest_word("stats", known, 6), "status");
@@ -99,9 +97,8 @@ static const char *colour_word(size_t k)
 }
 
 /* Every kind of row; what is wrong with each, and with some beside others. */
-static void test_options(void **state)
+TEST(test_options)
 {
-    (void)state;
 #define TRIED(member) OPTION_TO(struct tried, member)
     static const struct option more[] = {
         {"--cases", "N", TRIED(cases), .low = 2, .high = 9, .text = "some"},
@@ -166,9 +163,8 @@ static void test_options(void **state)
 
 /* Chunks tile the rows, in order, without overlap, in whole bundles of lanes; none is larger than a
  * eighth of a rank's share, the last ones are a 32nd of it at most. */
-static void test_chunks(void **state)
+TEST(test_chunks)
 {
-    (void)state;
     const uint64_t sizes[] = {1, 2, 7, 8, 63, 64, 65, 1000, 4096, 65536, 1000003, 40000000};
     for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++) {
         for (int ranks = 1; ranks <= 1024; ranks = ranks * 3 + 1) {
@@ -218,6 +214,7 @@ static int make_fixture(void **state)
 {
     struct fixture *f = calloc(1, sizeof *f);
     struct plan_error error;
+    store_prepare();
     *state = f;
     if (!f || !scenario_read(&f->scenario, "swept.yaml", swept, NULL, 0, stderr))
         return -1;
@@ -238,9 +235,10 @@ static int free_fixture(void **state)
     free(f);
     return 0;
 }
+static CMFixtureFunction before_tests = make_fixture, after_tests = free_fixture;
 
 /* Axes 1 and 3 decide on the design; robots with a trunk of 9 m have no such equilibrium. */
-static void test_designs(void **state)
+TEST(test_designs)
 {
     struct fixture *f = *state;
     const struct plan *plan = &f->plan;
@@ -266,7 +264,7 @@ static void test_designs(void **state)
     assert_true(first.gain[0][0] != other.gain[0][0]);
 }
 
-static void test_recorded(void **state)
+TEST(test_recorded)
 {
     struct fixture *f = *state;
     uint64_t place;
@@ -279,7 +277,7 @@ static void test_recorded(void **state)
     assert_int_equal(plan_recorded_case(&f->plan, 2), 59);
 }
 
-static void test_checks(void **state)
+TEST(test_checks)
 {
     struct fixture *f = *state;
     struct plan_error error = {0};
@@ -295,7 +293,7 @@ static void test_checks(void **state)
 
 /* Without time one design is computed, the one that the cost is told from; the others stay pending
  * and nobody is told that they do not exist. Later they are made up for. */
-static void test_impatient(void **state)
+TEST(test_impatient)
 {
     struct fixture *f = *state;
     struct plan plan;
@@ -384,7 +382,7 @@ static void assert_whole(struct store *store, uint64_t first, size_t n, bool exp
 
 /* Ranges of all lengths over a grid of 3 x 2 x 5 x 2: written rows are whole, others stay pending
  * (trajectories, which these rows lack, are tested from outside). */
-static void test_rows(void **state)
+TEST(test_rows)
 {
     struct fixture *f = *state;
     struct store *store;
@@ -411,7 +409,7 @@ static void test_rows(void **state)
 }
 
 /* Lists of rows, scattered and in one stretch: those are whole, and no others were touched. */
-static void test_listed_rows(void **state)
+TEST(test_listed_rows)
 {
     struct fixture *f = *state;
     struct store *store;
@@ -437,7 +435,7 @@ static void test_listed_rows(void **state)
     assert_true(store_close(store, &message));
 }
 
-static void test_designs_stored(void **state)
+TEST(test_designs_stored)
 {
     struct fixture *f = *state;
     struct store *store;
@@ -460,7 +458,7 @@ static void test_designs_stored(void **state)
 }
 
 /* A scene without actuators and designs: rows with trajectories, whole when both are. */
-static void test_plain_scene(void **state)
+TEST(test_plain_scene)
 {
     static const char ball[] =
         "stance: 1\nscene: ball\nground: {restitution: 0.5}\ninitial: {state: {z: 0.6}}\n"
@@ -513,7 +511,7 @@ static void test_plain_scene(void **state)
     scenario_free(&s);
 }
 
-static void test_origin(void **state)
+TEST(test_origin)
 {
     struct fixture *f = *state;
     struct store_origin origin;
@@ -538,7 +536,7 @@ static void test_origin(void **state)
 }
 
 /* A file as it was made passes; a bit of the scenario's text or of an axis does not. */
-static void test_check(void **state)
+TEST(test_check)
 {
     struct fixture *f = *state;
     stance_message message;
@@ -573,7 +571,7 @@ static int work_of(void *signal_number)
 }
 
 /* What a child says comes out, unless it crashes: whoever handles the signal in the parent. */
-static void test_sandbox(void **state)
+TEST(test_sandbox)
 {
     const struct fixture *f = *state;
     int numbers[] = {0, SIGSEGV, SIGABRT, SIGXCPU};
@@ -597,7 +595,7 @@ static void test_sandbox(void **state)
 
 /* ---- the lock ----------------------------------------------------------------------------- */
 
-static void test_lock(void **state)
+TEST(test_lock)
 {
     struct fixture *f = *state;
     struct lock lock, second;
@@ -636,21 +634,4 @@ static void test_lock(void **state)
     lock_release(&lock);
     assert_false(lock_take(&lock, "/nowhere/file.h5", &message));
     assert_non_null(strstr(message.text, "No such file"));
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_crc32c),         cmocka_unit_test(test_sha256),
-        cmocka_unit_test(test_nearest_word),   cmocka_unit_test(test_options),
-        cmocka_unit_test(test_chunks),         cmocka_unit_test(test_designs),
-        cmocka_unit_test(test_recorded),       cmocka_unit_test(test_checks),
-        cmocka_unit_test(test_recorded),       cmocka_unit_test(test_impatient),
-        cmocka_unit_test(test_rows),           cmocka_unit_test(test_listed_rows),
-        cmocka_unit_test(test_designs_stored), cmocka_unit_test(test_origin),
-        cmocka_unit_test(test_lock),           cmocka_unit_test(test_plain_scene),
-        cmocka_unit_test(test_check),          cmocka_unit_test(test_sandbox),
-    };
-    store_prepare();
-    return cmocka_run_group_tests_name("runner", tests, make_fixture, free_fixture);
 }

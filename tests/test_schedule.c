@@ -3,6 +3,7 @@
 #include "runner/base/units.h"
 #include "simulate.h"
 #include "support.h"
+#include "tests.h"
 
 #include "runner/plan/schedule.h"
 #include "runner/run/work.h"
@@ -12,9 +13,8 @@
 /* ---- drawing ------------------------------------------------------------------------------ */
 
 /* Stretches tile each chunk; places stand for all rows, or for those of a list. */
-static void test_stretches(void **state)
+TEST(test_stretches)
 {
-    (void)state;
     const uint64_t row[5] = {3, 4, 9, 100, 1000};
     const struct rows only = {.row = row, .count = 5};
     uint64_t first, count, place;
@@ -69,6 +69,7 @@ static int make_fixture(void **state)
     struct fixture *f = calloc(1, sizeof *f);
     struct plan_error error;
     stance_message message;
+    store_prepare();
     *state = f;
     if (!f || !scenario_read(&f->scenario, "swept.yaml", swept, NULL, 0, stderr))
         return -1;
@@ -100,6 +101,7 @@ static int free_fixture(void **state)
     free(f);
     return 0;
 }
+static CMFixtureFunction before_each = make_fixture, after_each = free_fixture;
 
 /* Every row that was run has its label: those with a trunk of 9 m, which fail, and no others. */
 static void run_rows(struct fixture *f, const struct rows *only)
@@ -132,7 +134,7 @@ static void assert_whole(struct fixture *f, const bool *expected)
 }
 
 /* A list of rows computes those and no others; what a file holds is kept by a resumed run. */
-static void test_lists(void **state)
+TEST(test_lists)
 {
     struct fixture *f = *state;
     uint64_t row[60], n = 0, random = 5;
@@ -156,9 +158,8 @@ static void test_lists(void **state)
 
 /* Every case is in one shard, in ascending order; runs are what they say; sizes differ by a stripe
  * at most. */
-static void test_shards(void **state)
+TEST(test_shards)
 {
-    (void)state;
     static const uint64_t sweeps[][2] = {{1, 1},      {7, 7},      {240, 1},       {240, 7},
                                          {65536, 16}, {65537, 16}, {65536, 60000}, {9000001, 3}};
     for (size_t i = 0; i < sizeof sweeps / sizeof sweeps[0]; i++) {
@@ -193,9 +194,8 @@ static void test_shards(void **state)
 
 /* On a grid of 256 x 256 whose cases cost more to one corner, or along the one axis or the other,
  * the dearest of N shards costs little more than the mean. */
-static void test_even_shards(void **state)
+TEST(test_even_shards)
 {
-    (void)state;
     for (uint64_t count = 2; count <= 64; count++) {
         for (int slope = 0; slope < 3; slope++) {
             double most = 0, total = 0;
@@ -217,9 +217,8 @@ static void test_even_shards(void **state)
     }
 }
 
-static void test_shard_words(void **state)
+TEST(test_shard_words)
 {
-    (void)state;
     static const char *const bad[] = {
         "",          "0/4",  "5/4",  "a/b", "1/1e9",
         "1/1000001", "1/",   "/1",   "1",   "-1/2",
@@ -234,7 +233,7 @@ static void test_shard_words(void **state)
 }
 
 /* A shard computes its rows and no others. */
-static void test_one_shard(void **state)
+TEST(test_one_shard)
 {
     struct fixture *f = *state;
     bool whole[240] = {false};
@@ -248,7 +247,7 @@ static void test_one_shard(void **state)
 }
 
 /* Out of time before it begins: nothing is computed, and that is no error. */
-static void test_stopped(void **state)
+TEST(test_stopped)
 {
     struct fixture *f = *state;
     bool whole[240] = {false};
@@ -303,9 +302,8 @@ static double list_schedule(const double *seconds, int ranks)
 
 /* Without costs of counter and writes the time is that of a list schedule; all cases are computed
  * once; the ranks' times add up. */
-static void test_list_schedule(void **state)
+TEST(test_list_schedule)
 {
-    (void)state;
     double *seconds = random_costs();
     const double total = sum_of(seconds, 0, CASES);
     struct simulation s;
@@ -330,9 +328,8 @@ static void test_list_schedule(void **state)
 }
 
 /* On one rank nothing queues: what draws and writes cost is a sum. */
-static void test_one_rank(void **state)
+TEST(test_one_rank)
 {
-    (void)state;
     double *seconds = random_costs();
     const double total = sum_of(seconds, 0, CASES);
     struct simulated_machine machine = {
@@ -368,9 +365,8 @@ static void test_one_rank(void **state)
 
 /* A counter that takes longer than the cases decides: one draw after the other. So does a file
  * system. */
-static void test_queues(void **state)
+TEST(test_queues)
 {
-    (void)state;
     double *seconds = calloc(CASES, sizeof *seconds);
     struct simulated_machine machine = ideal;
     const struct simulated_job job = {.cases = CASES,
@@ -396,9 +392,8 @@ static void test_queues(void **state)
 }
 
 /* A map of the same size gives each case its own cost; a larger one the same mean, in order. */
-static void test_cost_map(void **state)
+TEST(test_cost_map)
 {
-    (void)state;
     double seconds[12], total = 0;
     struct cost_map map;
     for (int i = 0; i < 12; i++)
@@ -423,9 +418,8 @@ static void test_cost_map(void **state)
 }
 
 /* What large jobs rest on: 1e10 cases on 16,384 ranks are few draws, in whole blocks. */
-static void test_large(void **state)
+TEST(test_large)
 {
-    (void)state;
     const double seconds[1] = {1e-4};
     struct cost_map map;
     struct simulation s;
@@ -441,24 +435,4 @@ static void test_large(void **state)
     assert_true(fabs(s.computing - 1e6) < 1e-3);
     assert_true(simulation_efficiency(&s, 16384) > 0.95);
     cost_map_free(&map);
-}
-
-int main(void)
-{
-    store_prepare();
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_stretches),
-        cmocka_unit_test_setup_teardown(test_lists, make_fixture, free_fixture),
-        cmocka_unit_test_setup_teardown(test_stopped, make_fixture, free_fixture),
-        cmocka_unit_test_setup_teardown(test_one_shard, make_fixture, free_fixture),
-        cmocka_unit_test(test_shards),
-        cmocka_unit_test(test_even_shards),
-        cmocka_unit_test(test_shard_words),
-        cmocka_unit_test(test_list_schedule),
-        cmocka_unit_test(test_one_rank),
-        cmocka_unit_test(test_queues),
-        cmocka_unit_test(test_cost_map),
-        cmocka_unit_test(test_large),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

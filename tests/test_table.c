@@ -1,11 +1,6 @@
 /* The writer of tables: what people see and what programs get, of numbers that are none, of text
  * that means harm, and without memory. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
+#include "tests.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -22,6 +17,13 @@ const char *__asan_default_options(void)
 /* What was written. */
 static char *text;
 static size_t size;
+
+static int free_text(void **state __attribute__((unused)))
+{
+    free(text);
+    return 0;
+}
+static CMFixtureFunction after_tests = free_text;
 
 static FILE *begin(void)
 {
@@ -77,10 +79,9 @@ static void add_row(struct table *t, const char *name, double share, double low,
 
 static const char view[] = "name count share low high note";
 
-static void test_alignment(void **state)
+TEST(test_alignment)
 {
     struct table t = {0};
-    (void)state;
     add_row(&t, "a", 0.125, 0.1, 0.2, 7, NULL);
     add_row(&t, "much longer", 1, NAN, NAN, 123456, "so");
     assert_int_equal(table_rows(&t), 2);
@@ -94,20 +95,18 @@ static void test_alignment(void **state)
     table_free(&t);
 }
 
-static void test_letters(void **state)
+TEST(test_letters)
 {
     struct table t = {0};
-    (void)state;
     add_row(&t, "\xc3\xa4\xc3\xb6", 0.5, NAN, NAN, 1, NULL); /* two letters, four bytes */
     assert_seen(&t, "name count", 0, "  name     n\n  \xc3\xa4\xc3\xb6       1\n");
     table_free(&t);
 }
 
-static void test_nothing(void **state)
+TEST(test_nothing)
 {
     struct table t = {0};
     const double numbers[] = {NAN, INFINITY, -INFINITY, 0.1, 1.0 / 3, 123456789012345678.0, 1e-300};
-    (void)state;
     for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++) {
         TABLE_FACTS(&t, {{.name = "x", .heading = "x"}, as_number(numbers[i])},
                     {{"y", "y", .empty = "none"}, i ? as_text("") : as_nothing(NULL)},
@@ -132,10 +131,9 @@ static void test_nothing(void **state)
     table_free(&t);
 }
 
-static void test_quotes(void **state)
+TEST(test_quotes)
 {
     struct table t = {0};
-    (void)state;
     TABLE_COLUMNS(&t, {.name = "plain"}, {.name = "a,b"}, {.name = "c"});
     TABLE_VALUES(&t, as_text("he said \"so\""), as_text("two\nlines"));
     TABLE_VALUES(&t, as_text("a,b"));
@@ -149,11 +147,10 @@ static void test_quotes(void **state)
 }
 
 /* Text from a file: what is no letter, what moves the cursor, what ends a string. */
-static void test_hostile(void **state)
+TEST(test_hostile)
 {
     static const char bad[] = "\xff\x1b[2J\n%s%n\"\\";
     struct table t = {0};
-    (void)state;
     TABLE_FACTS(&t, {{.name = "x", .heading = "x"}, as_text(bad)},
                 {{.name = "y", .heading = "y"}, as_number(1)});
     table_end_row(&t);
@@ -187,7 +184,7 @@ static void test_hostile(void **state)
 
 /* ---- JSON --------------------------------------------------------------------------------- */
 
-static void test_json(void **state)
+TEST(test_json)
 {
     double values[] = {0.25, 0.5};
     char *words[] = {"one", "two"};
@@ -197,7 +194,6 @@ static void test_json(void **state)
                  {.name = "method.name", .count = 2, .value = (double[]){0, 1}, .word = words}}};
     const size_t point[SCENARIO_MAX_AXES] = {1, 1};
     struct table t = {0}, none = {0};
-    (void)state;
     table_axes(&t, &r, (const int[]){0, 1}, 2, point);
     TABLE_FACTS(&t, {{"first_low", .group = "first", .key = "low"}, as_number(0.5)},
                 {{"csv", .hidden = TABLE_NO_JSON}, as_whole(1)},
@@ -232,11 +228,10 @@ static void *no_room(size_t bytes)
     return NULL;
 }
 
-static void test_no_memory(void **state)
+TEST(test_no_memory)
 {
     struct table t = {0};
     json_t *tree = json_array();
-    (void)state;
     add_row(&t, "a", 1, 2, 3, 4, "note");
     t.letters = SIZE_MAX / 8; /* the next text asks for more than there can be */
     TABLE_VALUES(&t, as_text("b"));
@@ -266,10 +261,9 @@ static void test_no_memory(void **state)
     table_free(&t);
 }
 
-static void test_no_output(void **state)
+TEST(test_no_output)
 {
     struct table t = {0};
-    (void)state;
     add_row(&t, "a", 1, 2, 3, 4, NULL);
     FILE *full = fopen("/dev/full", "w");
     assert_non_null(full);
@@ -289,14 +283,13 @@ static void assert_said(const char *facts, const char *of, const char *wanted)
 }
 
 /* Texts with holes for facts, as say.h has them. */
-static void test_say(void **state)
+TEST(test_say)
 {
     static const char facts[] =
         "{'a': 1, 'b': 2.5, 'none': null, 'no': false, 'nil': 0, 'word': 'x', 'empty': '', "
         "'list': [3, 4], 'rows': [{'k': 'p', 'a': 7}, {'k': 'q'}], 'map': {'u': 1, 'v': 2}, "
         "'.width': 4}";
     char quoted[sizeof facts];
-    (void)state;
     for (size_t i = 0; i < sizeof facts; i++)
         quoted[i] = facts[i] == '\'' ? '"' : facts[i];
     assert_said(quoted, "{a} {b} {b%.2f} {b%6.1f}| {b*%.0f} {word%-3s}| {word%*s} {none%3s}|",
@@ -331,7 +324,7 @@ static void test_say(void **state)
     X("word", NULL, as_text("w"), .hidden = TABLE_NO_JSON)                                         \
     X("at", "[low, high]", as_tree(table_pair(1, NAN)), .hidden = TABLE_NO_CSV)
 
-static void test_facts(void **state)
+TEST(test_facts)
 {
     static const struct say_key inner[] = {FACTS(TABLE_KEY){0}},
                                 rows[] = {TABLE_KEY_AT{"inner", "", inner}, {0}},
@@ -341,7 +334,6 @@ static void test_facts(void **state)
     struct table t = {0};
     const uint64_t n = 7;
     const double part = 0.5;
-    (void)state;
     TABLE_FACTS(&t, FACTS(TABLE_FACT));
     table_end_row(&t);
     assert_seen(&t, "n part", 0, "    n   part\n    7 50.0 %\n");
@@ -356,18 +348,4 @@ static void test_facts(void **state)
                "high]}}]; null beyond\n"
                "  of --one:\n"
                "    n, part (of all, null: none), at: [low, high]\n");
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_alignment), cmocka_unit_test(test_letters),
-        cmocka_unit_test(test_nothing),   cmocka_unit_test(test_quotes),
-        cmocka_unit_test(test_hostile),   cmocka_unit_test(test_json),
-        cmocka_unit_test(test_no_memory), cmocka_unit_test(test_no_output),
-        cmocka_unit_test(test_say),       cmocka_unit_test(test_facts),
-    };
-    const int failed = cmocka_run_group_tests(tests, NULL, NULL);
-    free(text);
-    return failed;
 }

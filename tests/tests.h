@@ -37,12 +37,20 @@ static inline void register_test(const char *name, CMUnitTestFunction test)
     }                                                                                              \
     static void name(void **state __attribute__((unused)))
 
-/* What is done before all tests and after them: a program that needs it gives them a value. */
-static CMFixtureFunction before_tests, after_tests;
+/* What is done before all tests and after them, and before and after each: a program that needs it
+ * gives them a value. Where `instead` is there and returns 0 or more that is the exit code: its
+ * arguments asked for something else. */
+static CMFixtureFunction before_tests, after_tests, before_each, after_each;
+static int (*instead)(int argc, char **argv);
 
-int main(void)
+int main(int argc, char **argv)
 {
-    return cmocka_run_group_tests_name(__BASE_FILE__, registered, before_tests, after_tests);
+    const int code = instead ? instead(argc, argv) : -1;
+    for (struct CMUnitTest *test = registered; test->name; test++)
+        test->setup_func = before_each, test->teardown_func = after_each;
+    return code >= 0
+               ? code
+               : cmocka_run_group_tests_name(__BASE_FILE__, registered, before_tests, after_tests);
 }
 
 #endif
