@@ -23,14 +23,71 @@ span() { # command ...
     echo $(((${EPOCHREALTIME//[.,]/} - begin) / 1000))
 }
 seconds() { printf '%d.%03d' $(($1 / 1000)) $(($1 % 1000)); } # milliseconds
-# Runs a command, not for ever; ok when it exits with this code.
-expect() { # name, code, command ...
-    local name=$1 code=$2 status
+# Runs a command, not for ever; ok when it exits with this code. What its log must have, and what must hold then, may
+# follow, each a check of its own:
+#     says PATTERN...    exactly one line matches            as FILE     compare finds its results the same to the bit
+#     tells PATTERN...   some line does (an ERE)             lines N     there are so many
+#     times N PATTERN    N lines do
+#     is COMMAND..., tool TASK..., holds CODE                the functions below; a script may add its own
+clause_words=" says tells times as lines is tool holds "
+expect() { # name, code, command ... [clause ...]
+    local name=$1 code=$2 status words=()
     shift 2
-    timeout "$patience" "$@" >log 2>&1 </dev/null
+    before_clause "$@"
+    timeout "$patience" "${words[@]}" >log 2>&1 </dev/null
     status=$?
     ((status == code)) || echo "exit code $status, expected $code" >>log
     result $((status != code)) "$name"
+    clauses "$@"
+}
+clauses() { # [command ...] clause ...
+    local clause pattern file='' words=()
+    before_clause "$@"
+    [[ " ${words[*]} " =~ " "(-o|merge)" "([^ ]+)" " ]] && file=${BASH_REMATCH[2]}
+    while shift ${#words[@]} && (($#)); do
+        clause=$1
+        shift
+        before_clause "$@"
+        case $clause in
+        says) for pattern in "${words[@]}"; do says "... says $pattern" "$pattern"; done ;;
+        tells) for pattern in "${words[@]}"; do tells "... tells $pattern" "$pattern"; done ;;
+        as) is "... as ${words[0]}" same_results "${words[0]}" "$file" ;;
+        lines) is "... in ${words[0]} lines" [ "$(wc -l <log)" = "${words[0]}" ] ;;
+        holds) holds "... holds" "${words[@]}" ;;
+        *) "$clause" "... $clause ${words[*]}" "${words[@]}" ;;
+        esac
+    done
+}
+times() { # name, how many lines of the log, pattern
+    [ "$(grep -c -- "$3" log)" = "$2" ]
+    result $? "$1"
+}
+# The log has some line for each of these.
+tells() { # name, pattern ...
+    local pattern
+    for pattern in "${@:2}"; do grep -qE -- "$pattern" log || { result 1 "$1"; return; }; done
+    result 0 "$1"
+}
+before_clause() { # words ...: those before the next clause
+    words=()
+    while (($#)) && [[ $clause_words != *" $1 "* ]]; do words+=("$1") && shift; done
+}
+same_results() { "$stance" compare "$1" "$2" >log 2>&1; }
+# Ok when a command succeeds, or with ! does not; one word with blanks is a script. What it says is not heard.
+is() { # name, [!] command ...
+    if [ "$2" = ! ]; then
+        ! "${@:3}" >/dev/null 2>&1
+    elif (($# == 2)); then
+        eval "$2" >/dev/null 2>&1
+    else
+        "${@:2}" >/dev/null 2>&1
+    fi
+    result $? "$1"
+}
+# Ok when what is asserted in Python holds (facts.py): the code, or that of the standard input.
+holds() { # name, [code or -, argument ...]
+    "$python" "$tests/facts.py" "${@:2}" >facts 2>&1
+    found $? "$1"
 }
 # Waits until a command succeeds; false: the process on which that depends (-: none) has ended before.
 await() { # process, command ...
@@ -47,16 +104,50 @@ await() { # process, command ...
 gone() { ! kill -0 "$1" 2>/dev/null; } # process
 running() { "$stance" status "$1" 2>/dev/null | grep -v 'not running' | grep -q running; } # file: a job is at it
 computing() { "$stance" status "$1" 2>/dev/null | grep -v 'not running' | grep -q ': [1-9][0-9]* of .*running'; } # ... and has stored cases
+# A job of N ranks (0: no launcher) that has stored some cases: its process, and those of its ranks.
+begin() { # N, file, scenario, option ...
+    local n=$1 launch=()
+    ((n > 0)) && launch=(mpirun -n "$n")
+    "${launch[@]}" "$stance" run "${@:3}" -o "$2" --quiet >out 2>log </dev/null &
+    job=$! ranks=($!)
+    await "$job" computing "$2" || return
+    ((n == 0)) || mapfile -t ranks < <(pgrep -P $job -x "$(basename "$stance")")
+    ((${#ranks[@]} > 0)) || ranks=("$job")
+}
+# It ends by itself with this code.
+ends() { # name, code [clause ...]
+    local status
+    await - gone "$job"
+    kill -9 "$job" 2>/dev/null && echo "it hung" >>log
+    wait $job 2>/dev/null
+    status=$?
+    ((status == $2)) || echo "exit code $status, expected $2" >>log
+    result $((status != $2)) "$1"
+    clauses "${@:3}"
+}
 # The log has exactly one line of the program, and it matches.
 says() { # name, pattern
     [ "$(grep -c -- "$2" log)" = 1 ]
     result $? "$1"
 }
 tool() { # name, task ...
-    local name=$1
-    shift
-    "$python" "$tests/results_tools.py" "$@" >log 2>&1
-    result $? "$name"
+    "$python" "$tests/results_tools.py" "${@:2}" >facts 2>&1
+    found $? "$1"
+}
+found() { # status, name: what Python said of it is in facts
+    (($1 == 0)) || cat facts >>log
+    result "$1" "$2"
+}
+# Another program's lines of TAP, counted on here.
+retold() { # file
+    local line
+    while read -r line; do
+        case $line in
+        "ok "*) result 0 "${line#* - }" ;;
+        "not ok "*) result 1 "${line#* - }" ;;
+        "# "*) echo "$line" ;;
+        esac
+    done <"$1"
 }
 
 # A robot on one foot under state feedback: how most scenarios of the tests begin.
@@ -69,5 +160,13 @@ initial: {equilibrium: {theta: -0.41, q2: 0.82}, support_foot: 1}
 controller: {kind: state-feedback, design: place, poles: [-3, -3.3, -3.6, -3.9, -4.2, -4.6],
              sample_time: $1, torque_limit: 10, noise: $2}
 method: {name: implicit, step: $1}
+END
+}
+grid() { # points of each of two axes: starts about its equilibrium, of which some recover
+    cat <<END
+sweep:
+  grid:
+    - {path: initial.offset.theta, from: -0.12, to: 0.06, count: $1}
+    - {path: initial.offset.vtheta, from: -0.6, to: 0.6, count: $2}
 END
 }

@@ -1,7 +1,8 @@
 # shellcheck shell=bash disable=SC2034
 # Where tests of the whole program work, sourced first by them: a scratch folder of their own, with
 # `disk` in it for a file system to be mounted, the program (bin/stance, or what STANCE names; a slow
-# one with STANCE_SLOW), the settings that mpirun wants of root, and the commands of outside.sh.
+# one with STANCE_SLOW), the settings that mpirun wants of root, the commands of outside.sh, and TAP's last line.
+set -u
 cd "$(dirname "${BASH_SOURCE[0]}")/.." || exit 1
 tests=$PWD/tests shipped=$PWD/scenarios python=${PYTHON:-/usr/bin/python3}
 export STANCE=${STANCE:-$PWD/bin/stance}
@@ -12,7 +13,7 @@ count=0
 
 scratch=$(mktemp -d)
 disk=$scratch/disk
-trap 'umount "$disk" 2>/dev/null; rm -rf "$scratch"' EXIT
+trap 'umount "$disk" 2>/dev/null; rm -rf "$scratch"; ((count == 0)) || echo "1..$count"; ((failed == 0)) || exit 1' EXIT
 cd "$scratch" && mkdir "$disk" || exit 1
 # shellcheck source=tests/outside.sh
 . "$tests/outside.sh"

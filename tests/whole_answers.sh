@@ -1,9 +1,7 @@
 #!/usr/bin/env bash
 # What answers mean outside: missing ones and true zeros in other readers and in files of earlier
-# versions, recoveries that are none, energy that drifts, axes whose points are one. Speaks TAP.
+# versions, recoveries that are none, energy that drifts, axes whose points are one.
 # about: runner/run analysis/basin analysis/compare analysis/summary
-set -u
-# shellcheck source=tests/scratch.sh
 . "$(dirname "$0")/scratch.sh"
 looks() { # name, file
     "$python" "$tests/open_results.py" answers "$2" >log 2>&1
@@ -27,8 +25,7 @@ cp map.h5 old.h5
 "$python" "$tests/results_tools.py" age old.h5 0
 "$stance" table map.h5 --answer steps --answer events --answer footfalls >new.csv 2>log
 expect "our own in a file of an earlier version, too" 0 "$stance" table old.h5 --answer steps --answer events --answer footfalls
-cmp log new.csv >>log 2>&1
-result $? "... the same"
+is "... the same" 'cmp log new.csv >>log 2>&1'
 expect "which is the same map" 0 "$stance" compare --labels map.h5 old.h5
 "$stance" summary map.h5 | grep -q 'settle.place 0.5 m' && ! "$stance" summary old.h5 | grep -q settle.place
 result $? "of which none was judged by a rule that came later"
@@ -59,24 +56,20 @@ sweep:
     - {path: stop.settle.place, values: [0.404, 0.412, none]}
     - {path: method.name, values: [implicit, midpoint, capturing, lagrange, event-driven]}
 END
-expect "a robot that slides away" 0 "$stance" run sled.yaml -o sled.h5
-says "... of which a contact that is left out begins in the ground" "warning: keel, which ground.contacts leaves out, begins 0.0156 m below the ground$"
-"$python" - >log 2>&1 <<'END'
-import h5py, numpy
+expect "a robot that slides away" 0 "$stance" run sled.yaml -o sled.h5 \
+    says "warning: keel, which ground.contacts leaves out, begins 0.0156 m below the ground$"
+holds "beyond stop.settle.place it is rested, else stabilised" <<'END'
 f = h5py.File("sled.h5")
 slid = f["final_state"][..., 0] - 0.5 # the heel began at 0
 assert (abs(slid - 4 / (2 * 0.5 * 9.81)) < 2e-3).all(), slid
 assert (f["outcome"][0] == 3).all() and (f["outcome"][1:] == 1).all(), f["outcome"][...]
 assert (abs(f["through_ground"][...] - 0.015625) < 1e-9).all(), f["through_ground"][...]
 END
-result $? "beyond stop.settle.place it is rested, else stabilised"
 expect "judged at the end" 0 "$stance" run sled.yaml -o end.h5 --set stop.settle=off --set 'sweep.grid=[{path: method.name, values: [implicit, capturing]}]' --set stop.time=2
-expect "... the same" 0 "$stance" table end.h5 --answer outcome
-says "... to the bound of half a metre" "capturing,stabilised"
+expect "... the same" 0 "$stance" table end.h5 --answer outcome says "capturing,stabilised"
 "$stance" summary sled.h5 --json >summary.json && "$stance" summary sled.h5 >log 2>&1
 says "the summary counts them" "Through the ground, with a contact that ground.contacts leaves out: 15 cases, of which 10 stabilised"
-"$python" -c 'import json; assert json.load(open("summary.json"))["through_ground"] == {"cases": 15, "judged": 10}' >log 2>&1
-result $? "... as JSON, too"
+holds "... as JSON, too" 'assert said("summary.json")["through_ground"] == {"cases": 15, "judged": 10}'
 
 cat >dive.yaml <<'END'
 stance: 1
@@ -96,15 +89,13 @@ sweep: {grid: [{path: method.name, values: [capturing, lagrange, event-driven, m
 record: {every: 0.001, cases: all}
 END
 expect "a point that dives, a damped vane" 0 "$stance" run dive.yaml -o dive.h5
-"$python" - >log 2>&1 <<'END'
-import h5py, numpy
+holds "how deep is told; what a damper takes is no drift" <<'END'
 f = h5py.File("dive.h5")
 gap = f["trajectory/gap"][:, :, 0]
 assert (f["through_ground"][...] == -gap.min(axis=1)).all() and (f["through_ground"][...] > 0.5).all()
 drift = f["energy_drift"][...]
 assert (drift[:3] < 1e-8).all() and 1e-9 < drift[3] < 1e-4 and 1e-4 < drift[4] < 0.1, drift
 END
-result $? "how deep is told; what a damper takes is no drift"
 
 # ---- energy in free motion ---------------------------------------------------------------------
 cat >ball.yaml <<'END'
@@ -116,48 +107,40 @@ method: {step: 0.001}
 stop: {time: 0.5, settle: "off"}
 sweep: {grid: [{path: method.name, values: [implicit, midpoint, capturing, lagrange, event-driven]}]}
 END
-expect "a ball that falls" 0 "$stance" run ball.yaml -o ball.h5
-says "... and ought to bounce for ever" "warning: restitution 1 with implicit: .*(case 0; so it is in 2 of 5 cases)"
-"$python" - >log 2>&1 <<'END'
-import h5py
+expect "a ball that falls" 0 "$stance" run ball.yaml -o ball.h5 \
+    says "warning: restitution 1 with implicit: .*(case 0; so it is in 2 of 5 cases)"
+holds "how much implicit loses on the way is told" <<'END'
 f = h5py.File("ball.h5")
 drift, mass = f["energy_drift"][...], 1
 lost = 500 * 0.5 * mass * (9.81 * 0.001) ** 2 # of implicit Euler, in each step
 assert abs(drift[0] / lost - 1) < 1e-9 and (drift[1:] < 1e-12).all(), (drift, lost)
 END
-result $? "how much implicit loses on the way is told"
 expect "an elastic ball for 100 s" 0 "$stance" run ball.yaml -o long.h5 --set stop.time=100
-"$python" - >log 2>&1 <<'END'
-import h5py
+holds "... where a third is gone" <<'END'
 f = h5py.File("long.h5")
 start = 1.5 * 9.81
 left = 9.81 * f["final_state"][..., 1] + 0.5 * f["final_state"][..., 3] ** 2
 assert abs(start - left[0]) > 0.2 * start, left
 assert f["energy_drift"][0] > 0.2 * start and f["energy_drift"][2] < 1e-9, f["energy_drift"][...]
 END
-result $? "... where a third is gone"
 expect "through an axis" 0 "$stance" check ball.yaml --set method.name=midpoint --set 'sweep.grid=[{path: ground.restitution, values: [0, 0.5, 0.995]}]'
 says "... it is said, too" "warning: restitution 0.995 with midpoint: .*(case 2; so it is in 1 of 3 cases)"
 expect "by another method" 0 "$stance" check ball.yaml --set method.name=capturing --set 'sweep.grid=[{path: ground.restitution, values: [0, 0.5, 1]}]'
-! grep -q warning log
-result $? "... nothing is"
+is "... nothing is" ! grep -q warning log
 
 # ---- axes --------------------------------------------------------------------------------------
-expect "an axis that is not sorted" 0 "$stance" check ball.yaml --set 'sweep.grid=[{path: ground.restitution, values: [0.5, 0.1, 0.8, 0.3]}]'
-says "... lies between its least and its largest value" "4  0.1 ... 0.8  *(not sorted)"
+expect "an axis that is not sorted" 0 "$stance" check ball.yaml \
+    --set 'sweep.grid=[{path: ground.restitution, values: [0.5, 0.1, 0.8, 0.3]}]' says "4  0.1 ... 0.8  *(not sorted)"
 expect "a run of it" 0 "$stance" run ball.yaml -o axis.h5 --set 'sweep.grid=[{path: ground.restitution, values: [0.5, 0.1, 0.8, 0.3]}]'
-expect "its summary" 0 "$stance" summary axis.h5
-says "... says so, too" "0.1 ... 0.8, 4 values, not sorted"
-expect "one that falls" 0 "$stance" check ball.yaml --set 'sweep.grid=[{path: ground.restitution, values: [0.8, 0.5, 0.1]}]'
-says "... is sorted" "3  0.8 ... 0.1 *$"
+expect "its summary" 0 "$stance" summary axis.h5 says "0.1 ... 0.8, 4 values, not sorted"
+expect "one that falls" 0 "$stance" check ball.yaml \
+    --set 'sweep.grid=[{path: ground.restitution, values: [0.8, 0.5, 0.1]}]' says "3  0.8 ... 0.1 *$"
 
 # ---- what is fixed -----------------------------------------------------------------------------
 expect "a law of two laws, designed for another robot" 0 "$stance" run "$shipped/controllers/switching.yaml" --only 0 --quiet \
     -o fixed.h5 --set controller.model.hip_mass=6 --set 'controller.torque_limits=[5, none]'
-expect "its summary" 0 "$stance" summary fixed.h5
-says "... tells the model" "model.hip_mass 6 kg"
-says "... the angles to be held" "target.q1 0.570127 rad, target.q2 0.82 rad"
-says "... a limit of its own" "torque_limits\[0\] 5 N m"
+expect "its summary" 0 "$stance" summary fixed.h5 \
+    says "model.hip_mass 6 kg" "target.q1 0.570127 rad, target.q2 0.82 rad" "torque_limits\[0\] 5 N m"
 ! grep -q 'torque_limits\[1\]\|slope\|branch\|proportional\|delay' log
 result $? "... and nothing that is not used, or as it is anyway"
 
@@ -169,24 +152,21 @@ for within in settle_time=0.3 settle_time=0.3.. settle_time=0.2..0.4; do
     "$stance" basin full.h5 --within $within --json >within$i.json 2>>log
     i=$((i + 1))
 done
-"$python" - >log 2>&1 <<'END'
-import h5py, json, numpy
+holds "the basin of what settles within a time, not before it, between two" <<'END'
 f = h5py.File("full.h5")
 time = f["settle_time"][f["outcome"][...] == 1]
 for k, (low, high) in enumerate([(0, 0.3), (0.3, 9), (0.2, 0.4)]):
-    basin = json.load(open(f"within{k}.json"))
+    basin = said(f"within{k}.json")
     inside = sum(r["inside"] for r in basin["rows"])
     assert 0 < inside == ((low <= time) & (time <= high)).sum() < len(time), (basin["within"], inside)
     assert basin["within"] == ["settle_time <= 0.3", "settle_time >= 0.3", "0.2 <= settle_time <= 0.4"][k]
 END
-result $? "the basin of what settles within a time, not before it, between two"
 expect "a larger map, refined" 0 "$stance" run "$shipped/basin_one_foot.yaml" -o part.h5 --quiet \
     --set 'sweep.grid[0].count=64' --set 'sweep.grid[1].count=64' --set 'sweep.refine={start: 8}'
-expect "numbers that inferred cases have not" 2 "$stance" basin part.h5 --within settle_time=0.3
-says "... are no bound" '^stance basin: --within settle_time: [0-9]* cases were inferred and have no such number: it takes a map without sweep.refine$'
-expect "... nor a sample" 0 "$stance" basin part.h5 --answer settle_time
-says "... which is said" 'warning: [0-9]* of these cases were inferred and have no settle_time'
+expect "numbers that inferred cases have not" 2 "$stance" basin part.h5 --within settle_time=0.3 \
+    says '^stance basin: --within settle_time: [0-9]* cases were inferred and have no such number: it takes a map without sweep.refine$'
+expect "... nor a sample" 0 "$stance" basin part.h5 --answer settle_time \
+    says 'warning: [0-9]* of these cases were inferred and have no settle_time'
 for wrong in settle_time=2..1 settle_time=.. settle_time=1..x; do
     expect "--within $wrong" 2 "$stance" basin full.h5 --within $wrong
 done
-echo "1..$count"

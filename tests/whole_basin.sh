@@ -1,22 +1,18 @@
 #!/usr/bin/env bash
 # What is made of campaigns, from outside: basins, files of an array merged into one, comparison with
-# a tolerance, tables for other programs. Speaks TAP.
+# a tolerance, tables for other programs.
 # about: runner/store analysis/basin analysis/compare analysis/plot
-set -u
 . "$(dirname "$0")/scratch.sh"
 
 {
     balance 0.01 0
-    cat <<END
-stop: {time: 4}
-sweep:
-  grid:
-    - {path: ground.friction, values: [0.1, 0.2, 0.4]}
-    - {path: initial.offset.theta, from: -0.12, to: 0.06, count: 50}
-    - {path: initial.offset.vtheta, from: -0.6, to: 0.6, count: 48}
-record: {every: 0.1, cases: [3, 2403, 4803]}
-END
+    grid 50 48 | sed '/grid:/a\    - {path: ground.friction, values: [0.1, 0.2, 0.4]}'
+    printf '%s\n' 'stop: {time: 4}' 'record: {every: 0.1, cases: [3, 2403, 4803]}'
 } >map.yaml
+runs() { # name, file, setting ...: map.yaml with these and no case recorded
+    local sets=(record.cases=none "${@:3}")
+    expect "$1" 0 "$stance" run map.yaml --quiet -o "$2.h5" "${sets[@]/#/--set=}"
+}
 starts='sweep.grid=[{path: initial.offset.theta, from: -0.12, to: 0.06, count: 50},
                     {path: initial.offset.vtheta, from: -0.6, to: 0.6, count: 48}]'
 expect "a map for each friction" 0 "$stance" run map.yaml -o whole.h5 --quiet
@@ -26,11 +22,10 @@ expect "two of the frictions" 0 "$stance" run map.yaml --quiet -o part2.h5 \
     --set 'sweep.grid[0].values=[0.2, 0.4]' --set 'record.cases=[3, 2403]'
 expect "the third" 0 "$stance" run map.yaml --quiet -o part1.h5 \
     --set 'sweep.grid[0].values=[0.1]' --set 'record.cases=[3]'
-expect "parts along an axis are merged" 0 "$stance" merge axis.h5 part2.h5 part1.h5
-says "... which is said" '^axis.h5: 7200 cases from 2 files along ground.friction, 3 values$'
-expect "... to the very file of one run, trajectories and all" 0 "$stance" compare whole.h5 axis.h5
-expect "an existing file is not replaced" 3 "$stance" merge axis.h5 part2.h5 part1.h5
-says "... and why" 'axis.h5 exists; --force replaces it'
+expect "parts along an axis are merged" 0 "$stance" merge axis.h5 part2.h5 part1.h5 \
+    says '^axis.h5: 7200 cases from 2 files along ground.friction, 3 values$' as whole.h5
+expect "an existing file is not replaced" 3 "$stance" merge axis.h5 part2.h5 part1.h5 \
+    says 'axis.h5 exists; --force replaces it'
 expect "... unless --force says so" 0 "$stance" merge axis.h5 part2.h5 part1.h5 --force
 
 for f in 0.4 0.1 0.2; do
@@ -38,8 +33,7 @@ for f in 0.4 0.1 0.2; do
         --set 'record.cases=[3]' -o "f$f.h5" >>log 2>&1
 done
 expect "parts that differ in a number are merged" 0 "$stance" merge number.h5 f0.4.h5 f0.1.h5 f0.2.h5
-"$python" - >log 2>&1 <<'END'
-import h5py, numpy
+holds "... the number is the first axis, sorted; provenance and times are those of the parts" <<'END'
 whole, merged = h5py.File("whole.h5"), h5py.File("number.h5")
 assert merged.attrs["axes"] == b"ground.friction,initial.offset.theta,initial.offset.vtheta"
 names = [n for n in whole if isinstance(whole[n], h5py.Dataset) and whole[n].dtype.kind in "uif"]
@@ -51,24 +45,20 @@ assert len(lines) == 3 and lines[1].startswith("f0.1.h5: 2400 cases, 20"), lines
 assert "merge_note" not in merged.attrs
 assert merged["timing/cases"][...].sum() == 7200 and len(merged["timing/cases"]) == 3
 END
-result $? "... the number is the first axis, sorted; provenance and times are those of the parts"
 expect "the merged file is a results file" 0 "$stance" summary number.h5
-expect "... that is complete" 0 "$stance" status number.h5
-says "... and says so" 'number.h5: 7200 of 7200 cases done.*complete'
+expect "... that is complete" 0 "$stance" status number.h5 says 'number.h5: 7200 of 7200 cases done.*complete'
 
 for k in 0 1 2; do
-    "$stance" run map.yaml --quiet -o "piece$k.h5" --set record.cases=none --set ground.friction=0.8 \
-        --set "sweep.grid=[{path: initial.offset.theta, from: $((k * 4 - 16))e-3, to: $((k * 4 - 12))e-3, count: 5},
-               {path: method.name, values: [implicit, midpoint]}]" >>log 2>&1
+    runs "piece$k" "piece$k" ground.friction=0.8 \
+        "sweep.grid=[{path: initial.offset.theta, from: $((k * 4 - 16))e-3, to: $((k * 4 - 12))e-3, count: 5},
+               {path: method.name, values: [implicit, midpoint]}]"
 done
-expect "pieces of a range are merged" 0 "$stance" merge pieces.h5 piece2.h5 piece0.h5 piece1.h5
-says "... their common ends once" 'from 3 files along initial.offset.theta, 13 values; 4 were in several'
-"$python" - >log 2>&1 <<'END'
-import h5py, numpy
+expect "pieces of a range are merged" 0 "$stance" merge pieces.h5 piece2.h5 piece0.h5 piece1.h5 \
+    says 'from 3 files along initial.offset.theta, 13 values; 4 were in several'
+holds "... and are one axis" <<'END'
 theta = h5py.File("pieces.h5")["initial.offset.theta"][...]
 assert numpy.allclose(theta, numpy.linspace(-0.016, -0.004, 13), rtol=0, atol=1e-12), theta
 END
-result $? "... and are one axis"
 
 cat >halves.py <<'END'
 import shutil, h5py
@@ -89,32 +79,25 @@ shutil.copy("whole.h5", "damaged.h5")
 with h5py.File("damaged.h5", "r+") as f:
     f["end_time"][1, 2, 3] = 0.123
 END
-"$python" halves.py >log 2>&1
-result $? "(parts of the same scenario)"
-expect "what two jobs have computed of one scenario" 0 "$stance" merge halves.h5 half1.h5 half2.h5
-says "... what both had" '7200 cases from 2 files; 500 were in several files, and equal'
-expect "... is the whole" 0 "$stance" compare whole.h5 halves.h5
-expect "what nobody has computed" 0 "$stance" merge open.h5 half1.h5 half1b.h5
-says "... is counted" '3200 are not computed yet'
-expect "... and resumed" 0 "$stance" run map.yaml -o open.h5 --resume --quiet
-expect "... to the same file" 0 "$stance" compare whole.h5 open.h5
-expect "a damaged row" 0 "$stance" merge mended.h5 damaged.h5 half1.h5
-says "... is left out, and said" '1 case left out: not as its checksum says'
-expect "... and comes from the other part" 0 "$stance" compare whole.h5 mended.h5
-expect "parts that contradict each other" 2 "$stance" merge bad.h5 whole.h5 other.h5
-says "... are refused" 'other.h5: 1 case differs .* the first is case 2499 of the whole'
-expect "parts of different studies" 2 "$stance" merge bad.h5 f0.1.h5 piece0.h5
-says "... are refused, too" 'piece0.h5: differs from f0.1.h5 in .*: parts may differ along one axis'
+is "(parts of the same scenario)" '"$python" halves.py >log 2>&1'
+expect "what two jobs have computed of one scenario" 0 "$stance" merge halves.h5 half1.h5 half2.h5 \
+    says '7200 cases from 2 files; 500 were in several files, and equal' as whole.h5
+expect "what nobody has computed" 0 "$stance" merge open.h5 half1.h5 half1b.h5 says '3200 are not computed yet'
+expect "... and resumed" 0 "$stance" run map.yaml -o open.h5 --resume --quiet as whole.h5
+expect "a damaged row" 0 "$stance" merge mended.h5 damaged.h5 half1.h5 \
+    says '1 case left out: not as its checksum says' as whole.h5
+expect "parts that contradict each other" 2 "$stance" merge bad.h5 whole.h5 other.h5 \
+    says 'other.h5: 1 case differs .* the first is case 2499 of the whole'
+expect "parts of different studies" 2 "$stance" merge bad.h5 f0.1.h5 piece0.h5 \
+    says 'piece0.h5: differs from f0.1.h5 in .*: parts may differ along one axis'
 expect "a file twice" 2 "$stance" merge bad.h5 f0.1.h5 f0.1.h5
 expect "a file that is none" 3 "$stance" merge bad.h5 f0.1.h5 map.yaml
-expect "one file" 2 "$stance" merge bad.h5 f0.1.h5
-[ ! -e bad.h5 ] && [ ! -e bad.h5.next ]
-result $? "nothing is left of what was refused"
+expect "one file" 2 "$stance" merge bad.h5 f0.1.h5 is '[ ! -e bad.h5 ] && [ ! -e bad.h5.next ]'
 
 # Another version may have drawn other points for the same scenario.
 sample='sweep={sample: {method: random, count: 8, vary: [{path: ground.friction, from: 0.2, to: 1}]}}'
 for half in drawn1 drawn2; do
-    "$stance" run map.yaml --quiet --set "$sample" --set record.cases=none -o $half.h5 >>log 2>&1
+    runs "$half" $half "$sample"
 done
 PYTHONPATH=$tests "$python" - >>log 2>&1 <<'END'
 import h5py, numpy, results_tools
@@ -124,28 +107,22 @@ with h5py.File("drawn2.h5", "r+") as file:
     data = b"ground.friction\0" + points[...].tobytes()
     points.attrs.modify("checksum", results_tools.crc32c(numpy.frombuffer(data, numpy.uint8).reshape(1, -1)))
 END
-expect "other points of the same scenario" 2 "$stance" merge bad.h5 drawn1.h5 drawn2.h5
-says "... are refused" '^stance merge: drawn2.h5: its points along sample are not those of drawn1.h5$'
+expect "other points of the same scenario" 2 "$stance" merge bad.h5 drawn1.h5 drawn2.h5 \
+    says '^stance merge: drawn2.h5: its points along sample are not those of drawn1.h5$'
 refine='sweep.refine={start: 8, probes: 0}'
-"$stance" run map.yaml --quiet --set "$starts" --set "$refine" --set record.cases=none -o low.h5 \
-    --set 'sweep.grid[0].to=-0.04' --set 'sweep.grid[0].count=20' >>log 2>&1
-"$stance" run map.yaml --quiet --set "$starts" --set "$refine" --set record.cases=none -o high.h5 \
-    --set 'sweep.grid[0].from=-0.03' --set 'sweep.grid[0].count=20' >>log 2>&1
-expect "refined maps are merged" 0 "$stance" merge refined.h5 low.h5 high.h5
-says "... with a word about what was simulated" 'The parts were refined each for itself: .* (attribute merge_note)'
+runs "low" low "$starts" "$refine" 'sweep.grid[0].to=-0.04' 'sweep.grid[0].count=20'
+runs "high" high "$starts" "$refine" 'sweep.grid[0].from=-0.03' 'sweep.grid[0].count=20'
+expect "refined maps are merged" 0 "$stance" merge refined.h5 low.h5 high.h5 \
+    says 'The parts were refined each for itself: .* (attribute merge_note)'
 
 for f in 0.2 0.4; do
-    "$stance" run map.yaml --quiet --set "$starts" --set ground.friction=$f -o "noise$f.h5" \
-        --set controller.noise=0.1 --set record.cases=none >>log 2>&1
+    runs "noise$f" "noise$f" "$starts" ground.friction=$f controller.noise=0.1
 done
-expect "parts with noise are merged" 0 "$stance" merge noise.h5 noise0.2.h5 noise0.4.h5
-says "... with a word about the random numbers" 'Random numbers .* are keyed'
-"$python" -c 'import h5py; assert b"keyed" in h5py.File("noise.h5").attrs["merge_note"]' >log 2>&1
-result $? "... in the file, too"
+expect "parts with noise are merged" 0 "$stance" merge noise.h5 noise0.2.h5 noise0.4.h5 \
+    says 'Random numbers .* are keyed' holds 'assert b"keyed" in h5py.File("noise.h5").attrs["merge_note"]'
 
 # ---- comparison with a tolerance --------------------------------------------------------------
-PYTHONPATH=$tests "$python" - >log 2>&1 <<'END'
-import shutil, h5py
+holds "(numbers that are moved)" <<'END'
 from make_sample_results import put_checksums
 shutil.copy("whole.h5", "moved.h5")
 with h5py.File("moved.h5", "r+") as f:
@@ -153,30 +130,24 @@ with h5py.File("moved.h5", "r+") as f:
     f["peak_torque"][2, 3, 4] += 1e-3
     put_checksums(f)
 END
-result $? "(numbers that are moved)"
 expect "to the bit they differ" 1 "$stance" compare whole.h5 moved.h5
-expect "beyond the tolerance" 1 "$stance" compare whole.h5 moved.h5 --tolerance 1e-6
-says "... is one" '^peak_torque: 1 of 7200 cases differ$'
-says "... within it the other" '^end_time: equal within the tolerance$'
-says "... with the largest difference and where it is" 'largest difference .* in case 50 '
-expect "an answer's own tolerance" 0 "$stance" compare whole.h5 moved.h5 --tolerance 1e-6 \
-    --tolerance peak_torque=0,2e-3
-expect "... alone leaves the others exact" 1 "$stance" compare whole.h5 moved.h5 \
-    --tolerance peak_torque=0,2e-3
+expect "beyond the tolerance" 1 "$stance" compare whole.h5 moved.h5 --tolerance 1e-6 \
+    says '^peak_torque: 1 of 7200 cases differ$' '^end_time: equal within the tolerance$' \
+        'largest difference .* in case 50 '
+expect "an answer's own tolerance" 0 "$stance" compare whole.h5 moved.h5 --tolerance 1e-6 --tolerance peak_torque=0,2e-3
+expect "... alone leaves the others exact" 1 "$stance" compare whole.h5 moved.h5 --tolerance peak_torque=0,2e-3
 expect "... as JSON" 0 "$stance" compare whole.h5 moved.h5 --tolerance 0.1 --json
-"$python" -c 'import json; c = json.load(open("log")); assert c["equal"] and not c["identical"]
+holds "... with its keys" 'c = said(); assert c["equal"] and not c["identical"]
 d = {x["name"]: x for x in c["differences"]}; assert abs(d["peak_torque"]["largest"] - 1e-3) < 1e-9
-assert d["end_time"]["differing"] == 0 and d["end_time"]["largest_at"]["index"] == 50' >>log 2>&1
-result $? "... with its keys"
+assert d["end_time"]["differing"] == 0 and d["end_time"]["largest_at"]["index"] == 50'
 expect "a tolerance that is none" 2 "$stance" compare whole.h5 moved.h5 --tolerance 1e-6x
 expect "a variable that is none" 2 "$stance" compare whole.h5 moved.h5 --tolerance end=1
 expect "words have no tolerance" 2 "$stance" compare whole.h5 moved.h5 --tolerance outcome=1
 
 # ---- tables ----------------------------------------------------------------------------------
 expect "every case as CSV" 0 "$stance" table whole.h5
-"$python" - >log2 2>&1 <<'END'
-import csv, h5py, numpy
-rows, f = list(csv.DictReader(open("log", newline=""))), h5py.File("whole.h5")
+holds "... has what the file has" <<'END'
+rows, f = table(), h5py.File("whole.h5")
 assert len(rows) == 7200
 number = lambda name: numpy.array([float(r[name] or "nan") for r in rows])
 for name in ["end_time", "settle_time", "friction_used", "steps"]:
@@ -187,22 +158,17 @@ assert numpy.array_equal(number("initial.offset.theta"), numpy.tile(theta, 3))
 words = numpy.array(["none", "stabilised", "fell", "rested", "undecided"])
 assert ([r["outcome"] for r in rows] == words[f["outcome"][...].ravel()]).all()
 END
-result $? "... has what the file has"
 expect "a part of it" 0 "$stance" table half1.h5 --answer outcome --answer end_time --of pending
-"$python" -c 'import csv; rows = list(csv.reader(open("log", newline=""))); assert len(rows) == 3201
-assert rows[0][4:] == ["outcome", "end_time"] and rows[1][0] == "4000" and rows[1][4:] == ["", ""]' >>log 2>&1
-result $? "... and nothing of pending cases"
-expect "the summary as CSV" 0 "$stance" summary whole.h5 --csv
-"$python" -c 'import csv; rows = list(csv.DictReader(open("log", newline=""))); assert len(rows) == 4
+holds "... and nothing of pending cases" 'rows = list(csv.reader(open("log", newline=""))); assert len(rows) == 3201
+assert rows[0][4:] == ["outcome", "end_time"] and rows[1][0] == "4000" and rows[1][4:] == ["", ""]'
+expect "the summary as CSV" 0 "$stance" summary whole.h5 --csv holds 'rows = table(); assert len(rows) == 4
 assert rows[0]["parameter"] == "" and rows[2]["value"] == "0.2" and rows[2]["done"] == "2400"
-assert sum(int(r["stabilised"]) for r in rows[1:]) == int(rows[0]["stabilised"]) > 100' >>log 2>&1
-result $? "... has a row for each value"
+assert sum(int(r["stabilised"]) for r in rows[1:]) == int(rows[0]["stabilised"]) > 100'
 
 # ---- basins ----------------------------------------------------------------------------------
 expect "a basin for each friction" 0 "$stance" basin whole.h5 --csv
-"$python" - >log2 2>&1 <<'END'
-import csv, h5py, numpy
-rows, f = list(csv.DictReader(open("log", newline=""))), h5py.File("whole.h5")
+holds "... with the volume and the bounds that its cases have" <<'END'
+rows, f = table(), h5py.File("whole.h5")
 assert [r["ground.friction"] for r in rows] == ["0.1", "0.2", "0.4"]
 inside = f["outcome"][...] == 1
 weight = numpy.outer([.5] + [1] * 48 + [.5], [.5] + [1] * 46 + [.5])
@@ -215,28 +181,23 @@ for k, r in enumerate(rows):
     assert abs(float(r["low"]) / 0.216 - low) < 1e-12 and abs(float(r["high"]) / 0.216 - high) < 1e-12
     assert r["alpha"] == "" and r["alpha_distances"] == "0" and 0 < float(r["boundary_entropy"]) < numpy.log(2)
 END
-result $? "... with the volume and the bounds that its cases have"
-expect "pending cases widen the bounds" 0 "$stance" basin half1.h5 --json
-"$python" -c 'import json; b = json.load(open("log")); r = b["rows"]
+expect "pending cases widen the bounds" 0 "$stance" basin half1.h5 --json holds 'b = said(); r = b["rows"]
 assert [x["pending"] for x in r] == [0, 800, 2400] and r[2]["volume"] is None
 assert r[2]["low"] == 0 and abs(r[2]["high"] - 0.216) < 1e-12 and r[1]["high"] > r[1]["volume"] > r[1]["low"]
-assert b["starts"] == ["initial.offset.theta", "initial.offset.vtheta"] and b["unit"] == "rad * rad/s"' >>log 2>&1
-result $? "... to all there is"
+assert b["starts"] == ["initial.offset.theta", "initial.offset.vtheta"] and b["unit"] == "rad * rad/s"'
 # A box that cuts the domain, one that does not, and what does not depend on it.
 small='[{path: initial.offset.theta, from: -0.03, to: 0.03, count: 31}, {path: initial.offset.vtheta, from: -0.12, to: 0.12, count: 31}]'
 large='[{path: initial.offset.theta, from: -0.2, to: 0.12, count: 161}, {path: initial.offset.vtheta, from: -0.9, to: 1, count: 96}]'
 line='[{path: initial.offset.theta, from: -0.2, to: 0.1, count: 151}]'
 for box in small large line; do
-    "$stance" run map.yaml --quiet -o $box.h5 --set record.cases=none --set ground.friction=0.4 \
-        --set "sweep={grid: ${!box}}" >>log 2>&1
+    runs "$box" $box ground.friction=0.4 "sweep={grid: ${!box}}"
     "$stance" basin $box.h5 --json >$box.json 2>>log
     "$stance" summary $box.h5 --json >$box.summary 2>>log
 done
-"$python" - >log 2>&1 <<'END'
-import h5py, json, numpy
+holds "the box: faces that cut, the part about the equilibrium, distances" <<'END'
 from scipy import ndimage
 for name in ["small", "large", "line"]:
-    b, s, f = json.load(open(name + ".json")), json.load(open(name + ".summary")), h5py.File(name + ".h5")
+    b, s, f = said(name + ".json"), said(name + ".summary"), h5py.File(name + ".h5")
     row, = b["rows"]
     inside = f["outcome"][...] == 1
     axes = [f[p][...] for p in b["starts"]]
@@ -253,7 +214,7 @@ for name in ["small", "large", "line"]:
     assert abs((own * weight).sum() - row["connected"]) < 1e-9, row["connected"]
     assert row["bounded"] == (not any(own.take(e, a).any() for a in range(own.ndim) for e in (0, -1)))
     assert b["weights"] == {p: 1 for p in b["starts"]}
-small, large, line = (json.load(open(n + ".json"))["rows"][0] for n in ("small", "large", "line"))
+small, large, line = (said(n + ".json")["rows"][0] for n in ("small", "large", "line"))
 print(small, large, line)
 assert len(small["cut"]) == 4 and small["bounded"] is False and small["share"] > 0.6 > large["share"]
 assert line["bounded"] is True and line["cut"] == [] and line["nearest_least"] == line["nearest"]
@@ -261,32 +222,28 @@ assert line["bounded"] is True and line["cut"] == [] and line["nearest_least"] =
 assert abs(small["nearest"] - large["nearest"]) < 0.004 and 0 < line["nearest"] - large["nearest"] < 0.004
 assert small["leaving"] > large["leaving"] and (small["median"] is None) == (small["leaving"] > 0.5)
 END
-result $? "the box: faces that cut, the part about the equilibrium, distances"
-expect "... as text" 0 "$stance" basin small.h5
-says "... names the faces" '^  cut by the box at initial.offset.theta = -0.03 rad and 0.03 rad (both ends), initial.offset.vtheta = -0.12'
-says "... and what that means" "the share is the box's"
-expect "... not cut" 0 "$stance" basin line.h5
-says "... says that it is bounded" 'bounded: it ends within the box'
-expect "... in the summary" 0 "$stance" summary small.h5
-says "... which names the faces, too" 'stabilised set cut by the box at initial.offset.theta = -0.03 rad and 0.03 rad (both ends)'
+expect "... as text" 0 "$stance" basin small.h5 \
+    says '^  cut by the box at initial.offset.theta = -0.03 rad and 0.03 rad (both ends), initial.offset.vtheta = -0.12' \
+        "the share is the box's"
+expect "... not cut" 0 "$stance" basin line.h5 says 'bounded: it ends within the box'
+expect "... in the summary" 0 "$stance" summary small.h5 \
+    says 'stabilised set cut by the box at initial.offset.theta = -0.03 rad and 0.03 rad (both ends)'
 mkdir scripts
 expect "... and in the caption" 0 env STANCE_SCRIPTS=scripts "$stance" plot small.h5
 expect "... of the map" 0 grep -rq "cut by the box at initial.offset.theta = -0.03 rad and 0.03 rad (both ends)" scripts/small-map
 expect "weights of disturbances" 0 "$stance" basin line.h5 --json --weight initial.offset.theta=0.01
-"$python" -c 'import json; b, one = json.load(open("log")), json.load(open("line.json"))
+holds "... are the units of distances" 'b, one = said(), said("line.json")
 assert b["weights"] == {"initial.offset.theta": 0.01}
-for k in "nearest", "nearest_least", "median": assert abs(b["rows"][0][k] - 100 * one["rows"][0][k]) < 1e-9' >>log 2>&1
-result $? "... are the units of distances"
-expect "a box without the equilibrium's domain" 0 "$stance" basin line.h5 --of fell
-says "... has no part of it" 'none: the start nearest to the equilibrium is not fell'
+for k in "nearest", "nearest_least", "median": assert abs(b["rows"][0][k] - 100 * one["rows"][0][k]) < 1e-9'
+expect "a box without the equilibrium's domain" 0 "$stance" basin line.h5 --of fell \
+    says 'none: the start nearest to the equilibrium is not fell'
 for wrong in initial.offset.theta initial.offset.theta= initial.offset.theta=0 initial.offset.theta=nan initial.offset.q1=1; do
     expect "a weight that is none: $wrong" 2 "$stance" basin line.h5 --weight $wrong
 done
 
 expect "the boundary as points" 0 "$stance" basin whole.h5 --boundary
-"$python" - >log2 2>&1 <<'END'
-import csv, h5py, numpy
-rows, f = list(csv.DictReader(open("log", newline=""))), h5py.File("whole.h5")
+holds "... midway between neighbours that differ" <<'END'
+rows, f = table(), h5py.File("whole.h5")
 outcome = f["outcome"][...].astype(int)
 assert len(rows) == (numpy.diff(outcome, axis=1) != 0).sum() + (numpy.diff(outcome, axis=2) != 0).sum()
 words = ["none", "stabilised", "fell", "rested", "undecided"]
@@ -301,28 +258,23 @@ for r in rows:
         assert all(abs(axes[k][place[k]] - end[k]) < 1e-12 for k in range(3))
         assert words[outcome[tuple(place)]] == word
 END
-result $? "... midway between neighbours that differ"
-expect "... pending cases" 0 "$stance" basin half1.h5 --of rested
-says "... may be where it is cut" 'not known to be cut by the box'
-expect "... as text" 0 "$stance" basin whole.h5
-says "... which says why there is no alpha" 'no alpha in some rows: fewer than 96 cases along an axis'
+expect "... pending cases" 0 "$stance" basin half1.h5 --of rested says 'not known to be cut by the box'
+expect "... as text" 0 "$stance" basin whole.h5 says 'no alpha in some rows: fewer than 96 cases along an axis'
 expect "an outcome of one's own" 0 "$stance" basin whole.h5 --of fell --level 0.99 --box 4
 expect "an axis of starts as a parameter" 0 "$stance" basin whole.h5 --by initial.offset.vtheta
-expect "nothing to measure" 2 "$stance" basin piece0.h5 --by initial.offset.theta
-says "... is said" 'no starts are varied (initial.offset'
+expect "nothing to measure" 2 "$stance" basin piece0.h5 --by initial.offset.theta \
+    says 'no starts are varied (initial.offset'
 expect "an axis that is none" 2 "$stance" basin whole.h5 --by friction
 expect "an outcome that is none" 2 "$stance" basin whole.h5 --of stable
 
 # Starts that are sampled: the share of a grid lies in the interval.
-expect "a Sobol' sample of starts" 0 "$stance" run map.yaml --quiet -o sample.h5 --set record.cases=none \
-    --set 'sweep={grid: [{path: ground.friction, values: [0.1, 0.2, 0.4]}],
+runs "a Sobol' sample of starts" sample 'sweep={grid: [{path: ground.friction, values: [0.1, 0.2, 0.4]}],
         sample: {method: sobol, count: 1024, vary: [{path: initial.offset.theta, from: -0.12, to: 0.06},
             {path: initial.offset.vtheta, from: -0.6, to: 0.6}]}}'
 expect "... has its basins" 0 "$stance" basin sample.h5 --json
 "$stance" basin whole.h5 --json >grid.json 2>>log
-"$python" - >log2 2>&1 <<'END'
-import h5py, json, math
-sample, grid = json.load(open("log")), json.load(open("grid.json"))
+holds "... with Wilson's interval, in which the grid's volume lies" <<'END'
+sample, grid = said(), said("grid.json")
 outcome = h5py.File("sample.h5")["outcome"][...]
 assert sample["design"] == "sobol" and abs(sample["box"] - 0.216) < 1e-12
 for k, (a, b) in enumerate(zip(sample["rows"], grid["rows"])):
@@ -333,23 +285,19 @@ for k, (a, b) in enumerate(zip(sample["rows"], grid["rows"])):
     assert abs(a["high"] / 0.216 - (centre + half) / (1 + z * z / n)) < 1e-9
     assert a["low"] < b["volume"] < a["high"] and a["low"] < a["volume"] < a["high"]
 END
-result $? "... with Wilson's interval, in which the grid's volume lies"
-"$python" -c 'import h5py, json; b = json.load(open("log"))["rows"][2]
+holds "... and the faces that they reach" 'b = said()["rows"][2]
 near = min((h5py.File("sample.h5")["initial.offset.theta"][...] ** 2 + h5py.File("sample.h5")["initial.offset.vtheta"][...] ** 2)[h5py.File("sample.h5")["outcome"][2] != 1]) ** 0.5
 print(b["cut"], near, b["nearest"]); assert abs(b["nearest"] - near) < 1e-12 and b["nearest_least"] == 0 and b["median"] is None
-assert {c["path"] for c in b["cut"]} >= {"initial.offset.theta"} and b["bounded"] is None' >>log2 2>&1
-result $? "... and the faces that they reach"
+assert {c["path"] for c in b["cut"]} >= {"initial.offset.theta"} and b["bounded"] is None'
 expect "points on a boundary need a grid" 2 "$stance" basin sample.h5 --boundary
 
 # A sample of parameters beside starts on a grid: points of a block share coordinates, blocks do not.
-expect "basins over sampled parameters" 0 "$stance" run map.yaml --quiet -o over.h5 --set record.cases=none \
-    --set 'sweep={grid: [{path: initial.offset.theta, from: -0.12, to: 0.06, count: 9},
+runs "basins over sampled parameters" over 'sweep={grid: [{path: initial.offset.theta, from: -0.12, to: 0.06, count: 9},
         {path: initial.offset.vtheta, from: -0.6, to: 0.6, count: 8}], sample: {method: saltelli, count: 8,
         vary: [{path: ground.friction, from: 0.05, to: 1}, {path: controller.torque_limit, from: 5, to: 20}]}}'
 expect "... are averaged" 0 "$stance" basin over.h5 --json
-"$python" - >>log 2>&1 <<'END'
-import json, h5py, numpy
-found = json.load(open("log"))
+holds "... and their error is the scatter of whole blocks" <<'END'
+found = said()
 inside = (h5py.File("over.h5")["outcome"][...] == 1).astype(float)
 assert inside.shape == (9, 8, 32) and 0.05 < inside.mean() < 0.95
 edge = lambda n: numpy.where((numpy.arange(n) % (n - 1)) == 0, 0.5, 1)
@@ -361,13 +309,10 @@ assert abs(row["volume"] - volume.mean()) < 1e-12
 scatter = 2.364624 * blocks.std(ddof=1) / 8 ** 0.5 # Student's deviations for 7
 assert scatter <= row["reach"] < 1.2 * scatter, (row["reach"], scatter)
 END
-result $? "... and their error is the scatter of whole blocks"
-expect "... as text" 0 "$stance" basin over.h5
-says "... which says over what" 'averaged over ground.friction, controller.torque_limit'
+expect "... as text" 0 "$stance" basin over.h5 says 'averaged over ground.friction, controller.torque_limit'
 
 # ---- single questions --------------------------------------------------------------------------
-expect "where a share is lost" 0 "$stance" run map.yaml --quiet -o delay.h5 --set record.cases=none \
-    --set 'sweep.grid=[{path: controller.sample_time, values: [0.001, 0.02, 0.04, 0.06]},
+runs "where a share is lost" delay 'sweep.grid=[{path: controller.sample_time, values: [0.001, 0.02, 0.04, 0.06]},
         {path: initial.offset.theta, from: -0.12, to: 0.06, count: 37}, {path: initial.offset.vtheta, from: -0.6, to: 0.6, count: 31}]'
 for form in --json --csv; do
     expect "... is told with $form" 0 "$stance" basin delay.h5 --threshold 0.8 --of controller.sample_time $form
@@ -379,11 +324,10 @@ for form in --json --csv; do
 done
 "$stance" basin delay.h5 --json >delay.json
 "$stance" basin delay.h5 --within settle_time=1.2 --json >within.json
-"$python" - >log2 2>&1 <<'END'
-import csv, h5py, json, numpy
-f, basin = h5py.File("delay.h5"), json.load(open("delay.json"))
+holds "... as the cases say" <<'END'
+f, basin = h5py.File("delay.h5"), said("delay.json")
 inside, settle, times = f["outcome"][...] == 1, f["settle_time"][...], f["controller.sample_time"][...]
-row, = json.load(open("threshold--json"))["rows"]
+row, = said("threshold--json")["rows"]
 v = numpy.array([r["volume"] for r in basin["rows"]])
 i = numpy.argmax(v < 0.8 * v[0])
 assert i > 0, v
@@ -393,7 +337,7 @@ assert abs(row["value"] - at) < 1e-6 and [row["before"], row["after"]] == list(t
 assert row["low"] < at and (row["high"] is None or at < row["high"])
 one, = csv.DictReader(open("threshold--csv", newline=""))
 assert float(one["value"]) == row["value"]
-lost = json.load(open("lost--json"))
+lost = said("lost--json")
 gone = numpy.array([(inside[0] & ~inside[:k + 1].all(axis=0)).sum() for k in range(4)])
 assert lost["starts"] == inside[0].sum() and [r["lost_so_far"] for r in lost["rows"]] == list(gone)
 k = numpy.argmax(gone > 0)
@@ -401,40 +345,36 @@ assert (lost["kept"], lost["lost"]) == (times[k - 1], times[k]) and lost["unknow
 where = numpy.unravel_index(lost["first"], inside.shape)
 assert where[0] == k and inside[0][where[1:]] and not inside[where]
 assert [int(r["lost"]) for r in csv.DictReader(open("lost--csv", newline=""))] == list(numpy.diff(gone, prepend=0))
-for k, r in enumerate(json.load(open("answer--json"))["rows"]):
+for k, r in enumerate(said("answer--json")["rows"]):
     number = settle[k][inside[k]]
     assert r["cases"] == len(number) and abs(r["median"] - numpy.median(number)) < 1e-12
     assert abs(r["q90"] - numpy.quantile(number, 0.9)) < 1e-12 and r["largest"] == number.max()
     assert settle.ravel()[r["largest_case"]] == r["largest"]
-within = json.load(open("within.json"))
+within = said("within.json")
 assert within["within"] == "settle_time <= 1.2" and basin["within"] is None
 for k, r in enumerate(within["rows"]):
     assert r["inside"] == (inside[k] & (settle[k] <= 1.2)).sum() < basin["rows"][k]["inside"]
 END
-result $? "... as the cases say"
-expect "a threshold in words" 0 "$stance" basin delay.h5 --threshold 0.8 --of controller.sample_time
-says "... with what is asked" 'falls below 80 % of what it is at controller.sample_time = 0.001 s'
-expect "losses from the other end" 0 "$stance" basin delay.h5 --lost controller.sample_time=0.06
-says "... in words" ' starts end as stabilised at controller.sample_time = 0.06 s'
-expect "a threshold within a time" 0 "$stance" basin delay.h5 --threshold 0.8 --of controller.sample_time --within settle_time=1.2
-says "... says so" 'stabilised with settle_time <= 1.2 falls below'
+expect "a threshold in words" 0 "$stance" basin delay.h5 --threshold 0.8 --of controller.sample_time \
+    says 'falls below 80 % of what it is at controller.sample_time = 0.001 s'
+expect "losses from the other end" 0 "$stance" basin delay.h5 --lost controller.sample_time=0.06 \
+    says ' starts end as stabilised at controller.sample_time = 0.06 s'
+expect "a threshold within a time" 0 "$stance" basin delay.h5 --threshold 0.8 --of controller.sample_time --within \
+    settle_time=1.2 says 'stabilised with settle_time <= 1.2 falls below'
 expect "the best of a sample" 0 "$stance" basin over.h5 --rank 5 --json
-"$python" - >log2 2>&1 <<'END'
-import h5py, json, numpy
+holds "... with their values, shares and bounds" <<'END'
 f = h5py.File("over.h5")
 inside = (f["outcome"][...] == 1).astype(float)
 edge = lambda n: numpy.where((numpy.arange(n) % (n - 1)) == 0, 0.5, 1)
 volume = numpy.einsum("ijp,i,j->p", inside, edge(9), edge(8)) * 0.18 / 8 * 1.2 / 7
-rows = json.load(open("log"))["rows"]
+rows = said()["rows"]
 assert numpy.allclose([r["volume"] for r in rows], sorted(volume)[:-6:-1])
 for r in rows:
     p = r["at"]["sample"]
     assert abs(volume[int(p)] - r["volume"]) < 1e-12 and r["low"] <= r["volume"] <= r["high"] and r["reach"] > 0
     assert r["at"]["ground.friction"] == f["ground.friction"][int(p)]
 END
-result $? "... with their values, shares and bounds"
-expect "... in words" 0 "$stance" basin over.h5 --rank 3
-says "... of how many" 'the 3 largest of 32 sampled points'
+expect "... in words" 0 "$stance" basin over.h5 --rank 3 says 'the 3 largest of 32 sampled points'
 while read -r wrong; do
     # shellcheck disable=SC2086
     expect "refused: $wrong" 2 "$stance" basin delay.h5 $wrong
@@ -460,12 +400,10 @@ done <<'END'
 --allowed --boundary
 END
 expect "what linear theory allows" 0 "$stance" basin delay.h5 --allowed --json
-"$python" - <<'END'
-import json
-for r in json.load(open("log"))["rows"]:
+holds "... is a share of the starts, and what is recovered one of that" <<'END'
+for r in said()["rows"]:
     assert 0 < r["allowed"] <= 1 and 0 <= r["used"] <= 1 and 0 <= r["outside"] < 0.1, r
 END
-result $? "... is a share of the starts, and what is recovered one of that"
 # Recoveries from outside, and what the robot did: gauges once more, by null_set.py.
 wide=(--set controller.sample_time=0.002 --set method.step=0.002 --set ground.friction=0.15 --set record.cases=none --set
     'sweep.grid=[{path: initial.offset.theta, from: -0.2, to: 0.2, count: 41}, {path: initial.offset.vtheta, from: -1.2, to: 1.2, count: 41}]')
@@ -477,11 +415,10 @@ for n in 1 2 3; do
     mv log allowed$n.json
 done
 "$stance" design "$shipped/basin_one_foot.yaml" --json >design.json
-PYTHONPATH=$tests "$python" - >log 2>&1 <<'END'
-import h5py, json, numpy, null_set
-design, seen = json.load(open("design.json")), set()
+holds "... is counted by what it did, with the farthest of each" <<'END'
+design, seen = said("design.json"), set()
 for n in 1, 2, 3:
-    f, (row,) = h5py.File(f"outside{n}.h5"), json.load(open(f"allowed{n}.json"))["rows"]
+    f, (row,) = h5py.File(f"outside{n}.h5"), said(f"allowed{n}.json")["rows"]
     x = numpy.zeros((41, 41, 6))
     x[..., 0] += f["initial.offset.theta"][...][:, None]
     x[..., 3] += f["initial.offset.vtheta"][...]
@@ -508,9 +445,7 @@ for n in 1, 2, 3:
             assert told["farthest"] is None and told["case"] is None
 assert seen >= {"lifted", "slipped", "unknown"}, seen
 END
-result $? "... is counted by what it did, with the farthest of each"
-expect "... in words" 0 "$stance" basin outside1.h5 --allowed
-says "... which name it" '^ *slipped  *farthest  *case$'
+expect "... in words" 0 "$stance" basin outside1.h5 --allowed says '^ *slipped  *farthest  *case$'
 # What no torque moves is allowed nowhere but where there is nothing of it: a cart without a motor keeps the momentum,
 # and the place, of its centre of mass. Moved by 1/6 of the pole's angle it has moved that back: m l / (M + m).
 cat >drift.yaml <<'END'
@@ -531,28 +466,25 @@ sweep:
 END
 expect "a cart that no motor moves" 0 "$stance" run drift.yaml --quiet -o drift.h5
 expect "... has no reach" 0 "$stance" design drift.yaml --json
-"$python" - <<'END'
-import json
-a = json.load(open("log"))["allowed"]
+holds "... along any state" <<'END'
+a = said()["allowed"]
 assert a["unreached_modes"] == [[0, 0], [0, 0]] and not a["glued"] and len(a["unstable_modes"]) == 1, a
 assert set(a["low"].values()) == set(a["high"].values()) == {0} and len(a["low"]) == 4, a
 END
-result $? "... along any state"
-expect "... and is allowed" 0 "$stance" basin drift.h5 --allowed --json
-"$python" -c 'import json; row, = json.load(open("log"))["rows"]; assert row["allowed"] == 2 / 12 and row["unreached"] == 2 and not row["glued"], row'
-result $? "... where it is at rest and in the middle, and the motor is strong enough"
-expect "... in words" 0 "$stance" basin drift.h5 --allowed
-says "... which say it" '^(no torque moves some modes that do not decay: starts with a part in them are not allowed)$'
+expect "... and is allowed where it is at rest and in the middle, and the motor is strong enough" 0 \
+    "$stance" basin drift.h5 --allowed --json holds 'row, = said()["rows"]
+assert row["allowed"] == 2 / 12 and row["unreached"] == 2 and not row["glued"], row'
+expect "... in words" 0 "$stance" basin drift.h5 --allowed \
+    says '^(no torque moves some modes that do not decay: starts with a part in them are not allowed)$'
 # Of several contacts that carry the bound does not know which tips.
 sed -n '/^    # own.yaml/,/^$/s/^    //p' "$tests/../README.md" >own.yaml
 expect "a robot on a sole" 0 "$stance" run own.yaml --quiet -o sole.h5 --set stop.time=0.02 \
     --set 'sweep.grid=[{path: initial.offset.body, from: -0.3, to: 0.3, count: 5}]'
-expect "... as if glued" 0 "$stance" basin sole.h5 --allowed
-says "... is told as such" '^(contacts as if glued: the bound does not know where their centre of pressure may be)$'
-expect "... to programs" 0 "$stance" basin sole.h5 --allowed --json
-says "... too" '"glued": true'
-expect "... and by design" 0 "$stance" design own.yaml
-says "... beside the reach" '^  (contacts as if glued: the bound does not know where their centre of pressure may be)$'
+expect "... as if glued" 0 "$stance" basin sole.h5 --allowed \
+    says '^(contacts as if glued: the bound does not know where their centre of pressure may be)$'
+expect "... to programs" 0 "$stance" basin sole.h5 --allowed --json says '"glued": true'
+expect "... and by design" 0 "$stance" design own.yaml \
+    says '^  (contacts as if glued: the bound does not know where their centre of pressure may be)$'
 
 # What one domain has lost of another: labels side by side.
 for form in --json --csv; do
@@ -560,46 +492,42 @@ for form in --json --csv; do
     mv log labels$form
 done
 expect "... of an outcome of one's own" 1 "$stance" compare f0.1.h5 f0.4.h5 --labels --of fell --json
-"$python" - >log2 2>&1 <<'END'
-import csv, h5py, json
+holds "... count what is kept, lost and won" <<'END'
 a, b = (h5py.File(n)["outcome"][...] for n in ("f0.1.h5", "f0.4.h5"))
 words = {1: "stabilised", 2: "fell", 3: "rested", 4: "undecided"}
-found, rows = json.load(open("labels--json")), list(csv.DictReader(open("labels--csv", newline="")))
+found, rows = said("labels--json"), table("labels--csv")
 count = {(words[i], words[j]): int(((a == i) & (b == j)).sum()) for i in words for j in words}
 assert {(r["first"], r["second"]): r["cases"] for r in found["became"]} == {k: n for k, n in count.items() if n}
 assert {(r["first"], r["second"]): int(r["cases"]) for r in rows} == {k: n for k, n in count.items() if n}
 for r in found["became"]:
     assert abs(r["share"] - r["cases"] / a.size) < 1e-12
     assert abs(r["share_of_first"] - r["cases"] / sum(n for k, n in count.items() if k[0] == r["first"])) < 1e-12
-for d, of in ((found["domain"], 1), (json.load(open("log"))["domain"], 2)):
+for d, of in ((found["domain"], 1), (said()["domain"], 2)):
     kept, lost, won = ((a == of) & (b == of)).sum(), ((a == of) & (b != of)).sum(), ((a != of) & (b == of)).sum()
     assert (d["outcome"], d["kept"], d["lost"], d["won"]) == (words[of], kept, lost, won)
     assert d["neither"] == a.size - kept - lost - won and d["lost_low"] is None
     assert abs(d["lost_share"] - lost / (kept + lost)) < 1e-12 and abs(d["won_share"] - won / (kept + won)) < 1e-12
 assert found["domain"]["lost"] > 0
 END
-result $? "... count what is kept, lost and won"
-expect "... in words" 1 "$stance" compare f0.1.h5 f0.4.h5 --labels
-says "... with the share that is lost" 'stabilised in both: .*; lost, in f0.1.h5 alone: .* % of its domain);$'
+expect "... in words" 1 "$stance" compare f0.1.h5 f0.4.h5 --labels \
+    says 'stabilised in both: .*; lost, in f0.1.h5 alone: .* % of its domain);$'
 for limit in 9 11; do
-    "$stance" run map.yaml --quiet -o drawn$limit.h5 --set controller.torque_limit=$limit --set record.cases=none \
-        --set 'sweep={sample: {method: random, count: 500, vary: [{path: initial.offset.theta, from: -0.12, to: 0.06},
-        {path: initial.offset.vtheta, from: -0.6, to: 0.6}]}}' >>log2 2>&1
+    runs "drawn$limit" drawn$limit controller.torque_limit=$limit \
+        'sweep={sample: {method: random, count: 500, vary: [{path: initial.offset.theta, from: -0.12, to: 0.06},
+        {path: initial.offset.vtheta, from: -0.6, to: 0.6}]}}'
 done
 expect "domains of a sample" 1 "$stance" compare drawn11.h5 drawn9.h5 --labels --json
-"$python" - >>log2 2>&1 <<'END'
-import h5py, json, math
+holds "... have Wilson's interval for what is lost" <<'END'
 a, b = (h5py.File(n)["outcome"][...] == 1 for n in ("drawn11.h5", "drawn9.h5"))
-d, n, p, z = json.load(open("log"))["domain"], a.sum(), (a & ~b).sum() / a.sum(), 1.959963984540054
+d, n, p, z = said()["domain"], a.sum(), (a & ~b).sum() / a.sum(), 1.959963984540054
 centre, half = p + z * z / 2 / n, z * math.sqrt(p * (1 - p) / n + z * z / 4 / n / n)
 assert 0 < p < 1 and abs(d["lost_low"] - (centre - half) / (1 + z * z / n)) < 1e-9
 assert abs(d["lost_high"] - (centre + half) / (1 + z * z / n)) < 1e-9
 END
-result $? "... have Wilson's interval for what is lost"
 expect "domains over other starts" 2 "$stance" compare small.h5 line.h5 --labels
-"$stance" run map.yaml --quiet -o wider.h5 --set record.cases=none --set "sweep={grid: ${small//0.03/0.04}}" >>log2 2>&1
-expect "... at other places" 2 "$stance" compare small.h5 wider.h5 --labels
-says "... are refused" 'the starts of small.h5 and wider.h5 are not the same'
+runs "wider" wider "sweep={grid: ${small//0.03/0.04}}"
+expect "... at other places" 2 "$stance" compare small.h5 wider.h5 --labels \
+    says 'the starts of small.h5 and wider.h5 are not the same'
 
 # ---- rays ------------------------------------------------------------------------------------
 cat >rays.sets <<'END'
@@ -607,14 +535,12 @@ sweep={grid: [{path: ground.friction, values: [0.2, 0.4]}, {path: initial.offset
   sample: {method: sphere, count: 24, vary: [{path: initial.offset.theta, from: -0.1, to: 0.1},
     {path: initial.offset.vtheta, from: -0.5, to: 0.5}]}}
 END
-expect "rays from the equilibrium" 0 "$stance" run map.yaml --quiet -o rays.h5 --set record.cases=none \
-    --set "$(cat rays.sets)"
+runs "rays from the equilibrium" rays "$(cat rays.sets)"
 expect "where they lose the outcome" 0 "$stance" basin rays.h5 --boundary
 cp log rays.csv
 expect "... in short" 0 "$stance" basin rays.h5 --json
-"$python" - >log2 2>&1 <<'END'
-import csv, h5py, json, numpy
-f, rows, short = h5py.File("rays.h5"), list(csv.DictReader(open("rays.csv", newline=""))), json.load(open("log"))
+holds "... as the cases say" <<'END'
+f, rows, short = h5py.File("rays.h5"), table("rays.csv"), said()
 inside, scale = f["outcome"][...] == 1, f["initial.offset.scale"][...]
 assert inside.shape == (2, 50, 24) and len(rows) == 48 and inside[:, 0].all()
 for k in range(2):
@@ -636,14 +562,12 @@ for k in range(2):
     assert r["crossing"] + r["open"] == 24 and r["open"] == numpy.isinf(ends).sum()
     assert (r["median"] or numpy.inf) == numpy.median(ends)
 END
-result $? "... as the cases say"
 # Descents end no farther than the shortest ray, on the boundary, where dense rays about it end.
 expect "descents from the shortest ray" 0 "$stance" basin rays.h5 --json --descend 5
 cp log nearest.json
-"$python" - >log2 2>&1 <<'END'
-import json
+holds "... are told with how sure they are" <<'END'
 sets = []
-for r in json.load(open("nearest.json"))["rows"]:
+for r in said("nearest.json")["rows"]:
     n = r["nearest"]
     print(n)
     low, high = n["bracket"]
@@ -657,57 +581,39 @@ for r in json.load(open("nearest.json"))["rows"]:
           f"ground.friction={r['at']['ground.friction']}", sep="\n", file=open(f"end{len(sets)}.sets", "w"))
     sets.append(r)
 END
-result $? "... are told with how sure they are"
 for k in 0 1; do
     mapfile -t sets <end$k.sets
-    "$stance" run map.yaml --quiet -o end$k.h5 --set record.cases=none --set "${sets[0]}" --set "${sets[1]}" \
-        --set "${sets[2]}" --set "${sets[3]}" >>log2 2>&1
+    runs "end$k" end$k "${sets[@]}"
     "$stance" table end$k.h5 --answer outcome >end$k.csv 2>>log2
     grep -q '^0,.*,stabilised' end$k.csv && grep -q '^1,.*,fell' end$k.csv
     result $? "... and cases of their own end so"
 done
-"$stance" run map.yaml --quiet -o dense.h5 --set record.cases=none --set "sweep={grid:
+runs "dense" dense "sweep={grid:
     [{path: ground.friction, values: [0.2, 0.4]}, {path: initial.offset.scale, from: 0.1, to: 0.3, count: 401}],
     sample: {method: sphere, count: 256, vary: [{path: initial.offset.theta, from: -0.1, to: 0.1},
-    {path: initial.offset.vtheta, from: -0.5, to: 0.5}]}, refine: {start: 16}}" >>log2 2>&1
+    {path: initial.offset.vtheta, from: -0.5, to: 0.5}]}, refine: {start: 16}}"
 "$stance" basin dense.h5 --json >dense.json 2>>log2
-"$python" -c 'import json
-for a, b in zip(json.load(open("nearest.json"))["rows"], json.load(open("dense.json"))["rows"]):
+holds "... near the shortest of many rays" 'for a, b in zip(said("nearest.json")["rows"], said("dense.json")["rows"]):
     print(a["nearest"]["scale"], b["smallest"])
-    assert -0.002 * b["smallest"] < b["smallest"] - a["nearest"]["scale"] < 0.02 * b["smallest"]' >>log2 2>&1
-result $? "... near the shortest of many rays"
-"$stance" run map.yaml --quiet -o ray.h5 --set record.cases=none --set "$(cat rays.sets)" --set 'sweep.grid[0].values=[0.2]' >>log2 2>&1
-expect "... in words" 0 "$stance" basin ray.h5 --descend 3
-says "... with the direction" 'initial.offset.theta .* of half its range'
-expect "... and without" 0 "$stance" basin ray.h5
-says "... that the shortest is an upper bound" 'an upper bound; --descend 8'
+    assert -0.002 * b["smallest"] < b["smallest"] - a["nearest"]["scale"] < 0.02 * b["smallest"]'
+runs "ray" ray "$(cat rays.sets)" 'sweep.grid[0].values=[0.2]'
+expect "... in words" 0 "$stance" basin ray.h5 --descend 3 says 'initial.offset.theta .* of half its range'
+expect "... and without" 0 "$stance" basin ray.h5 says 'an upper bound; --descend 8'
 expect "a file without rays" 2 "$stance" basin whole.h5 --descend 3
 expect "no descents" 2 "$stance" basin rays.h5 --descend 0
-expect "pictures of rays" 0 "$stance" plot rays.h5
-says "... show the curve" '^rays-rays.png$'
+expect "pictures of rays" 0 "$stance" plot rays.h5 says '^rays-rays.png$'
 expect "--by has no meaning for rays" 2 "$stance" basin rays.h5 --by ground.friction
 for wrong in "--weight initial.offset.theta=1" "--rank 3" "--threshold 0.8 --of ground.friction" "--answer end_time"; do
     # shellcheck disable=SC2086
-    expect "... nor has $wrong" 2 "$stance" basin rays.h5 $wrong
-    says "... and why" '^stance basin: rays have no use for --'
+    expect "... nor has $wrong" 2 "$stance" basin rays.h5 $wrong says '^stance basin: rays have no use for --'
 done
 expect "pictures of basins" 0 "$stance" plot whole.h5
-expect "a refined map" 0 "$stance" run map.yaml --quiet -o inferred.h5 --set record.cases=none \
-    --set 'sweep={grid: [{path: initial.offset.theta, from: -0.12, to: 0.06, count: 33},
+runs "a refined map" inferred 'sweep={grid: [{path: initial.offset.theta, from: -0.12, to: 0.06, count: 33},
         {path: initial.offset.vtheta, from: -0.6, to: 0.6, count: 33}], refine: {start: 8}}'
-expect "what it has inferred" 0 "$stance" table inferred.h5 --answer evidence --answer steps
-"$python" -c 'import csv; rows = list(csv.DictReader(open("log", newline="")))
-assert {(r["evidence"], bool(r["steps"])) for r in rows} == {("inferred", False), ("simulated", True)}' >>log 2>&1
-result $? "... has no numbers"
-expect "rays as a table" 0 "$stance" table rays.h5 --answer outcome --of fell
-"$python" -c 'import csv; rows = list(csv.DictReader(open("log", newline="")))
-assert list(rows[0])[1:6] == ["ground.friction", "initial.offset.scale", "sample", "initial.offset.theta", "initial.offset.vtheta"]' >>log 2>&1
-result $? "... with the sampled values"
-expect "samples of parts are merged" 0 "$stance" run map.yaml --quiet -o ray2.h5 --set record.cases=none \
-    --set "$(cat rays.sets)" --set 'sweep.grid[0].values=[0.2]'
-expect "... the second part" 0 "$stance" run map.yaml --quiet -o ray4.h5 --set record.cases=none \
-    --set "$(cat rays.sets)" --set 'sweep.grid[0].values=[0.4]'
-expect "... into the whole" 0 "$stance" merge raysm.h5 ray2.h5 ray4.h5
-expect "... to the bit" 0 "$stance" compare rays.h5 raysm.h5
-
-echo "1..$count"
+expect "what it has inferred" 0 "$stance" table inferred.h5 --answer evidence --answer steps holds 'rows = table()
+assert {(r["evidence"], bool(r["steps"])) for r in rows} == {("inferred", False), ("simulated", True)}'
+expect "rays as a table" 0 "$stance" table rays.h5 --answer outcome --of fell holds 'rows = table()
+assert list(rows[0])[1:6] == ["ground.friction", "initial.offset.scale", "sample", "initial.offset.theta", "initial.offset.vtheta"]'
+runs "samples of parts are merged" ray2 "$(cat rays.sets)" 'sweep.grid[0].values=[0.2]'
+runs "... the second part" ray4 "$(cat rays.sets)" 'sweep.grid[0].values=[0.4]'
+expect "... into the whole" 0 "$stance" merge raysm.h5 ray2.h5 ray4.h5 as rays.h5

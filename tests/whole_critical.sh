@@ -2,24 +2,15 @@
 # Critical values: 200 whose truth is known in closed form, bracketed by runs of the program; a push that a resonance
 # makes too much at some frequencies and not beyond; the same file whatever the ranks, stops and resumes; samples; what
 # is printed, in all forms; and what is wrong, said in one line.
-# Speaks TAP.
 # about: analysis/critical runner/run runner/scenario
-set -u
 . "$(dirname "$0")/scratch.sh"
 critical() { # file, scenario, PATH=FROM..TO, option ...: its JSON
-    local file=$1 scenario=$2 of=$3
-    shift 3
-    timeout "$patience" "$stance" critical "$scenario" --of "$of" -o "$file.h5" --json "$@" >"$file.json" 2>log </dev/null
-    local code=$?
-    ((code == 0)) || { echo "exit code $code: $file" >>log; cat log >&2; }
+    expect "$1" 0 "$stance" critical "$2" --of "$3" -o "$1.h5" --json "${@:4}"
+    sed -n '/^{/,/^}/p' log >"$1.json"
 }
 identical() { # file, file
     "$stance" compare "$1" "$2" >log 2>&1 && grep -qx identical log
     result $? "... and the same bits"
-}
-printed() { # name, pattern: somewhere in what was printed
-    grep -qE -- "$2" log
-    result $? "$1"
 }
 
 # ---- 200 known values -----------------------------------------------------------------------------
@@ -57,13 +48,12 @@ critical sole slab.yaml 'robot.contacts.sole.to[0]=0.4..0.01' --set 'sweep={grid
     initial.state.slab], from: [0.05, -0.05], to: [0.6, -0.6], count: 30}]}'
 critical stroke slab.yaml 'robot.points.centre.impulse[0]=5..0.2' --outcome fell --count 513 --set 'sweep={grid: [{paths:
     ["robot.contacts.sole.to[0]", "robot.contacts.sole.from[0]"], from: [0.3, -0.3], to: [0.1, -0.1], count: 10}]}'
-"$python" - >log 2>&1 <<'END'
-import json
+holds "brackets of 200 values with known answers hold" <<'END'
 from math import atan, cos, hypot, sin, sqrt, tan
 
 g, count = 9.81, 0
 def values(name):
-    for row in json.load(open(name + ".json"))["rows"]:
+    for row in said(name + ".json")["rows"]:
         yield row, row["at"]
 def is_within(row, truth):
     global count
@@ -90,7 +80,6 @@ for row, at in values("stroke"):
 print(count)
 assert count >= 200, count
 END
-result $? "brackets of 200 values with known answers hold"
 
 # ---- a pocket ---------------------------------------------------------------------------------------
 # A mass on a spring, swung: near its own 1.59 Hz it is lost, and from 1.78 Hz on kept again. 1.39 Hz is the number.
@@ -107,24 +96,20 @@ method: {name: midpoint, step: 0.002}
 stop: {time: 20, settle: {rate: 0.01, hold: 0.5}}
 END
 hz=robot.points.tip.frequency
-expect "a swing that a resonance makes too much" 0 "$stance" critical swing.yaml --of $hz=0.2..4 -o swing.h5
-printed "... has its number below the resonance" '^ +1\.38[0-9]+ +1\.39[0-9]+  fell +1\.7[0-9]+ \.\.\.$'
-printed "... values beyond do not count, it is said" 'again: values beyond at which it is kept, too, which do not count'
-printed "... and how narrow a pocket may have been missed" 'narrower than 0\.1188 Hz\)'
+expect "a swing that a resonance makes too much" 0 "$stance" critical swing.yaml --of $hz=0.2..4 -o swing.h5 \
+    tells '^ +1\.38[0-9]+ +1\.39[0-9]+  fell +1\.7[0-9]+ \.\.\.$' \
+        'again: values beyond at which it is kept, too, which do not count' 'narrower than 0\.1188 Hz\)'
 expect "in full" 0 "$stance" run swing.yaml --set "sweep={grid: [{path: $hz, from: 0.2, to: 4, count: 1025}]}" -o full.h5 --quiet
 for file in swing full; do "$stance" critical $file.h5 --csv | cut -d, -f 2-4,10 >$file.csv; done
-cmp -s swing.csv full.csv
-result $? "... it is the same"
+is "... it is the same" cmp -s swing.csv full.csv
 # A strength that grows: at no frequency is one above a lost one kept.
 critical strengths swing.yaml 'robot.points.tip.force[1]=0..10' --set "sweep={grid: [{path: $hz, from: 0.5, to: 3, count: 11}]}"
-"$python" - >log 2>&1 <<'END'
-import json
-rows = json.load(open("strengths.json"))["rows"]
+holds "strengths are a curve with its least at the resonance" <<'END'
+rows = said("strengths.json")["rows"]
 lost = [row["lost"] or 99 for row in rows]
 assert lost.index(min(lost)) == 4 and lost[:5] == sorted(lost[:5], reverse=True) and lost[4:] == sorted(lost[4:]), lost
 assert [row["end"] for row in rows].count("kept") == 6 and not any(row["islands"] for row in rows), rows
 END
-result $? "strengths are a curve with its least at the resonance"
 
 # ---- the same file ------------------------------------------------------------------------------------
 search=("$stance" critical block.yaml --of ground.friction=1..0 --set
@@ -138,8 +123,8 @@ for n in 2 3; do
     result $? "... the same numbers, said once"
     identical one.h5 ranks.h5
 done
-expect "a time that is too short" 4 "${search[@]}" -o resumed.h5 --time-limit 0.001
-says "... is told, and how to go on" "^stance critical: stopped.*; go on with: .*stance critical block.yaml --of ground.friction=1..0 .* --resume$"
+expect "a time that is too short" 4 "${search[@]}" -o resumed.h5 --time-limit 0.001 \
+    says "^stance critical: stopped.*; go on with: .*stance critical block.yaml --of ground.friction=1..0 .* --resume$"
 expect "is gone on with" 0 "${search[@]}" -o resumed.h5 --resume
 identical one.h5 resumed.h5
 expect "a file that is there is left alone" 3 "${search[@]}" -o one.h5
@@ -151,8 +136,8 @@ expect "a file that is there is left alone" 3 "${search[@]}" -o one.h5
 expect "a scenario that says along which number by itself" 0 "$stance" critical own.yaml
 [ -e results/own.h5 ] && [ "$(grep -c ' undecided$' log)" = 9 ]
 result $? "... has its file and numbers"
-expect "its axis is replaced" 0 "$stance" critical own.yaml --of ground.friction=1..0 --count 33 -o replaced.h5
-printed "... by a lattice of which all is simulated" '^replaced.h5: 297 cases: .* undecided; [0-9.]* s on'
+expect "its axis is replaced" 0 "$stance" critical own.yaml --of ground.friction=1..0 --count 33 -o replaced.h5 \
+    tells '^replaced.h5: 297 cases: .* undecided; [0-9.]* s on'
 
 # ---- samples ----------------------------------------------------------------------------------------
 # Slopes of evenly distributed angles: of all of them nine in ten hold down to tan(0.1 + 0.9 * 0.4).
@@ -160,12 +145,11 @@ sample='sweep={sample: {method: random, count: 64, vary: [{path: robot.slope, fr
 for seed in $(seq 25); do
     critical "sample$seed" block.yaml ground.friction=1..0 --set "$sample" --set "seed=$seed"
 done
-"$python" - >log 2>&1 <<'END'
-import json
+holds "intervals of samples hold" <<'END'
 from math import tan
 held = 0
 for seed in range(1, 26):
-    study = json.load(open(f"sample{seed}.json"))
+    study = said(f"sample{seed}.json")
     (row,) = study["rows"]
     assert study["share"] == 0.9 and study["points"] == 64 and not row["exact"], study
     assert row["high"] < row["low"] and row["lost"] < row["kept"], row
@@ -173,22 +157,19 @@ for seed in range(1, 26):
 print(held)
 assert 21 <= held, held
 END
-result $? "intervals of samples hold"
 cp sample1.h5 sample.h5
-expect "its text" 0 "$stance" critical sample.h5
-printed "... tells of whom" 'at least 90 % of the 64 points'
-printed "... and the interval" '^ +0\.[0-9]+ +0\.[0-9]+  undecided +0\.[0-9]+ \.\.\. 0\.[0-9]+ *$'
-expect "of all points" 0 "$stance" critical sample.h5 --share 1
-printed "... what it says of others" '^ +0\.5[0-9]+ +0\.5[0-9]+  undecided +95\.43 %$'
-expect "of so many that few points tell nothing" 0 "$stance" critical sample.h5 --share 0.95
-printed "... an open end" '  - \.\.\. 0\.[0-9]+'
+expect "its text" 0 "$stance" critical sample.h5 \
+    tells 'at least 90 % of the 64 points' '^ +0\.[0-9]+ +0\.[0-9]+  undecided +0\.[0-9]+ \.\.\. 0\.[0-9]+ *$'
+expect "of all points" 0 "$stance" critical sample.h5 --share 1 tells '^ +0\.5[0-9]+ +0\.5[0-9]+  undecided +95\.43 %$'
+expect "of so many that few points tell nothing" 0 "$stance" critical sample.h5 --share 0.95 \
+    tells '  - \.\.\. 0\.[0-9]+'
 critical blocks block.yaml ground.friction=1..0 --set "${sample/random, count: 64/saltelli, count: 8}"
 grep -q '"low": null' blocks.json && "$stance" critical blocks.h5 | grep -q 'no interval: points hang together in blocks'
 result $? "points in blocks have none"
 
 # ---- what is not known ------------------------------------------------------------------------------
-expect "another outcome, another way" 0 "$stance" critical one.h5 --of robot.slope=0.6..0.02 --outcome undecided
-printed "... along another axis" '^How far robot.slope may go from 0.6 rad towards 0.02 rad, up to which cases end as undecided'
+expect "another outcome, another way" 0 "$stance" critical one.h5 --of robot.slope=0.6..0.02 --outcome undecided \
+    tells '^How far robot.slope may go from 0.6 rad towards 0.02 rad, up to which cases end as undecided'
 "$python" - >log 2>&1 <<'END'
 import h5py
 f = h5py.File("full.h5", "r+")
@@ -196,9 +177,9 @@ f["status"][30] = 0  # pending
 f["status"][322:330] = 0
 END
 "$stance" critical full.h5 >log 2>&1
-printed "values that are not known widen the bracket" '^ +0\.307[0-9]* +1\.3[0-9]+  fell .* some unknown$'
-expect "a number that a case has beside its outcome" 0 "$stance" critical full.h5 --within end_time=10
-printed "... narrows it" 'end as rested with end_time <= 10$'
+tells "values that are not known widen the bracket" '^ +0\.307[0-9]* +1\.3[0-9]+  fell .* some unknown$'
+expect "a number that a case has beside its outcome" 0 "$stance" critical full.h5 --within end_time=10 \
+    tells 'end as rested with end_time <= 10$'
 
 # ---- pictures -----------------------------------------------------------------------------------------
 drawn() { # file, what the script has
@@ -222,12 +203,7 @@ drawn rows.h5 'light: rested again beyond it'
 
 # ---- what is wrong ----------------------------------------------------------------------------------
 wrong() { # name, pattern, argument ...: exit code 2 and one line
-    local name=$1 pattern=$2
-    shift 2
-    timeout "$patience" "$stance" critical "$@" >out 2>log </dev/null
-    local code=$?
-    [ $code = 2 ] && [ ! -s out ] && [ "$(wc -l <log)" = 1 ] && grep -qE -- "$pattern" log
-    result $? "$name"
+    expect "$1" 2 "$stance" critical "${@:3}" lines 1 is grep -qE -- "$2" log
 }
 wrong "a scenario without a number" 'block.yaml does not say along which number \(sweep.refine.along\): --of PATH=FROM..TO' block.yaml
 wrong "a number without a range" "of a scenario --of takes PATH=FROM..TO, .*, not 'ground.friction'" block.yaml --of ground.friction

@@ -1,9 +1,7 @@
 #!/usr/bin/env bash
 # Robots of MuJoCo's files become scenarios: each is taken by `check`, moves as MuJoCo has it, and says what is otherwise;
 # what has no counterpart is refused in one line with its name.
-# Speaks TAP.
 # about: runner/import
-set -u
 . "$(dirname "$0")/scratch.sh"
 robots=$tests/robots/mjcf
 cat >probe.xml <<'END'
@@ -11,24 +9,22 @@ cat >probe.xml <<'END'
 END
 if ! "$stance" import probe.xml >log 2>&1; then
     if grep -q 'libmujoco' log; then
-        [ "$(wc -l <log)" = 1 ]
-        result $? "without libmujoco one line says how to get it"
+        is "without libmujoco one line says how to get it" [ "$(wc -l <log)" = 1 ]
         skip "robots in MJCF" "libmujoco is not installed"
         echo "## skipped: libmujoco is not installed, no file of MuJoCo's was imported"
     else
         result 1 "a ball is imported"
     fi
-    echo "1..$count"
     exit "$failed"
 fi
 
 # ---- robots ------------------------------------------------------------------------------------------------------
 imported() { # NAME OPTION...: and is checked; by MuJoCo accelerations are its own to 1e-9
-    local name=$1
-    shift
-    "$stance" import "$robots/$name.xml" -o "$name.yaml" "$@" >log 2>&1 </dev/null &&
-        grep -qE 'random states: accelerations agree' log && "$stance" check "$name.yaml" >>log 2>&1
-    result $? "$name is imported, and moves as in MuJoCo"
+    local file=$robots/$1.xml
+    [ -e "$file" ] || file=$1.xml
+    "$stance" import "$file" -o "$1.yaml" "${@:2}" >log 2>&1 </dev/null &&
+        grep -qE 'random states: accelerations agree' log && "$stance" check "$1.yaml" >>log 2>&1
+    result $? "$1 is imported, and moves as in MuJoCo"
 }
 has() { # NAME WHAT LINE...: the scenario, its lines joined, has each of these texts
     local name=$1 what=$2 bad=0 text
@@ -71,12 +67,8 @@ has heap "more contacts than there is room for" ' contacts more than there is ro
 
 # Small ones, written here: NAME, then has.
 small() { # NAME OPTION... <file
-    local name=$1
-    shift
-    cat >"$name.xml"
-    "$stance" import "$name.xml" -o "$name.yaml" "$@" >log 2>&1 </dev/null &&
-        grep -qE 'random states: accelerations agree' log && "$stance" check "$name.yaml" >>log 2>&1
-    result $? "$name is imported, and moves as in MuJoCo"
+    cat >"$1.xml"
+    imported "$@"
 }
 floor='<geom name="floor" type="plane" size="1 1 1"/>'
 small rail <<END
@@ -125,16 +117,14 @@ END
 has pair "shapes without names" 'touch nothing here: ellipsoid of arm'
 
 # ---- the command -------------------------------------------------------------------------------------------------
-expect "a file that is there is left alone" 3 "$stance" import "$robots/classes.xml" -o classes.yaml
-says "... which is said" 'stance import: classes.yaml exists; --force replaces it'
+expect "a file that is there is left alone" 3 "$stance" import "$robots/classes.xml" -o classes.yaml \
+    says 'stance import: classes.yaml exists; --force replaces it'
 expect "unless --force" 0 "$stance" import "$robots/classes.xml" -o classes.yaml --force
 "$stance" import "$robots/classes.xml" >out 2>log && cmp -s out classes.yaml && "$stance" import "$robots/classes.xml" -o - | cmp -s - out
 result $? "standard output has the same"
-grep -q '2 joints, 3 contacts' log && grep -q 'accelerations agree with the file' log
-result $? "... and what is told goes to standard error"
+tells "... and what is told goes to standard error" '2 joints, 3 contacts' 'accelerations agree with the file'
 expect "it runs" 0 "$stance" run classes.yaml -o classes.h5 --set stop.time=0.2
-expect "no such file" 3 "$stance" import none.xml
-says "... is one line" 'stance import: none.xml: No such file or directory'
+expect "no such file" 3 "$stance" import none.xml says 'stance import: none.xml: No such file or directory'
 ln -s nowhere dangling.yaml
 for place in . dangling.yaml; do expect "... nor $place" 3 "$stance" import "$robots/classes.xml" -o "$place"; done
 [ -L dangling.yaml ] && [ "$(cat log)" = "stance import: dangling.yaml exists; --force replaces it" ]
@@ -145,8 +135,7 @@ for file in . pipe; do expect "what is no regular file is refused" 3 "$stance" i
 says "... and not waited for" 'is no regular file'
 for root in mujoco robot; do
     { echo "<$root>"; head -c 17000000 /dev/zero; } >vast
-    expect "a file of 17 MB is refused" 3 "$stance" import vast
-    says "... in one line" '^stance import: vast is larger than 16 MiB'
+    expect "a file of 17 MB is refused" 3 "$stance" import vast says '^stance import: vast is larger than 16 MiB'
 done
 expect "a place that is none" 3 "$stance" import "$robots/classes.xml" -o none/classes.yaml
 "$python" -c 'import sys, yaml
@@ -155,8 +144,7 @@ for name in sys.argv[1:]:
         for value in body.values():
             assert not isinstance(value, str) or value.isidentifier(), value' ./*.yaml >log 2>&1
 result $? "numbers are numbers to other readers, too"
-ls | grep -qE 'part$|MUJOCO'
-result $((!$?)) "nothing else is left behind"
+is "nothing else is left behind" '! ls | grep -qE "part$|MUJOCO"'
 
 # ---- refused -----------------------------------------------------------------------------------------------------
 # Parts of a leg on a floor, with something else in one of them.
@@ -177,13 +165,8 @@ END
 }
 toe() { echo "<body name='toe' pos='0 0 -0.4'><joint name='ankle' $1/><geom name='sh' ${2:-size='0.03'} mass='1'/></body>"; }
 refused() { # WHAT PATTERN [OPTION...] <file: one line, which has the pattern and the file's name
-    local what=$1 pattern=$2
-    shift 2
     cat >bad.xml
-    "$stance" import bad.xml -o bad.yaml "$@" >log 2>&1 </dev/null
-    local code=$?
-    ((code == 2)) && [ "$(wc -l <log)" = 1 ] && grep -q 'bad\.xml' log && grep -qE -- "$pattern" log && [ ! -e bad.yaml ]
-    result $? "refused: $what"
+    expect "refused: $1" 2 "$stance" import bad.xml -o bad.yaml "${@:3}" lines 1 tells 'bad\.xml' "$2" is [ ! -e bad.yaml ]
 }
 chain() { # JOINTS
     local i
@@ -240,10 +223,6 @@ refused "a sole of no link" 'sole toe=0,0,1,0: there is no link' --sole toe=0,0,
 refused "a sole without length" 'its two ends are one place' --sole leg=0.1,0,0.1,0 < <(model)
 refused "a sole of three numbers" 'write LINK=X,Z,X,Z' --sole leg=0,0,1 < <(model)
 model | sed 's/mass="5"/mass="1e20"/' >bad.xml
-"$stance" import bad.xml -o bad.yaml >log 2>&1
-[ $? = 2 ] && grep -q '^stance import: bad.xml: as a scenario: robot.bodies.trunk.mass: 1.0e+20 is out of range' log && [ ! -e bad.yaml ]
-result $? "what the scenario's reader does not take is said, and not written"
-ls | grep -q MUJOCO
-result $((!$?)) "MuJoCo's errors leave no file behind"
-echo "1..$count"
-exit "$failed"
+expect "what the scenario's reader does not take is said, and not written" 2 "$stance" import bad.xml -o bad.yaml \
+    tells '^stance import: bad.xml: as a scenario: robot.bodies.trunk.mass: 1.0e\+20 is out of range' is [ ! -e bad.yaml ]
+is "MuJoCo's errors leave no file behind" '! ls | grep -q MUJOCO'

@@ -2,50 +2,26 @@
 # Inputs of every size and kind that are no inputs: each is one clear error, at once, in little memory.
 # What they hold inside is fuzzed (whole_fuzz.sh); this is about what is given where a file, a number
 # or a name is meant.
-# Speaks TAP. Uses bin/stance, or the program that STANCE names.
-set -u
-cd "$(dirname "$0")/.."
-stance=${STANCE:-$PWD/bin/stance} root=$PWD
-export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
-export PMIX_MCA_gds=hash OMPI_MCA_btl_vader_single_copy_mechanism=none OMPI_MCA_rmaps_base_oversubscribe=1
-scratch=$(mktemp -d) && trap 'rm -rf "$scratch"' EXIT
-cd "$scratch" || exit 1
-read -r patience _ <"$root/tests/patience"
+#
+. "$(dirname "$0")/scratch.sh"
 # "At once" is said of the processor's time, which others do not lengthen. Sanitizers reserve addresses
 # by the terabyte.
-count=0 computing=20 memory=2000000 # s, kB
+computing=20 memory=2000000 # s, kB
 [ -n "${STANCE_SLOW:-}" ] && computing=120 memory=unlimited
-limited() { ulimit -v "$memory" && ulimit -t "$computing" && exec timeout "$patience" "$@"; } # in a subshell
-
+limited() { # command ...: what it prints in out, what it says in log
+    (ulimit -v "$memory" && ulimit -t "$computing" && exec timeout "$patience" "$@") >out 2>log </dev/null
+}
 # A command that must fail with this code and say exactly one line, which matches.
 refused() { # name, code, pattern, command ...
-    local name=$1 code=$2 pattern=$3 status
-    shift 3
-    (limited "$@") >out 2>errors </dev/null
-    status=$?
-    count=$((count + 1))
-    if ((status == code)) && [ "$(wc -l <errors)" = 1 ] && grep -q -- "$pattern" errors && [ ! -s out ]; then
-        echo "ok $count - $name"
-    else
-        echo "not ok $count - $name"
-        echo "# exit code $status, expected $code and one line like: $pattern"
-        head -n 5 errors | cut -c 1-300 | sed 's/^/# /'
-    fi
+    limited "${@:4}"
+    [ $? = "$2" ] && [ "$(wc -l <log)" = 1 ] && grep -q -- "$3" log && [ ! -s out ]
+    result $? "$1"
 }
 accepted() { # name, command ...
-    local name=$1
-    shift
-    (limited "$@") >out 2>errors
-    local status=$?
-    count=$((count + 1))
-    if ((status == 0)) && ! grep -qv ': warning: ' errors; then
-        echo "ok $count - $name"
-    else
-        echo "not ok $count - $name"
-        sed 's/^/# /' errors
-    fi
+    limited "${@:2}" && ! grep -qv ': warning: ' log
+    result $? "$1"
 }
-good=$root/scenarios/ball_bounce.yaml
+good=$shipped/ball_bounce.yaml
 repeat() { # how often, text: as one line
     awk -v n="$1" -v text="$2" 'BEGIN {for (i = 0; i < n; i++) printf text}'
 }
@@ -69,14 +45,9 @@ refused "a --set of a megabyte" 2 "is not a path\|longer than" bash -c "'$stance
 
 # Thousands of wrong words: the first ones are shown, the others counted, none takes long.
 { printf 'stance: 1\nscene: biped\nrecord: {answers: [' && seq -f 'word%.0fxxxxxxxxxxxxxxxx, ' -s '' 30000 && echo ']}'; } >words.yaml
-(limited "$stance" check words.yaml) >out 2>errors
-status=$?
-count=$((count + 1))
-if ((status == 2)) && [ "$(wc -l <errors)" = 21 ] && tail -n 1 errors | grep -q 'more errors$'; then
-    echo "ok $count - thousands of unknown words"
-else
-    echo "not ok $count - thousands of unknown words"
-fi
+limited "$stance" check words.yaml
+[ $? = 2 ] && [ "$(wc -l <log)" = 21 ] && tail -n 1 log | grep -q 'more errors$'
+result $? "thousands of unknown words"
 
 # ---- bytes that are no text -----------------------------------------------------------------------
 printf 'stance: 1\n\0scene: ball\n' >bytes.yaml
@@ -122,10 +93,9 @@ truncate -s 1T sparse.h5
 refused "a terabyte of nothing as results" 3 'sparse.h5: not an HDF5 file' "$stance" summary sparse.h5
 
 # ---- what fuzzing found in results files ------------------------------------------------------------
-accepted "a file with trajectories" "$stance" run "$root/scenarios/block_threshold.yaml" --quiet -o tracks.h5 \
+accepted "a file with trajectories" "$stance" run "$shipped/block_threshold.yaml" --quiet -o tracks.h5 \
     --set 'record={every: 0.1, cases: [0]}' --set 'sweep.grid[0].count=3' --set 'sweep.grid[1].count=2'
-"${PYTHON:-/usr/bin/python3}" - >out 2>errors <<'END'
-import h5py
+holds "every header in a results file has a checksum" <<'END'
 data = bytearray(open("tracks.h5", "rb").read())
 with h5py.File("tracks.h5") as file:
     names = ["/"]
@@ -137,16 +107,12 @@ assert not bare, bare
 data[at["trajectory/force"] + 20] ^= 4
 open("force.h5", "wb").write(data)
 END
-status=$?
-count=$((count + 1))
-((status == 0)) && echo "ok $count - every header in a results file has a checksum"
-((status == 0)) || { echo "not ok $count - every header in a results file has a checksum" && sed 's/^/# /' errors; }
 refused "a trajectory that cannot be opened is no trajectory without it" 3 'force.h5: cannot read trajectory/force' \
     "$stance" plot force.h5 --case 0
 
 # ---- numbers, names and counts beyond what there is ------------------------------------------------
 huge='sweep.grid=[{path: ground.restitution, from: 0, to: 0.9, count: 1e9}, {path: stop.time, from: 1, to: 2, count: 9e6}'
-biped=$root/scenarios/basin_one_foot.yaml
+biped=$shipped/basin_one_foot.yaml
 refused "more designs than can be" 2 'more than the 4194304 controller designs that are kept in memory' "$stance" check "$biped" \
     --set 'sweep.grid=[{path: robot.trunk_mass, from: 1, to: 2, count: 1e9}]'
 # One step of it would take minutes (test_limits has it too): `check` tries it, says so, and returns.
@@ -177,24 +143,17 @@ sweep:
     - {path: controller.sample_time, from: 0.001, to: 0.1, count: 2000}
     - {path: robot.trunk_mass, from: 1.7, to: 1.9, count: 1000}
 END
-says() { # pattern
-    count=$((count + 1))
-    if grep -q -- "$1" out; then
-        echo "ok $count - ... and says $1"
-    else
-        echo "not ok $count - ... and says $1"
-        sed 's/^/# /' out
-    fi
+prints() { # pattern ...: out has them
+    for pattern; do is "... and says $pattern" grep -q -- "$pattern" out; done
 }
 some='designs     2000000 distinct, [1-9][0-9]* of them computed: all exist$'
 accepted "two million designs are checked in no time" "$stance" check designs.yaml
-says "$some"
-says 'unchecked   the other [1-9][0-9]* and the initial states of their cases$'
-says 'cost        \(at most \)\?about [0-9.]* h'
+prints "$some" 'unchecked   the other [1-9][0-9]* and the initial states of their cases$' \
+    'cost        \(at most \)\?about [0-9.]* h'
 accepted "... as JSON" "$stance" check --json designs.yaml
-says '"designs_computed": [1-9][0-9]\{0,5\},'
+prints '"designs_computed": [1-9][0-9]\{0,5\},'
 accepted "... planned" "$stance" run --dry-run designs.yaml
-says "$some"
+prints "$some"
 refused "more cases than fit a number" 2 'make more than 2^53 cases' "$stance" check "$good" --set "$huge, {path: ground.friction, from: 0, to: 1, count: 2}]"
 refused "more instants than fit a file" 2 'record.every: .* instants' "$stance" check "$good" --set 'record={every: 1e-300, cases: all}'
 refused "a file that no disk holds" 3 'results/ball_bounce.h5' "$stance" run "$good" --quiet --set "$huge]"

@@ -1,28 +1,18 @@
 #!/usr/bin/env bash
 # Ground in plates, as a user meets it: what is read, refused, warned of, documented; results files that hold it; pictures
-# and pages that draw it; steps that are enough to walk. Speaks TAP.
+# and pages that draw it; steps that are enough to walk.
 # about: runner/scenario runner/run analysis/plot analysis/summary
-set -u
 . "$(dirname "$0")/scratch.sh"
 export STANCE_CACHE=$scratch/cache
 walks=$shipped/gaits/walks.yaml
-
-says() { # NAME PATTERN: the last output has it
-    grep -qE -- "$2" log
-    result $? "$1"
-}
 
 # ---- what is read ----------------------------------------------------------------------------------
 plates='ground.plates={step: {from: 0.3, height: -0.03}, up: {from: 0.6}, stairs: {kind: stairs, from: 1, width: 0.1,
     height: 0.02, count: 4}, field: {kind: rough, from: 1.8, width: 0.05, height: 0.02}, late: {footfall: 3, from: 0.15}}'
 alone=(--set 'sweep={}' --set "$plates")
-expect "a scene that is carried has plates" 0 "$stance" check "$walks" "${alone[@]}"
-! grep -q warning log
-result $? "... of which nothing is warned"
-expect "documented by any name" 0 "$stance" describe ground.plates.step.width
-says "... which is said" '^ground.plates.PLATE.width$'
-expect "and by its own" 0 "$stance" describe --of "$walks" ground.plates
-says "... as any, where there is none" 'Keys: PLATE'
+expect "a scene that is carried has plates" 0 "$stance" check "$walks" "${alone[@]}" is ! grep -q warning log
+expect "documented by any name" 0 "$stance" describe ground.plates.step.width tells '^ground.plates.PLATE.width$'
+expect "and by its own" 0 "$stance" describe --of "$walks" ground.plates tells 'Keys: PLATE'
 cat >rod.yaml <<'END'
 stance: 1
 scene: rod
@@ -30,10 +20,8 @@ ground: {plates: {step: {from: 1, height: -0.1}, stairs: {kind: stairs, from: 2,
 initial: {state: {z: 1}}
 stop: {time: 0.2}
 END
-expect "those of a scenario" 0 "$stance" describe --of rod.yaml ground.plates
-says "... by their names" 'Keys: step, stairs'
-"$python" - "$stance" >log 2>&1 <<'END'
-import json, subprocess, sys
+expect "those of a scenario" 0 "$stance" describe --of rod.yaml ground.plates tells 'Keys: step, stairs'
+holds "editors know them by the JSON Schema" - "$stance" <<'END'
 try:
     import jsonschema, yaml
 except ImportError:
@@ -49,12 +37,10 @@ for bad in {"kind": "stair"}, {"footfall": 1.5}, {"widht": 1}, {"friction_factor
         continue
     raise AssertionError(bad)
 END
-result $? "editors know them by the JSON Schema"
 
 # ---- what is refused, and what is warned of --------------------------------------------------------
 printf 'stance: 1\nscene: ball\ninitial: {state: {}}\nstop: {time: 0.1}\nground: {plates: {step: {from: 1}}}\n' >ball.yaml
-expect "what is round is refused" 2 "$stance" check ball.yaml
-says "... with the reason" 'bottom is round and would turn about their edges'
+expect "what is round is refused" 2 "$stance" check ball.yaml tells 'bottom is round and would turn about their edges'
 expect "a point is not" 0 "$stance" check ball.yaml --set robot.radius=0
 cat >wheel.yaml <<'END'
 stance: 1
@@ -69,58 +55,54 @@ END
 expect "nor what may not touch the ground" 0 "$stance" check wheel.yaml
 expect "or else it is" 2 "$stance" check wheel.yaml --set 'ground.contacts=[wheel, foot]'
 expect "at the end of an axis, too" 2 "$stance" check rod.yaml \
-    --set 'sweep.grid=[{path: ground.plates.step.from, from: 0, to: 2, count: 3}]'
-says "... which is named" 'with ground.plates.step.from = 2 ground.plates.stairs.from: 2 m is not beyond step'
+    --set 'sweep.grid=[{path: ground.plates.step.from, from: 0, to: 2, count: 3}]' \
+    tells 'with ground.plates.step.from = 2 ground.plates.stairs.from: 2 m is not beyond step'
 printf 'stance: 1\nscene: rod\nground: {plates: {a: {from: 1, height: -0.1}, b: {from: 2, height: 0.1}}}\n' >two.yaml
 printf 'initial: {state: {z: 1}}\nstop: {time: 0.2}\n' >>two.yaml
 a='path: ground.plates.a.from' b='path: ground.plates.b.from'
 expect "where two axes meet, too" 2 "$stance" check two.yaml \
-    --set "sweep.grid=[{$a, values: [0, 1.5]}, {$b, values: [3, 1]}]"
-says "... which are both named" 'with ground.plates.a.from = 1.5 and ground.plates.b.from = 1 ground.plates.b.from: 1 m is not beyond a'
+    --set "sweep.grid=[{$a, values: [0, 1.5]}, {$b, values: [3, 1]}]" \
+    tells 'with ground.plates.a.from = 1.5 and ground.plates.b.from = 1 ground.plates.b.from: 1 m is not beyond a'
 expect "by --of as well" 2 "$stance" critical two.yaml --set "sweep={grid: [{$b, values: [3, 1.5]}]}" \
     --of ground.plates.a.from=-1..2 -o two.h5
 expect "and within an axis" 2 "$stance" check two.yaml \
-    --set 'sweep.grid=[{paths: [ground.plates.a.from, ground.plates.b.from], values: [[0, 1], [2, 1.9], [3, 4]]}]'
-says "... at its point" 'with ground.plates.a.from = 2 and ground.plates.b.from = 1.9'
+    --set 'sweep.grid=[{paths: [ground.plates.a.from, ground.plates.b.from], values: [[0, 1], [2, 1.9], [3, 4]]}]' \
+    tells 'with ground.plates.a.from = 2 and ground.plates.b.from = 1.9'
 expect "axes that keep the order" 0 "$stance" check two.yaml \
     --set "sweep.grid=[{$a, values: [0, 1.5]}, {$b, values: [3, 1.6]}]"
 expect "and one along which they move together" 0 "$stance" check two.yaml \
     --set 'sweep.grid=[{paths: [ground.plates.a.from, ground.plates.b.from], values: [[0, 1], [2, 3], [3, 4]]}]'
 expect "whole numbers are asked of axes" 2 "$stance" check rod.yaml \
-    --set 'sweep.grid=[{path: ground.plates.stairs.count, from: 1, to: 2, count: 3}]'
-says "... and said to be" 'values that are not whole numbers'
+    --set 'sweep.grid=[{path: ground.plates.stairs.count, from: 1, to: 2, count: 3}]' \
+    tells 'values that are not whole numbers'
 expect "a design varies them" 0 "$stance" check rod.yaml \
     --set 'sweep.sample={method: sobol, count: 8, vary: [{path: ground.plates.stairs.count, from: 1, to: 4}]}'
 expect "a search does not" 2 "$stance" check "$walks" --set "$plates" --set 'sweep={}' \
-    --set 'optimise={vary: [{path: ground.plates.stairs.count}]}'
-says "... as they are whole" 'takes whole numbers'
+    --set 'optimise={vary: [{path: ground.plates.stairs.count}]}' tells 'takes whole numbers'
 expect "a start above a plate" 0 "$stance" check "$walks" --set 'sweep={}' --set 'ground.plates={low: {from: -0.1, height: -0.05}}'
-says "... is warned of" 'warning: foot1 begins at height 0, 0.05 m above the plate that is there'
-expect "one inside a plate is refused" 2 "$stance" check "$walks" --set 'sweep={}' --set 'ground.plates={high: {from: -0.1, height: 0.05}}'
-says "... with its depth" 'foot1 would start 0.05 m inside the ground'
+tells "... is warned of" 'warning: foot1 begins at height 0, 0.05 m above the plate that is there'
+expect "one inside a plate is refused" 2 "$stance" check "$walks" --set 'sweep={}' \
+    --set 'ground.plates={high: {from: -0.1, height: 0.05}}' tells 'foot1 would start 0.05 m inside the ground'
 printf 'stance: 1\nscene: block\nrobot: {mass: 1}\ninitial: {state: {x: 0}}\nstop: {time: 0.1}\n' >block.yaml
 printf 'ground: {plates: {a: {kind: rough, from: -1, height: 0.05, width: 0.1}}}\n' >>block.yaml
 printf 'sweep: {sample: {method: random, count: 10, vary: [{path: robot.mass, from: 1, to: 2}]}}\n' >>block.yaml
 for seed in 1 3; do
-    expect "at any point of a sample, on its own ground, seed $seed" 2 "$stance" run block.yaml --set seed=$seed -o block.h5
-    says "... which is told" 'case [0-9]: .* would start 0.0[0-9]* m inside the ground'
+    expect "at any point of a sample, on its own ground, seed $seed" 2 "$stance" run block.yaml --set seed=$seed \
+        -o block.h5 tells 'case [0-9]: .* would start 0.0[0-9]* m inside the ground'
 done
 expect "ground that begins beyond it is of no start" 0 "$stance" check block.yaml --set ground.plates.a.from=2
-expect "a gait has no cycle there" 2 "$stance" gait "$walks" "${alone[@]}"
-says "... which is said" 'leave out ground.plates'
-expect "what is exported has none" 0 "$stance" export --mjcf rod.yaml -o rod.xml
-says "... which is said" 'ground.plates are left out' && grep -q 'Without ground.plates' rod.xml
-result $? "... in the file, too"
+expect "a gait has no cycle there" 2 "$stance" gait "$walks" "${alone[@]}" tells 'leave out ground.plates'
+expect "what is exported has none" 0 "$stance" export --mjcf rod.yaml -o rod.xml \
+    tells 'ground.plates are left out' is grep -q 'Without ground.plates' rod.xml
 
 # ---- results files ---------------------------------------------------------------------------------
 grid='sweep={grid: [{path: ground.plates.step.height, from: -0.05, to: 0.05, count: 5}, {path: ground.friction, values: [0.4, 0.8]}]}'
 expect "a study of heights" 0 "$stance" run "$walks" --set "$plates" --set "$grid" --set stop.time=0.5 -o heights.h5
 expect "is gone on with" 0 "$stance" run "$walks" --set "$plates" --set "$grid" --set stop.time=0.5 -o heights.h5 --resume
-expect "which other plates are not" 2 "$stance" run "$walks" --set "$plates" --set "$grid" --set ground.plates.step.from=0.2 \
-    --set stop.time=0.5 -o heights.h5 --resume
-says "... by what differs" 'ground.plates.step.from: 0.3, now 0.2'
-"$python" - >log 2>&1 <<'END'
-import h5py, yaml
+expect "which other plates are not" 2 "$stance" run "$walks" --set "$plates" --set "$grid" \
+    --set ground.plates.step.from=0.2 --set stop.time=0.5 -o heights.h5 --resume \
+    tells 'ground.plates.step.from: 0.3, now 0.2'
+holds "the file holds them in their order, and the axis" <<'END'
 f = h5py.File("heights.h5")
 text = f["scenario"][()] if "scenario" in f else f.attrs["scenario"]
 plates = yaml.safe_load(text.decode() if isinstance(text, bytes) else text)["ground"]["plates"]
@@ -130,11 +112,9 @@ axis = f["ground.plates.step.height"]
 assert abs(axis[0] + 0.05) < 1e-15 and axis.shape == (5,), axis[...]
 assert f["outcome"].shape == (5, 2)
 END
-result $? "the file holds them in their order, and the axis"
-expect "tables have the column" 0 "$stance" table heights.h5
-says "... by its path" '^case,ground.plates.step.height,|^ground.plates.step.height,'
-expect "summaries tell them" 0 "$stance" summary heights.h5
-says "... with their units" 'plates.stairs.width 0.1 m'
+expect "tables have the column" 0 "$stance" table heights.h5 \
+    tells '^case,ground.plates.step.height,|^ground.plates.step.height,'
+expect "summaries tell them" 0 "$stance" summary heights.h5 tells 'plates.stairs.width 0.1 m'
 
 # ---- pictures --------------------------------------------------------------------------------------
 # Lines of the ground, grey, in a picture: places of their corners.
@@ -154,22 +134,19 @@ END
 corners() { "$python" corners.py "$1"; }
 expect "the model" 0 "$stance" plot --model "$walks" "${alone[@]}" -o model.svg
 expect "the model on the plane" 0 "$stance" plot --model "$walks" --set 'sweep={}' -o plane.svg
-[ "$(corners model.svg)" -ge 4 ] && ! cmp -s model.svg plane.svg
-result $? "... has a step where the plane has none"
+is "... has a step where the plane has none" '[ "$(corners model.svg)" -ge 4 ] && ! cmp -s model.svg plane.svg'
 expect "a case with its trajectory" 0 "$stance" run "$walks" "${alone[@]}" --set stop.time=2.2 --set record.cases=all -o case.h5
 for picture in strip animation; do
     expect "its $picture" 0 "$stance" replay case.h5 --case 0 --picture $picture -o $picture.svg
-    [ "$(corners $picture.svg)" -ge 20 ]
-    result $? "... has corners"
+    is "... has corners" [ "$(corners $picture.svg)" -ge 20 ]
 done
 expect "one that falls" 0 "$stance" replay case.h5 --case 0 --set ground.friction=0.2 --picture strip -o falls.svg
-[ "$(corners falls.svg)" -ge 20 ]
-result $? "... stands on plates in each figure"
+is "... stands on plates in each figure" [ "$(corners falls.svg)" -ge 20 ]
 
 # ---- steps that are enough -------------------------------------------------------------------------
 expect "three steps are enough" 0 "$stance" run "$walks" --set 'sweep={}' --set stop.walks.enough=3 -o enough.h5
 expect "where one is not" 0 "$stance" run "$walks" --set 'sweep={}' --set stop.walks.enough=100 -o alike.h5
-"$python" - >log 2>&1 <<'END'
+holds "... whatever they are like; steps that are alike end it all the same" <<'END'
 import h5py, numpy as np
 enough, alike = h5py.File("enough.h5"), h5py.File("alike.h5")
 one = lambda f, k: f[k][...].ravel()[0]
@@ -181,9 +158,7 @@ assert one(enough, "walked_steps") == 3 and one(enough, "gait_period") < 0 and n
 assert one(alike, "walked_steps") == 11 and one(alike, "gait_period") == 1 and one(alike, "settle_time") > 0
 assert abs(one(enough, "walking_speed") - one(alike, "walking_speed")) < 1e-3 and one(enough, "end_time") < 2.1
 END
-result $? "... whatever they are like; steps that are alike end it all the same"
 for method in event-driven implicit midpoint lagrange; do
-    expect "enough by $method" 0 "$stance" run "$walks" --set 'sweep={}' --set stop.walks.enough=2 --set method.name=$method -o by.h5 --force
-    says "... walks" '1 walks'
+    expect "enough by $method" 0 "$stance" run "$walks" --set 'sweep={}' --set stop.walks.enough=2 \
+        --set method.name=$method -o by.h5 --force tells '1 walks'
 done
-echo "1..$count"

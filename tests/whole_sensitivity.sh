@@ -1,40 +1,34 @@
 #!/usr/bin/env bash
 # `stance sensitivity` from outside: `stance run` makes the files of sampled studies, an answer of
 # which then becomes a function with known indices; what failed and pending cases do; bad use.
-# Speaks TAP.
 # about: runner/run analysis/sensitivity
-set -u
 . "$(dirname "$0")/scratch.sh"
 blocks=512
 [ -n "${STANCE_SLOW:-}" ] && blocks=256
 
+clause_words+="known "
 known() { # name, task ...
-    local name=$1
-    shift
-    "$python" "$tests/sensitivity_tools.py" "$@" >log 2>&1
-    result $? "$name"
+    "$python" "$tests/sensitivity_tools.py" "${@:2}" >log 2>&1
+    result $? "$1"
 }
 # A study of a known function: FILE.h5, as `stance run` and the tool make it.
 study() { # FILE, function, method, count, keys ...
     local file=$1 function=$2
     shift
     "$python" "$tests/sensitivity_tools.py" scenario "$@" >"$file.yaml"
-    expect "$file: $1, $2 of $3" 0 "$stance" run "$file.yaml" -o "$file.h5" --quiet
-    known "... end_time becomes the function" answer "$file.h5" "$function"
-    tool "... every case is whole" whole "$file.h5"
+    expect "$file: $1, $2 of $3" 0 "$stance" run "$file.yaml" -o "$file.h5" --quiet \
+        known answer "$file.h5" "$function" tool whole "$file.h5"
 }
 # Text, JSON and CSV of it; the intervals hold the truth.
 indices() { # FILE, function
     local file=$1 ask=(--answer end_time)
-    "$stance" sensitivity "$file.h5" "${ask[@]}" --json >"$file.json" 2>log
-    result $? "$file: --json"
+    is "$file: --json" '"$stance" sensitivity "$file.h5" "${ask[@]}" --json >"$file.json" 2>log'
     known "... intervals hold the published values" check "$2" "$file.json"
     sed 's/^/# /' log | tail -n 1
     "$stance" sensitivity "$file.h5" "${ask[@]}" --json --level 0.999 --resamples 4000 >wide.json 2>log &&
         "$python" "$tests/sensitivity_tools.py" check "$2" wide.json >log 2>&1
     result $? "... all of them at 99.9 %"
-    "$stance" sensitivity "$file.h5" "${ask[@]}" --csv >"$file.csv" 2>log
-    result $? "... --csv"
+    is "... --csv" '"$stance" sensitivity "$file.h5" "${ask[@]}" --csv >"$file.csv" 2>log'
     known "... says the same" table "$file.json" "$file.csv"
 }
 
@@ -45,86 +39,62 @@ indices g sobol_g
 study morris morris morris 100 "levels: 4"
 indices morris morris
 # The first ten factors matter, the others do not.
-"$python" - morris.json >log 2>&1 <<'END'
-import json, sys
-factors = json.load(open(sys.argv[1]))["tables"][0]["factors"]
+holds "... ten factors stand apart" - morris.json <<'END'
+factors = said(sys.argv[1])["tables"][0]["factors"]
 assert factors[9]["mu_star"]["low"] > factors[10]["mu_star"]["high"]
 END
-result $? "... ten factors stand apart"
 
 ask=(sensitivity ishigami.h5 --answer end_time)
-expect "text" 0 "$stance" "${ask[@]}"
-says "... a table for each method" '^method.name = midpoint$'
-says "... the mean over the starts" 'over initial.state.z: 3 cases$'
-[ "$(grep -c 'initial.state.x with initial.state.q1 0.[23]' log)" = 2 ]
-result $? "... and the one pair that interacts"
+expect "text" 0 "$stance" "${ask[@]}" says '^method.name = midpoint$' 'over initial.state.z: 3 cases$'
+times "... and the one pair that interacts" 2 'initial.state.x with initial.state.q1 0.[23]'
 cp log first
-expect "the same again" 0 "$stance" "${ask[@]}"
-cmp -s log first
-result $? "... to the letter"
-expect "--by none" 0 "$stance" "${ask[@]}" --by none
-says "... a single table" '^  factor'
-expect "--by a start" 0 "$stance" "${ask[@]}" --by initial.state.z
-[ "$(grep -c '^initial.state.z = ' log)" = 3 ]
-result $? "... a table for each of its values"
+expect "the same again" 0 "$stance" "${ask[@]}" is cmp -s log first
+expect "--by none" 0 "$stance" "${ask[@]}" --by none says '^  factor'
+expect "--by a start" 0 "$stance" "${ask[@]}" --by initial.state.z times 3 '^initial.state.z = '
 study lhs ishigami lhs 1000
 expect "bins" 0 "$stance" sensitivity lhs.h5 --answer end_time
 cp log first
-expect "other resamples" 0 "$stance" sensitivity lhs.h5 --answer end_time --seed 7
-! cmp -s log first
-result $? "... other intervals"
-"$stance" sensitivity lhs.h5 --answer end_time --json >lhs.json 2>log &&
-    "$python" - lhs.json >log 2>&1 <<'END'
-import json, sys
-for table in json.load(open(sys.argv[1]))["tables"]:
+expect "other resamples" 0 "$stance" sensitivity lhs.h5 --answer end_time --seed 7 is ! cmp -s log first
+"$stance" sensitivity lhs.h5 --answer end_time --json >lhs.json 2>log
+holds "... hold the published values, too" - lhs.json <<'END'
+for table in said(sys.argv[1])["tables"]:
     found = {f["path"]: f["first"] for f in table["factors"]}
     for path, truth in zip(("initial.state.x", "initial.state.theta", "initial.state.q1"),
                            (0.3139, 0.4424, 0)):
         assert found[path]["low"] < truth < found[path]["high"], (path, found[path])
 END
-result $? "... hold the published values, too"
 
 # Sample points are the fastest axis: case 1 is in block 0; a block has 8 points with second_order.
 points=$((8 * blocks))
 cp ishigami.h5 lost.h5
 known "a point whose three starts failed" mark lost.h5 2 1 $((points + 1)) $((2 * points + 1))
-expect "... takes its block out" 0 "$stance" sensitivity lost.h5 --answer end_time
-says "... of one table" "^  $((blocks - 1)) blocks, 1 block lost for want of a case; "
-says "... and the policy is said" '^failed cases: 3 of .* left out; '
+expect "... takes its block out" 0 "$stance" sensitivity lost.h5 --answer end_time \
+    says "^  $((blocks - 1)) blocks, 1 block lost for want of a case; " '^failed cases: 3 of .* left out; '
 known "a start that failed" mark lost.h5 1 1
-expect "... only leaves the mean" 0 "$stance" sensitivity lost.h5 --answer end_time
-[ "$(grep -c "^  $blocks blocks; " log)" = 2 ]
-result $? "... and no block"
+expect "... only leaves the mean" 0 "$stance" sensitivity lost.h5 --answer end_time times 2 "^  $blocks blocks; "
 cp ishigami.h5 pending.h5
 known "a case is pending" mark pending.h5 0 9
-expect "... whose block waits" 0 "$stance" sensitivity pending.h5 --answer end_time
-says "... and is counted" "^  $((blocks - 1)) blocks, 1 not complete yet; "
+expect "... whose block waits" 0 "$stance" sensitivity pending.h5 --answer end_time \
+    says "^  $((blocks - 1)) blocks, 1 not complete yet; "
 
 # Shares: all cases of a short flight are undecided, but those marked as failed.
 expect "a share that does not vary" 0 "$stance" sensitivity ishigami.h5 --of undecided
-[ "$(grep -c 'depends on none of the factors' log)" = 2 ]
-result $? "... depends on nothing"
+times "... depends on nothing" 2 'depends on none of the factors'
 cp ishigami.h5 shares.h5
 # shellcheck disable=SC2046
 known "a fifth of a table's cases failed" mark shares.h5 2 $(seq 3 5 $((3 * points - 1)))
-expect "left out" 0 "$stance" sensitivity shares.h5 --of undecided --failed drop
-[ "$(grep -c 'WARNING: failed cases counted as fallen (--failed fallen), first of ' log)" = 1 ]
-result $? "... with a warning that it matters, in the table that has any"
-expect "counted as fallen" 0 "$stance" sensitivity shares.h5 --of undecided --failed fallen
-says "... as it says" '^failed cases: .* counted as fallen$'
+expect "left out" 0 "$stance" sensitivity shares.h5 --of undecided --failed drop \
+    says 'WARNING: failed cases counted as fallen (--failed fallen), first of '
+expect "counted as fallen" 0 "$stance" sensitivity shares.h5 --of undecided --failed fallen \
+    says '^failed cases: .* counted as fallen$'
 
 expect "a picture" 0 "$stance" sensitivity g.h5 --answer end_time -o pictures
-[ -s pictures/g-end_time-sensitivity.svg ] && [ -s pictures/g-end_time-sensitivity.png ]
-result $? "... as SVG and PNG"
+is "... as SVG and PNG" '[ -s pictures/g-end_time-sensitivity.svg ] && [ -s pictures/g-end_time-sensitivity.png ]'
 expect "stance plot draws it" 0 "$stance" plot morris.h5 --answer end_time -o pictures
-[ -s pictures/morris-end_time-sensitivity.png ]
-result $? "... by itself"
+is "... by itself" [ -s pictures/morris-end_time-sensitivity.png ]
 
 refused() { # name, code, pattern, command ...
-    local name=$1 code=$2 pattern=$3
-    shift 3
-    expect "$name" "$code" "$stance" sensitivity "$@"
-    says "... in one line" "$pattern"
+    expect "$1" "$2" "$stance" sensitivity "${@:4}" says "$3"
 }
 refused "no file" 2 'a results file must be given'
 refused "a file that is not there" 3 'No such file' nowhere.h5
@@ -139,4 +109,3 @@ refused "too few resamples" 2 'takes a whole number from 100' ishigami.h5 --resa
 refused "two outputs" 2 '--json and --csv exclude each other' ishigami.h5 --json --csv
 expect "a study without samples" 0 "$stance" run ishigami.yaml -o grid.h5 --quiet --set 'sweep={grid: [{path: method.name, values: [implicit, midpoint]}]}'
 refused "... is refused" 2 'has no sampled factors' grid.h5
-echo "1..$count"

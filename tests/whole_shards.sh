@@ -1,16 +1,11 @@
 #!/usr/bin/env bash
 # Shards from outside: tasks that know nothing of each other, each on its share of one scenario,
-# killed, repeated and added, and one file made of theirs. Speaks TAP.
+# killed, repeated and added, and one file made of theirs.
 # about: runner/run analysis/compare analysis/summary
-set -u
 . "$(dirname "$0")/scratch.sh"
 points=60 # of the sample
 [ -n "${STANCE_SLOW:-}" ] && points=20
 unset "${!SLURM_@}"
-one_line() { # name, what it says
-    [ "$(wc -l <log)" = 1 ] && grep -q -- "$2" log
-    result $? "$1"
-}
 
 # Noise, methods, a grid beside a sample, designs of their own, trajectories.
 {
@@ -36,75 +31,62 @@ cases=$((6 * points))
 
 expect "one run" 0 "$stance" run set.yaml -o one.h5 --quiet
 for k in 1 2 3; do
-    expect "shard $k of 3, without MPI" 0 "$stance" run set.yaml --shard $k/3
-    says "... has a third of the cases" "results/set.shard-$k-of-3.h5: $((cases / 3)) cases:"
+    expect "shard $k of 3, without MPI" 0 "$stance" run set.yaml --shard $k/3 \
+        says "results/set.shard-$k-of-3.h5: $((cases / 3)) cases:"
 done
-expect "shards are merged" 0 "$stance" merge all.h5 results/set.shard-?-of-3.h5
-says "... all cases are there" "^all.h5: $cases cases from 3 files$"
-expect "... in the file of one run, to the bit" 0 "$stance" compare one.h5 all.h5
-tool "... as another program sees it" whole all.h5 $cases
-"$python" - >log 2>&1 <<'END'
-import h5py
+expect "shards are merged" 0 "$stance" merge all.h5 results/set.shard-?-of-3.h5 \
+    says "^all.h5: $cases cases from 3 files$" as one.h5 tool whole all.h5 $cases
+holds "a shard's file is that of the whole, with its own cases alone" <<'END'
 one, shard = h5py.File("all.h5"), h5py.File("results/set.shard-2-of-3.h5")
 assert shard.attrs["shard"] == b"2/3" and "shard" not in one.attrs
 assert one["timing/cases"][...].sum() == one["status"].size
 done = shard["status"][...] == 1
 assert done.sum() == done.size / 3 and (one["checksum"][...][done] == shard["checksum"][...][done]).all()
 END
-result $? "a shard's file is that of the whole, with its own cases alone"
 for ranks in 1 2; do
-    expect "a shard on $ranks rank(s)" 0 mpirun -n $ranks "$stance" run set.yaml --shard 2/3 -o ranks.h5 --force
-    expect "... is the same" 0 "$stance" compare results/set.shard-2-of-3.h5 ranks.h5
+    expect "a shard on $ranks rank(s)" 0 mpirun -n $ranks "$stance" run set.yaml --shard 2/3 -o ranks.h5 --force \
+        as results/set.shard-2-of-3.h5
 done
 
 cp results/set.shard-2-of-3.h5 damaged.h5
 "$python" -c 'import h5py; h5py.File("damaged.h5", "r+").attrs["shard"] = b"2 of 3"'
 for way in "status damaged.h5" "merge all2.h5 damaged.h5 results/set.shard-1-of-3.h5"; do
-    expect "${way%% *} of one whose share is damaged" 3 "$stance" $way
-    says "... says so" "damaged.h5: .* attribute .shard.*is damaged"
+    expect "${way%% *} of one whose share is damaged" 3 "$stance" $way \
+        says "damaged.h5: .* attribute .shard.*is damaged"
 done
 
 # ---- what others say of it -----------------------------------------------------------------------
-expect "status of a shard" 0 "$stance" status results/set.shard-2-of-3.h5
-says "... is of its cases" "shard 2/3, $((cases / 3)) of $((cases / 3)) cases done, 0 failed, 0 pending; complete"
-expect "... for programs" 0 "$stance" status results/set.shard-2-of-3.h5 --json
-says "... too" '"shard": "2/3"'
-expect "... of another file" 0 "$stance" status one.h5 --json
-says "... there is none" '"shard": null'
-expect "summary of a shard" 0 "$stance" summary results/set.shard-2-of-3.h5
-says "... says what it is" "$cases cases, of which shard 2/3 has $((cases / 3)),"
-says "... and what it lacks" "pending  *$((2 * cases / 3))  not computed yet, or of other shards"
+expect "status of a shard" 0 "$stance" status results/set.shard-2-of-3.h5 \
+    says "shard 2/3, $((cases / 3)) of $((cases / 3)) cases done, 0 failed, 0 pending; complete"
+expect "... for programs" 0 "$stance" status results/set.shard-2-of-3.h5 --json says '"shard": "2/3"'
+expect "... of another file" 0 "$stance" status one.h5 --json says '"shard": null'
+expect "summary of a shard" 0 "$stance" summary results/set.shard-2-of-3.h5 \
+    says "$cases cases, of which shard 2/3 has $((cases / 3))," \
+        "pending  *$((2 * cases / 3))  not computed yet, or of other shards"
 expect "picture of a shard" 0 "$stance" plot results/set.shard-2-of-3.h5 -o shard.svg
-expect "a dry run" 0 "$stance" run set.yaml --shard 2/3 --dry-run
-says "... tells of the shard" "^shard  *2/3, $((cases / 3)) cases"
+expect "a dry run" 0 "$stance" run set.yaml --shard 2/3 --dry-run says "^shard  *2/3, $((cases / 3)) cases"
 
 # ---- repeated, added, missing --------------------------------------------------------------------
-expect "a shard that is there" 3 "$stance" run set.yaml --shard 1/3
-says "... is left alone" 'set.shard-1-of-3.h5 exists; --force replaces it, --resume goes on with it'
-expect "... and, resumed, done" 0 "$stance" run set.yaml --shard 1/3 --resume
-says "... at once" '; 0 of them computed now;'
+expect "a shard that is there" 3 "$stance" run set.yaml --shard 1/3 \
+    says 'set.shard-1-of-3.h5 exists; --force replaces it, --resume goes on with it'
+expect "... and, resumed, done" 0 "$stance" run set.yaml --shard 1/3 --resume says '; 0 of them computed now;'
 expect "... or computed again" 0 "$stance" run set.yaml --shard 1/3 --quiet -o again.h5
-expect "shards twice" 0 "$stance" merge twice.h5 results/set.shard-?-of-3.h5 again.h5
-says "... are equal" "; $((cases / 3)) were in several files, and equal$"
-expect "... in the same file" 0 "$stance" compare one.h5 twice.h5
-expect "a shard is missing" 0 "$stance" merge open.h5 results/set.shard-[13]-of-3.h5
-says "... its cases are counted" "; $((cases / 3)) are not computed yet$"
-says "... and it is named" 'stance merge: not among the files: shard 2/3$'
-expect "... and resumed without shards" 0 "$stance" run set.yaml -o open.h5 --resume --quiet
-expect "... to the same file" 0 "$stance" compare one.h5 open.h5
+expect "shards twice" 0 "$stance" merge twice.h5 results/set.shard-?-of-3.h5 again.h5 \
+    says "; $((cases / 3)) were in several files, and equal$" as one.h5
+expect "a shard is missing" 0 "$stance" merge open.h5 results/set.shard-[13]-of-3.h5 \
+    says "; $((cases / 3)) are not computed yet$" 'stance merge: not among the files: shard 2/3$'
+expect "... and resumed without shards" 0 "$stance" run set.yaml -o open.h5 --resume --quiet as one.h5
 for k in 3 4 5; do
     "$stance" run set.yaml --shard $k/5 --quiet >>log 2>&1
 done
 expect "shards of another number are added" 0 "$stance" merge added.h5 results/set.shard-[13]-of-3.h5 \
     results/set.shard-?-of-5.h5
 lacks=$(sed -n 's/.*; \([0-9]*\) are not computed yet$/\1/p' log)
-((lacks > 0 && lacks < cases / 3))
-result $? "... fewer cases are missing"
+is "... fewer cases are missing" '((lacks > 0 && lacks < cases / 3))'
 for k in 1 2; do
     "$stance" run set.yaml --shard $k/5 --quiet >>log 2>&1
 done
-expect "... and the others" 0 "$stance" merge added.h5 results/*-of-5.h5 results/*-1-of-3.h5 --force
-expect "... make the same file" 0 "$stance" compare one.h5 added.h5
+expect "... and the others" 0 "$stance" merge added.h5 results/*-of-5.h5 results/*-1-of-3.h5 --force as one.h5
 expect "a shard of another seed" 0 "$stance" run set.yaml --shard 1/3 --quiet --set seed=12 -o seed.h5
 expect "... does not belong to these" 2 "$stance" merge bad.h5 seed.h5 results/set.shard-[23]-of-3.h5
 
@@ -129,16 +111,14 @@ stop: {time: $span, settle: off}"
     "$stance" status $long 2>/dev/null | grep -q ' [1-9][0-9]* pending; not running' && killed=0 && break
 done
 result $killed "a shard is killed while it computes"
-expect "... status" 0 "$stance" status $long
-says "... tells what is left of it" 'shard 1/2, .* of 200 cases done, 0 failed, .* pending; not running'
-expect "the same command with --resume ends it" 0 "$stance" run long.yaml --shard 1/2 --resume
-says "... without doing all of it again" ': 200 cases: .*; [0-9]* of them computed now;'
-expect "a shard that runs out of time" 4 "$stance" run long.yaml --shard 2/2 --time-limit 0s
-says "... can be gone on with" 'go on with: .* run long.yaml --shard 2/2 --time-limit 0s --resume$'
+expect "... status" 0 "$stance" status $long says 'shard 1/2, .* of 200 cases done, 0 failed, .* pending; not running'
+expect "the same command with --resume ends it" 0 "$stance" run long.yaml --shard 1/2 --resume \
+    says ': 200 cases: .*; [0-9]* of them computed now;'
+expect "a shard that runs out of time" 4 "$stance" run long.yaml --shard 2/2 --time-limit 0s \
+    says 'go on with: .* run long.yaml --shard 2/2 --time-limit 0s --resume$'
 expect "the other shard" 0 "$stance" run long.yaml --shard 2/2 --resume --quiet
 expect "both" 0 "$stance" merge long.h5 results/long.shard-?-of-2.h5
-expect "one run of all" 0 "$stance" run long.yaml -o long_one.h5 --quiet
-expect "... is the same" 0 "$stance" compare long_one.h5 long.h5
+expect "one run of all" 0 "$stance" run long.yaml -o long_one.h5 --quiet as long.h5
 
 # ---- space for a share ---------------------------------------------------------------------------
 cat >ball.yaml <<END
@@ -150,25 +130,19 @@ stop: {time: 0.05}
 sweep: {grid: [{path: ground.friction, from: 0.05, to: 1, count: 400000}]}
 END
 expect "a shard of many cases" 0 "$stance" run ball.yaml --shard 3/20 --quiet -o part.h5
-((2 * 512 * $(stat -c %b part.h5) < $(stat -c %s part.h5)))
-result $? "... takes less than half the space of the whole"
+is "... takes less than half the space of the whole" '((2 * 512 * $(stat -c %b part.h5) < $(stat -c %s part.h5)))'
 
 # ---- Slurm's array -------------------------------------------------------------------------------
-array() { # name, code, id, first, last, count
+array() { # name, code, id, first, last, count, clause ...
     expect "$1" "$2" env SLURM_ARRAY_TASK_ID="$3" SLURM_ARRAY_TASK_MIN="$4" SLURM_ARRAY_TASK_MAX="$5" \
-        SLURM_ARRAY_TASK_COUNT="$6" "$stance" run set.yaml --shard slurm --time-limit 0s
+        SLURM_ARRAY_TASK_COUNT="$6" "$stance" run set.yaml --shard slurm --time-limit 0s "${@:7}"
 }
 part='--shard slurm: this array is not the whole of 1-N: give --shard \$SLURM_ARRAY_TASK_ID/N '
-array "a task of an array" 4 4 1 7 7
-says "... is a shard by its number" 'go on with: .* --shard 4/7 --time-limit 0s --resume$'
-array "a part of an array" 2 4 4 5 2
-one_line "... does not say of how many" "$part"
-array "an array with gaps" 2 5 1 5 2
-one_line "... neither" "$part"
-array "an array from 0" 2 0 0 7 8
-one_line "... neither" "$part"
-expect "no array" 2 "$stance" run set.yaml --shard slurm
-one_line "... is said" '--shard slurm is for the tasks of an array: sbatch --array=1-N '
+array "a task of an array" 4 4 1 7 7 says 'go on with: .* --shard 4/7 --time-limit 0s --resume$'
+array "a part of an array" 2 4 4 5 2 lines 1 says "$part"
+array "an array with gaps" 2 5 1 5 2 lines 1 says "$part"
+array "an array from 0" 2 0 0 7 8 lines 1 says "$part"
+expect "no array" 2 "$stance" run set.yaml --shard slurm lines 1 says '--shard slurm is for the tasks of an array: sbatch --array=1-N '
 PMIX_RANK=0 SLURM_STEP_NUM_TASKS=1 expect "the one task of a step needs no MPI" 0 \
     "$stance" run set.yaml --shard 3/7 --quiet
 for k in 1 2 3; do
@@ -180,14 +154,10 @@ expect "... gives the file of one run" 0 "$stance" compare one.h5 results/batch.
 
 # ---- wrong use -----------------------------------------------------------------------------------
 for word in 0/4 5/4 a/b 1/1e9 1/1000001 2 2/ /2 -1/2 1/2/3 ''; do
-    expect "no shard: '$word'" 2 "$stance" run set.yaml --shard "$word"
-    one_line "... is said" "--shard takes K/N"
+    expect "no shard: '$word'" 2 "$stance" run set.yaml --shard "$word" lines 1 says "--shard takes K/N"
 done
 wrong() { # name, words, option ...
-    local name=$1 words=$2
-    shift 2
-    expect "$name" 2 "$stance" run "$@"
-    one_line "... is said" "$words"
+    expect "$1" 2 "$stance" run "${@:3}" lines 1 says "$2"
 }
 wrong "more shards than cases" "--shard: there are 1000 shards but only $cases cases" set.yaml --shard 1/1000
 wrong "one case of a shard" '--shard and --only exclude each other' set.yaml --shard 1/3 --only 3
@@ -200,4 +170,3 @@ wrong "another shard's file" 'is of shard 1/3: go on with it by --shard 1/3, or 
 wrong "... with all cases" 'is of shard 1/3: go on with it by --shard 1/3, or merge' set.yaml --resume \
     -o results/set.shard-1-of-3.h5
 wrong "a file of all cases" 'is not of a shard: go on with it without --shard' set.yaml --shard 2/3 --resume -o one.h5
-echo "1..$count"
