@@ -3,6 +3,7 @@
 
 #include "runner/base/message.h"
 #include "runner/base/words.h"
+#include "runner/scenario/field.h"
 #include "runner/scenario/tree.h"
 
 #include <math.h>
@@ -53,9 +54,9 @@ static const char *text_at(const json_t *scenarios, size_t i, const char *path)
 static double number_at(const json_t *scenarios, size_t i, const char *path)
 {
     const char *const text = text_at(scenarios, i, path);
-    char *end = NULL;
-    const double number = text ? strtod(text, &end) : NAN;
-    return text && end != text && !*end && isfinite(number) ? number : NAN;
+    double number;
+    bool finite;
+    return text && number_parse(text, &number, &finite) ? number : NAN;
 }
 
 /* ---- what differs ------------------------------------------------------------------------- */

@@ -30,11 +30,7 @@ bool search_study_open(struct search_study *study, const char *file, stance_mess
         search_study_close(study);
         return complain(message, "%.150s: has other outcomes than this version knows", file);
     }
-    const char *const slash = strrchr(file, '/');
-    snprintf(study->name, sizeof study->name, "%s", slash ? slash + 1 : file);
-    char *const dot = strrchr(study->name, '.');
-    if (dot && dot != study->name && strcmp(dot, ".h5") == 0)
-        *dot = '\0';
+    results_stem(file, study->name);
     study->done = f->finished && f->chosen >= 0 && f->length[SEARCH_START] > 0;
     study->first = f->first_scenario ? scenario_new(file, f->first_scenario, NULL, 0, NULL) : NULL;
     if (study->first && study->done) {

@@ -24,10 +24,10 @@
 struct search_study {
     struct search_file f;
     const char *file;
-    char name[256]; /* without directory and .h5 */
-    bool done;      /* fresh starts have been tried: there are `confirmed`, and a chosen one */
-    bool plain;     /* the objective is the share of starts */
-    bool glued;     /* so is what linear theory allows: allowed.h */
+    char name[RESULTS_NAME]; /* without directory and .h5 */
+    bool done;  /* fresh starts have been tried: there are `confirmed`, and a chosen one */
+    bool plain; /* the objective is the share of starts */
+    bool glued; /* so is what linear theory allows: allowed.h */
     struct scenario *first; /* NULL: this version does not read it */
     struct scenario *best;  /* of the chosen one; NULL: there is none */
 };

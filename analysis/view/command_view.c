@@ -172,14 +172,6 @@ static int show(const char *page)
     return EXIT_DONE;
 }
 
-/* Whether two names are of one file. */
-static bool is_same(const char *a, const char *b)
-{
-    struct stat first, second;
-    return stat(a, &first) == 0 && stat(b, &second) == 0 && first.st_dev == second.st_dev &&
-           first.st_ino == second.st_ino;
-}
-
 /* No page is written over a results file, another file's page, or the index. */
 static bool names_differ(struct request *request)
 {
@@ -192,7 +184,7 @@ static bool names_differ(struct request *request)
             return command_usage(&command_view, "the page's name is too long"), false;
         const char *const name = request->name[i];
         for (size_t k = 0; k < files; k++)
-            if (is_same(name, file[k])) {
+            if (same_file(name, file[k])) {
                 fprintf(stderr, "stance view: %s is a results file: give its page another name\n",
                         name);
                 return false;

@@ -124,5 +124,7 @@ struct whole_file {
 };
 bool whole_file_begin(struct whole_file *whole, const char *name);
 bool whole_file_end(struct whole_file *whole, bool good);
+/* Whether two names are of one file that there is. */
+bool same_file(const char *a, const char *b);
 
 #endif

@@ -138,50 +138,40 @@ double space_gain(const struct space *space, const double *y)
 /* ---- scenarios ------------------------------------------------------------------------------- */
 
 /* "controller.gains=[[...], ...]", over the posture's angles and rates. */
-static char *gains_text(const struct design_report *r)
+enum { GAINS_TEXT = SCENARIO_MAX_GAINS * 28 + 32 };
+static void gains_text(const struct design_report *r, char text[GAINS_TEXT])
 {
     const struct scenario *const s = r->scenario;
     const int columns = 2 * s->scene->postures;
     double gain[SCENARIO_MAX_GAINS] = {0};
-    char *text = NULL;
-    size_t size = 0;
-    FILE *const to = open_memstream(&text, &size);
     for (int i = 0; i < r->inputs; i++)
         for (int j = 0; j < r->states; j++)
             gain[i * columns + resolve_state(s->scene, &r->equilibrium, j)] =
                 r->K[i * r->states + j];
-    if (!to)
-        return NULL;
-    fputs("controller.gains=", to);
+    char *to = stpcpy(text, "controller.gains=");
     for (int k = 0; k < r->inputs * columns; k++)
-        fprintf(to, "%s%.17g", k % columns ? ", " : k ? "], [" : "[[", gain[k]);
-    fputs("]]", to);
-    if (fclose(to) != 0) {
-        free(text);
-        return NULL;
-    }
-    return text;
+        to += sprintf(to, "%s%.17g", k % columns ? ", " : k ? "], [" : "[[", gain[k]);
+    stpcpy(to, "]]");
 }
 
 char *best_first(const struct scenario *s, stance_message *message)
 {
     static const char *const drop[] = {"controller.poles", "controller.weights",
                                        "controller.design_time"};
-    char *text = NULL;
-    if (!s->search.designed_gains) {
-        text = strdup(s->text);
-    } else {
-        struct design_report *const report = malloc(sizeof *report);
-        if (report && !design_loop(report, s, NULL, message)) {
-            free(report);
-            return NULL;
-        }
-        char *const gains = report ? gains_text(report) : NULL;
-        const char *const set[] = {"controller.design=gains", gains};
-        text = gains ? scenario_rewrite(s->text, drop, sizeof drop / sizeof *drop, set, 2) : NULL;
-        free(gains);
+    char gains[GAINS_TEXT], *text = NULL;
+    const char *const set[] = {"controller.design=gains", gains};
+    struct design_report *const report = s->search.designed_gains ? malloc(sizeof *report) : NULL;
+    if (report && !design_loop(report, s, NULL, message)) {
         free(report);
+        return NULL;
     }
+    if (report) {
+        gains_text(report, gains);
+        text = scenario_rewrite(s->text, drop, sizeof drop / sizeof *drop, set, 2);
+    } else if (!s->search.designed_gains) {
+        text = strdup(s->text);
+    }
+    free(report);
     if (!text)
         no_memory(message);
     return text;

@@ -14,7 +14,6 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 extern const struct command command_optimise; /* below */
@@ -138,12 +137,10 @@ static bool spares_files(struct optimise *o)
 {
     const char *const names[] = {o->run.file, o->best};
     const struct options *const options = &o->run.options;
-    struct stat scenario, other;
-    if (stat(options->asked.file, &scenario) != 0)
+    if (access(options->asked.file, F_OK) != 0)
         return true; /* read all the same: from a pipe */
     for (int i = 0; i < 2; i++)
-        if (stat(names[i], &other) == 0 && other.st_dev == scenario.st_dev &&
-            other.st_ino == scenario.st_ino)
+        if (same_file(names[i], options->asked.file))
             return run_fail(
                 &o->run, EXIT_IO,
                 "stance optimise: %.150s is the scenario and would be written over: give another "

@@ -19,7 +19,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 /* ---- whether it is of this scenario -------------------------------------------------------- */
@@ -195,7 +194,6 @@ static bool open_smaller(struct run *run)
     const char *const from = run->options.from;
     const size_t size = sizeof run->old_file;
     char directory[sizeof run->old_file];
-    struct stat first, second;
 
     if (from && strlen(from) >= size - 8)
         return run_fail(run, EXIT_IO, "stance run: the name of the results file is too long");
@@ -203,9 +201,7 @@ static bool open_smaller(struct run *run)
         snprintf(run->old_file, size, "%s", from);
     else
         snprintf(run->old_file, size, "results/%s.h5", run->scenario->name);
-    if (strcmp(run->old_file, run->file) == 0 ||
-        (stat(run->old_file, &first) == 0 && stat(run->file, &second) == 0 &&
-         first.st_dev == second.st_dev && first.st_ino == second.st_ino))
+    if (strcmp(run->old_file, run->file) == 0 || same_file(run->old_file, run->file))
         return run_fail(run, EXIT_USAGE,
                         "stance run: --extend makes a new file: -o and --from must differ");
     /* Nobody writes the file meanwhile: by a lock, or because nobody here could. */

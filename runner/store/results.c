@@ -444,17 +444,22 @@ static bool read_all(struct results *r, stance_message *message)
     return file_checksums_verify(r->id, r->file, false, message) && read_axes(r, message);
 }
 
+void results_stem(const char *file, char name[RESULTS_NAME])
+{
+    const char *const slash = strrchr(file, '/');
+    snprintf(name, RESULTS_NAME, "%s", slash ? slash + 1 : file);
+    char *const dot = strrchr(name, '.');
+    if (dot && dot != name && strcmp(dot, ".h5") == 0)
+        *dot = '\0';
+}
+
 bool results_open(struct results *r, const char *file, stance_message *message)
 {
     *r = (struct results){.id = -1, .sample = -1};
     if (strlen(file) >= sizeof r->file)
         return complain(message, "%.60s...: %s", file, strerror(ENAMETOOLONG));
     snprintf(r->file, sizeof r->file, "%s", file);
-    const char *slash = strrchr(file, '/');
-    snprintf(r->name, sizeof r->name, "%s", slash ? slash + 1 : file);
-    char *dot = strrchr(r->name, '.');
-    if (dot && dot != r->name && strcmp(dot, ".h5") == 0)
-        *dot = '\0';
+    results_stem(file, r->name);
     sandbox_limit(true);
     bool good = read_all(r, message);
     sandbox_limit(false);

@@ -30,7 +30,7 @@ extern const char *const results_kind_names[RESULTS_KIND_COUNT];
 const char *results_outcome_word(size_t k);
 const char *results_kind_word(size_t k);
 
-enum { RESULTS_TEXT = 160 };
+enum { RESULTS_TEXT = 160, RESULTS_NAME = 256 };
 
 /* One dimension of the cases. */
 struct results_axis {
@@ -54,7 +54,7 @@ struct results_varied {
 
 struct results {
     char file[1024];
-    char name[256]; /* file name without directory and .h5 */
+    char name[RESULTS_NAME]; /* file name without directory and .h5 */
     char title[256], version[64], revision[96], date[40], hosts[256];
     int ranks;
     char *scenario;        /* text */
@@ -81,6 +81,8 @@ struct results {
  * designs and its scenario, and over each case: cases that do not verify count as pending, and a
  * line on standard error says so. On failure nothing is left open. */
 bool results_open(struct results *r, const char *file, stance_message *message);
+/* The name of a file without its directory and .h5. */
+void results_stem(const char *file, char name[RESULTS_NAME]);
 void results_close(struct results *r);
 /* That line; nothing when every case verifies. */
 void results_warn(const struct results *r);
