@@ -302,7 +302,7 @@ static bool resume(size_t which, stance_message *message)
     bool single = strstr(good[which].name, "case") != NULL;
     fine = fine && plan_make(&plan, s, single, only, single, &error);
     if (fine) {
-        fine = store_open(&store, path, &plan, 1, message) &&
+        fine = store_open(&store, path, &plan, NULL, message) &&
                store_read_designs(store, &plan, message);
         for (uint64_t row = 0; fine && row < plan.rows; row += STORE_ROWS) {
             struct store_found found[STORE_ROWS];

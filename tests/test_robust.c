@@ -54,7 +54,7 @@ TEST(test_pulse)
     heartbeat_read(place->file, &note);
     assert_false(note.running || note.exists);
     parallel_share(&alone);
-    assert_true(lock_take(&lock, place->file, &message));
+    assert_true(lock_take(&lock, place->file, false, &message));
     assert_true(heartbeat_begin(&heartbeat, &lock, &alone, "testing"));
     put(place->file, "results");
     heartbeat_guard(&heartbeat, place->file);

@@ -394,7 +394,7 @@ TEST(test_rows)
         const size_t n = 1 + (size_t)(first * 37 % (60 - first));
         unlink(f->file);
         assert_true(store_create(f->file, &plan, NULL, 1, "here", &message));
-        assert_true(store_open(&store, f->file, &plan, 1, &message));
+        assert_true(store_open(&store, f->file, &plan, NULL, &message));
         assert_whole(store, 0, 60, false);
         write_rows(store, first, n);
         assert_whole(store, first, n, true);
@@ -418,7 +418,7 @@ TEST(test_listed_rows)
     plan.record_rows = 0, plan.record_cases = 0;
     unlink(f->file);
     assert_true(store_create(f->file, &plan, NULL, 1, "here", &message));
-    assert_true(store_open(&store, f->file, &plan, 1, &message));
+    assert_true(store_open(&store, f->file, &plan, NULL, &message));
     for (uint64_t third = 0; third < 3; third++) {
         const uint64_t begin = 20 * third, step = 7 - 3 * third;
         stance_result results[20];
@@ -445,7 +445,7 @@ TEST(test_designs_stored)
     assert_true(store_create(f->file, &f->plan, NULL, 1, "here", &message));
     copy.design = calloc(4, copy.design_size * sizeof *copy.design);
     copy.design_status = calloc(4, 1);
-    assert_true(store_open(&store, f->file, &f->plan, 1, &message));
+    assert_true(store_open(&store, f->file, &f->plan, NULL, &message));
     assert_true(store_read_designs(store, &copy, &message));
     assert_true(store_close(store, &message));
     assert_memory_equal(copy.design_status, f->plan.design_status, 4);
@@ -482,7 +482,7 @@ TEST(test_plain_scene)
     assert_true(plan_check_cases(&plan, &error));
     unlink(f->file);
     assert_true(store_create(f->file, &plan, NULL, 1, "here", &message));
-    assert_true(store_open(&store, f->file, &plan, 1, &message));
+    assert_true(store_open(&store, f->file, &plan, NULL, &message));
     for (int i = 0; i < 42; i++)
         data[i] = nothing;
     for (uint64_t row = 0; row < 3; row++) {
@@ -602,20 +602,20 @@ TEST(test_lock)
     char found[LOCK_NOTE];
     stance_message message;
     assert_false(lock_is_held(f->file, found));
-    assert_true(lock_take(&lock, f->file, &message));
+    assert_true(lock_take(&lock, f->file, false, &message));
     lock_write_note(&lock, "a long note");
     lock_write_note(&lock, "a note");
     assert_true(lock_is_held(f->file, found));
     assert_int_equal(strspn(found, "a note"), strlen(found) - 1); /* blanks and a line's end */
     assert_memory_equal(found, "a note ", 7);
-    assert_false(lock_take(&second, f->file, &message));
+    assert_false(lock_take(&second, f->file, false, &message));
     assert_non_null(strstr(message.text, "another process"));
     /* Its file is removed: it is taken anew, unless another was quicker. */
     unlink(lock.file);
     assert_true(lock_keep(&lock, &message));
     assert_true(lock_is_held(f->file, found));
     unlink(lock.file);
-    assert_true(lock_take(&second, f->file, &message));
+    assert_true(lock_take(&second, f->file, false, &message));
     assert_false(lock_keep(&lock, &message));
     assert_non_null(strstr(message.text, "another process"));
     lock_release(&second);
@@ -624,14 +624,14 @@ TEST(test_lock)
     /* The death of its owner releases it. */
     pid_t child = fork();
     if (child == 0) {
-        lock_take(&lock, f->file, &message);
+        lock_take(&lock, f->file, false, &message);
         _exit(0);
     }
     waitpid(child, NULL, 0);
     assert_int_equal(access(lock.file, F_OK), 0);
     assert_false(lock_is_held(f->file, found));
-    assert_true(lock_take(&lock, f->file, &message));
+    assert_true(lock_take(&lock, f->file, false, &message));
     lock_release(&lock);
-    assert_false(lock_take(&lock, "/nowhere/file.h5", &message));
+    assert_false(lock_take(&lock, "/nowhere/file.h5", false, &message));
     assert_non_null(strstr(message.text, "No such file"));
 }

@@ -79,7 +79,7 @@ static int make_fixture(void **state)
     if (!plan_make(&f->plan, &f->scenario, false, 0, false, &error) ||
         !plan_compute_designs(&f->plan, &f->parallel, &error) ||
         !store_create(f->file, &f->plan, NULL, 1, "here", &message) ||
-        !store_open(&f->store, f->file, &f->plan, 1, &message))
+        !store_open(&f->store, f->file, &f->plan, NULL, &message))
         return -1;
     f->work = (struct work){.plan = &f->plan,
                             .store = f->store,

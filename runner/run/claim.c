@@ -145,7 +145,7 @@ bool run_claim_file(struct run *run, bool *exists)
         good = complain(message, "cannot make the directory results: %s", strerror(errno));
     /* A link that is replaced is a file of its own; through others the file they name is written.
      */
-    if (!good || !(o->force ? lock_take : lock_take_through)(&run->lock, file, message))
+    if (!good || !lock_take(&run->lock, file, !o->force, message))
         return run_fail_io(run);
     return heartbeat_begin(&run->heartbeat, &run->lock, &run->parallel, "starting") ||
            run_fail(run, EXIT_IO, "stance %s: not enough memory", run->argv[0]);

@@ -207,7 +207,7 @@ static bool open_smaller(struct run *run)
     /* Nobody writes the file meanwhile: by a lock, or because nobody here could. */
     store_directory(run->old_file, directory, sizeof directory);
     if (access(directory, W_OK) == 0 &&
-        !lock_take_through(&run->old_lock, run->old_file, &run->message))
+        !lock_take(&run->old_lock, run->old_file, true, &run->message))
         return run_fail_io(run);
     return look_into(run, run->old_file, true);
 }

@@ -275,12 +275,9 @@ static void stage_open(struct run *run)
 {
     if (run->parallel.rank == 0)
         heartbeat_guard(&run->heartbeat, run->file);
-    const bool one_host = parallel_on_one_host(&run->parallel);
-    if (!store_open(&run->store, run->file, &run->plan, run->parallel.size, &run->message) ||
+    if (!store_open(&run->store, run->file, &run->plan, &run->parallel, &run->message) ||
         !store_read_designs(run->store, &run->plan, &run->message))
         run_fail_io(run);
-    else
-        store_set_spans(run->store, one_host);
 }
 
 static void stage_compute(struct run *run)

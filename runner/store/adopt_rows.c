@@ -235,7 +235,7 @@ bool adopt_make(const char *file, const struct plan *plan, const struct adopted_
         unlink(made);
     if (!store_create(made, plan, filling->before, filling->ranks, filling->hosts, message))
         return false;
-    bool good = store_open(&store, made, plan, 1, message) &&
+    bool good = store_open(&store, made, plan, NULL, message) &&
                 filling->fill(filling->context, store, message);
     if (good)
         good = store_close(store, message);

@@ -7,7 +7,6 @@
 #include "runner/base/sandbox.h"
 #include "runner/base/words.h"
 
-#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -102,8 +101,8 @@ static int work(void *context)
     struct lock lock = {.descriptor = -1};
     bool good = merge_plan(&m, request->files, request->count);
     m.usage = m.usage && !good;
-    good =
-        good && lock_take(&lock, request->output, &m.message) && merge_write(&m, request->output);
+    good = good && lock_take(&lock, request->output, false, &m.message) &&
+           merge_write(&m, request->output);
     lock_release(&lock);
     if (good)
         print_result(request, &m);
@@ -116,10 +115,6 @@ static int work(void *context)
 
 static int start(struct request *request)
 {
-    if (strlen(request->output) >= 1024) {
-        fprintf(stderr, "stance merge: %.60s...: %s\n", request->output, strerror(ENAMETOOLONG));
-        return EXIT_USAGE;
-    }
     for (size_t p = 1; p < request->count; p++) {
         for (size_t q = 0; q < p; q++) {
             if (strcmp(request->files[p], request->files[q]) == 0) {

@@ -36,20 +36,14 @@ static const char *behind_links(const char *file, char real[PATH_MAX])
     return link && realpath(file, real) ? real : file;
 }
 
-bool lock_take_through(struct lock *lock, const char *file, stance_message *message)
+bool lock_take(struct lock *lock, const char *file, bool through, stance_message *message)
 {
     char real[PATH_MAX];
-    const char *name = behind_links(file, real);
+    const char *const name = through ? behind_links(file, real) : file;
     lock->descriptor = -1;
     if (strlen(name) + sizeof ".lock" > sizeof lock->file)
         return failed(message, file, ENAMETOOLONG);
-    return lock_take(lock, name, message);
-}
-
-bool lock_take(struct lock *lock, const char *file, stance_message *message)
-{
-    lock->descriptor = -1;
-    snprintf(lock->file, sizeof lock->file, "%s.lock", file);
+    snprintf(lock->file, sizeof lock->file, "%s.lock", name);
     for (;;) {
         struct flock range = {.l_type = F_WRLCK, .l_whence = SEEK_SET};
         int descriptor = open(lock->file, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
@@ -76,7 +70,7 @@ bool lock_keep(struct lock *lock, stance_message *message)
         return true;
     const int before = lock->descriptor;
     snprintf(file, sizeof file, "%.*s", (int)(strlen(lock->file) - strlen(".lock")), lock->file);
-    const bool taken = lock_take(lock, file, message);
+    const bool taken = lock_take(lock, file, false, message);
     close(before);
     return taken;
 }

@@ -10,15 +10,14 @@
 #include "engine/stance.h"
 
 struct lock {
-    int descriptor; /* -1: not held */
-    char file[1100];
+    int descriptor;      /* -1: not held */
+    char file[1024 + 5]; /* FILE.lock */
 };
 
-/* false: another process writes FILE, or the lock file cannot be made; *message says which. */
-bool lock_take(struct lock *lock, const char *file, stance_message *message);
-/* The same of the file that is written through FILE: where FILE is a symbolic link, the one that it
- * names, lest two jobs write one file under two names. */
-bool lock_take_through(struct lock *lock, const char *file, stance_message *message);
+/* false: another process writes FILE, or the lock file cannot be made; *message says which.
+ * `through`: where FILE is a symbolic link, of the file that it names, which is written, lest two
+ * jobs write one file under two names. */
+bool lock_take(struct lock *lock, const char *file, bool through, stance_message *message);
 void lock_release(struct lock *lock);
 
 /* Sees to it that the file behind the lock still has its name; takes the lock anew when somebody

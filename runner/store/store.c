@@ -225,10 +225,12 @@ static bool open_store(struct store **result, hid_t id, const char *file, const 
     return open_columns(store, message) && open_trajectories(store, message);
 }
 
-bool store_open(struct store **result, const char *file, const struct plan *plan, int ranks,
-                stance_message *message)
+bool store_open(struct store **result, const char *file, const struct plan *plan,
+                const struct parallel *parallel, stance_message *message)
 {
     /* Collective: before anything that can fail alone. */
+    const bool spans = parallel && parallel_on_one_host(parallel);
+    const int ranks = parallel ? parallel->size : 1;
     hid_t access = store_serial_access(), id = -1;
     bool good = access >= 0;
 #if defined(STANCE_MPI) && defined(H5_HAVE_PARALLEL)
@@ -237,7 +239,10 @@ bool store_open(struct store **result, const char *file, const struct plan *plan
     if (good)
         id = H5Fopen(file, H5F_ACC_RDWR, access);
     hdf_close(access);
-    return open_store(result, id, file, plan, ranks, message);
+    good = open_store(result, id, file, plan, ranks, message);
+    if (good)
+        (*result)->spans = spans;
+    return good;
 }
 
 bool store_open_to_read(struct store **result, const char *file, const struct plan *plan,
@@ -374,11 +379,6 @@ static bool write_span(struct store *store, const struct store_block *block, siz
             memcpy(store_cell(between, c, rows_at(rows, k) - first), store_cell(block, c, slot + k),
                    store->size[c]);
     return store_move_rows(store, between, 0, &span, HDF_WRITE, message);
-}
-
-void store_set_spans(struct store *store, bool spans)
-{
-    store->spans = spans;
 }
 
 bool store_write(struct store *store, struct store_block *block, size_t slot,

@@ -53,6 +53,7 @@
 enum { STORE_ROWS = 256 }; /* most rows in one call of store_verify */
 
 struct plan;        /* plan.h */
+struct parallel;    /* parallel.h */
 struct store;       /* an open file */
 struct store_block; /* rows in memory as they will be in the file, column after column */
 
@@ -111,12 +112,10 @@ bool store_same_points(const char *file, const struct store_origin *origin,
 bool store_read_axes(const char *file, struct scenario_axis *axis, int axes,
                      stance_message *message);
 
-/* Collective when `ranks` > 1: opens a file of this plan for writing. */
-bool store_open(struct store **store, const char *file, const struct plan *plan, int ranks,
-                stance_message *message);
-/* Whether store_write may write back what lies between the rows of a list: only where all ranks see
- * each other's writes at once, on one host, and nobody writes rows between those of a list. */
-void store_set_spans(struct store *store, bool spans);
+/* Collective: opens a file of this plan for writing. `parallel`: the ranks that open it together,
+ * and of which nobody writes rows between those of another's list; NULL: this process alone. */
+bool store_open(struct store **store, const char *file, const struct plan *plan,
+                const struct parallel *parallel, stance_message *message);
 /* Opens one alone and for reading only. */
 bool store_open_to_read(struct store **store, const char *file, const struct plan *plan,
                         stance_message *message);

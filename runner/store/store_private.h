@@ -64,14 +64,15 @@ struct store {
     char file[1024];
     const struct plan *plan;
     hid_t id;
-    int ranks;                    /* that have it open together */
-    bool spans;                   /* see store_set_spans */
-    hid_t column[COLUMNS];        /* -1: not stored */
-    size_t width[COLUMNS];        /* elements per case, and */
-    size_t size[COLUMNS];         /* ... bytes */
-    int64_t no_count;             /* what it has for a count that there is none of: `_FillValue` */
-    struct store_block *checked;  /* [STORE_ROWS], for store_verify; made when it is needed */
-    hid_t trajectory[TRACKS + 1]; /* -1: not stored; the last one is their checksum */
+    int ranks;                   /* that have it open together */
+    bool spans;                  /* store_write may write back what lies between rows of a list: all
+                                  * ranks see each other's writes at once, on one host */
+    hid_t column[COLUMNS];       /* -1: not stored */
+    size_t width[COLUMNS];       /* elements per case, and */
+    size_t size[COLUMNS];        /* ... bytes */
+    int64_t no_count;            /* what it has for a count that there is none of: `_FillValue` */
+    struct store_block *checked; /* [STORE_ROWS], for store_verify; made when it is needed */
+    hid_t trajectory[TRACKS + 1];       /* -1: not stored; the last one is their checksum */
     size_t trajectory_size[TRACKS + 1]; /* elements per case; 0: not stored */
 };
 
