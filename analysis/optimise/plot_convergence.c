@@ -212,7 +212,7 @@ bool plot_search_convergence(const struct search_study *study, const struct plot
     const struct search_file *const f = &study->f;
     struct page page = {.study = study, .scale = study->plain ? 100 : 1};
     struct gnuplot *const g = &page.g;
-    if (!gnuplot_begin(g, plot, "convergence", NULL))
+    if (!gnuplot_begin(g, plot, "convergence"))
         return false;
     gnuplot_say(g, "%zu candidates in %zu ", f->length[SEARCH_CANDIDATE],
                 f->length[SEARCH_GENERATION]);

@@ -116,7 +116,7 @@ bool plot_search_starts(const struct search_study *study, const struct plot *plo
     struct gnuplot *const g = &page.g;
     if (!study->done || varied == 0)
         return true;
-    if (!gnuplot_begin(g, plot, "starts", NULL))
+    if (!gnuplot_begin(g, plot, "starts"))
         return false;
     page.circumstance = search_worst(study, (size_t)f->chosen);
     page.allowed = gnuplot_room(g, starts, sizeof *page.allowed);

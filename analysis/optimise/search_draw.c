@@ -43,7 +43,7 @@ bool plot_search_front(const struct search_front *front, const struct plot *plot
     struct search_curve_row *row[SEARCH_CURVES];
     double most = 0;
     bool limited = true, glued = false, had = true;
-    if (!gnuplot_begin(&g, plot, "front", NULL))
+    if (!gnuplot_begin(&g, plot, "front"))
         return false;
     for (int c = 0; c < SEARCH_CURVES; c++)
         had = (row[c] = gnuplot_room(&g, front->count, sizeof *row[c])) && had;
