@@ -77,9 +77,7 @@ void gnuplot_text(struct gnuplot *g, const char *text, const char *name, ...)
     __attribute__((format(printf, 3, 4)));
 void gnuplot_number(struct gnuplot *g, double value, const char *name, ...)
     __attribute__((format(printf, 3, 4)));
-/* $NAME << EOD; rows of numbers follow, NAN for a gap, up to the next of anything else. A block
- * without rows is given one of NANs: to gnuplot none at all would be an error. */
-void gnuplot_block(struct gnuplot *g, const char *name, ...) __attribute__((format(printf, 2, 3)));
+/* A row of numbers of the last series, NAN for a gap. */
 void gnuplot_row(struct gnuplot *g, const double *values, size_t count);
 #define GNUPLOT_ROW(g, ...)                                                                        \
     gnuplot_row((g), (const double[]){__VA_ARGS__},                                                \
@@ -122,7 +120,9 @@ void gnuplot_word(struct gnuplot *g, double place, const char *text);
 /* The next panel of a chart, of this height in px as long as the page has no other, under a heading
  * ("": none): how panels stand is said in variables of style.gp, columns, chart_width ... */
 void gnuplot_panel(struct gnuplot *g, double height, const char *heading);
-/* What is drawn in it next, a data block as gnuplot's `plot` has it: "using 1:2 with lines". */
+/* What is drawn in it next, as gnuplot's `plot` has it: "using 1:2 with lines"; its rows follow, up
+ * to the next of anything else. One without rows is given one of NANs: to gnuplot none at all would
+ * be an error. */
 void gnuplot_series(struct gnuplot *g, const char *style, ...)
     __attribute__((format(printf, 2, 3)));
 
