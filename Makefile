@@ -159,10 +159,8 @@ $(BUILD)/runner/%.o: runner/%.c $(BUILD)/flags
 $(BUILD)/analysis/%.o: analysis/%.c $(BUILD)/flags
 	@mkdir -p $(@D)
 	$(call QUIET,cc,$@)$(CC) $(CFLAGS) $(SECTIONS) $(ALLFLAGS) $(PROGRAM_CFLAGS) -MMD -MP -c -o $@ $<
-# Pictures' scripts, embedded in the objects of their names; those that all share in gnuplot.o.
-scripts := $(wildcard analysis/*/plot_*.gp)
-$(foreach b,$(BUILD) $(BUILD)/fuzz,$(eval $(scripts:%.gp=$(b)/%.o): $(b)/%.o: %.gp) \
-    $(eval $(b)/analysis/draw/gnuplot.o: $(wildcard analysis/draw/*.gp)))
+# The scripts of pictures, embedded in gnuplot.o.
+$(foreach b,$(BUILD) $(BUILD)/fuzz,$(eval $(b)/analysis/draw/gnuplot.o: $(wildcard analysis/draw/*.gp)))
 # The page that `stance view` fills, and the engines that it may carry, where `make web` has made them.
 PAGE = $(wildcard $(WEB)/page.html)
 $(BUILD)/analysis/view/page_template.o: PROGRAM_CFLAGS += $(PAGE:%=-DSTANCE_PAGE='"%"' -DSTANCE_PAGE_ENGINES='$(foreach s,$(STRUCTURES) $(RUNTIME),ENGINE($(s)))')
@@ -342,10 +340,6 @@ $(BUILD)/tests/bench_%: tests/bench_%.c $(product)
 	@mkdir -p $(@D)
 	$(call QUIET,cc,$@)$(CC) $(KERNEL_CFLAGS) $(ALLFLAGS) $(BENCH_FLAGS) $(PROGRAM_CFLAGS) -MMD -MP -MF $@.d -o $@ $< \
 	    $(test_objects) $(product) $(test_ldflags) $(LDFLAGS) $(LIBS)
-
-# Their pictures' scripts are embedded.
-$(BUILD)/tests/bench_truths: tests/plot_truths.gp
-$(BUILD)/tests/bench_peers: tests/plot_peers.gp
 
 # Large jobs on a simulated clock.
 $(BUILD)/tests/simulate.o: tests/simulate.c $(BUILD)/flags

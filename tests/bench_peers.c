@@ -18,8 +18,6 @@
 
 #include <inttypes.h>
 
-GNUPLOT_SCRIPT(plot_peers_gp, "tests/plot_peers.gp");
-
 enum { PEERS = 4 };
 static const double budget = 0.3; /* s per method and step */
 
@@ -404,6 +402,7 @@ struct series {
     const stance_method *method;
     const struct peer *peer;
     bool usual;
+    size_t style; /* colour and mark */
 };
 
 static bool belongs(const struct line *line, const struct series *s)
@@ -412,7 +411,8 @@ static bool belongs(const struct line *line, const struct series *s)
            line->usual == s->usual;
 }
 
-/* Cost, value, whether that is more than none, cases given up. No cell unlike is drawn as one. */
+/* Logarithms of cost and value, whether that is more than none, cases given up. No cell unlike is
+ * drawn as one. */
 static void put_point(struct gnuplot *g, const struct line *line, int panel)
 {
     const struct accuracy_row *const row = &line->row;
@@ -421,27 +421,25 @@ static void put_point(struct gnuplot *g, const struct line *line, int panel)
                          : panel == 0 ? row->position
                                       : row->velocity;
     const bool none = a.labels && row->compared > 0 && row->differ == 0;
-    GNUPLOT_ROW(g, cost_of(line),
-                none                        ? 1 / compared
-                : compared > 0 && value > 0 ? value
-                                            : NAN,
+    GNUPLOT_ROW(g, log10(cost_of(line)),
+                log10(none                        ? 1 / compared
+                      : compared > 0 && value > 0 ? value
+                                                  : NAN),
                 !none, (double)row->failed);
 }
 
-/* Points of a series, and what its line goes through: all of them, of a peer's many settings their
- * front by cost. */
-static void put_series(struct gnuplot *g, const struct series *s, size_t m, int panel)
+/* What the line of a series goes through, all of its points, of a peer's many settings their front
+ * by cost; and the points. */
+static void put_series(struct gnuplot *g, const struct series *s, int panel)
 {
-    gnuplot_block(g, "errors%zu_%d", m, panel + 1);
-    for (size_t k = 0; k < count; k++)
-        if (belongs(&lines[k], s))
-            put_point(g, &lines[k], panel);
-    GNUPLOT_ROW(g, NAN, NAN, 1, 0);
-    gnuplot_block(g, "line%zu_%d", m, panel + 1);
+    const char *const hue = gnuplot_hue(s->style);
+    const bool all = s->peer && !s->usual; /* of them */
+    gnuplot_series(g, "using 1:2 with lines lc rgb %s lw %g dt %d", hue, s->peer ? 2.2 : 1.6,
+                   s->usual ? 3 : 1);
     double last = 0;
     for (size_t k = 0; k < count; k++) {
         const struct line *next = belongs(&lines[k], s) ? &lines[k] : NULL;
-        if (s->peer && !s->usual) {
+        if (all) {
             next = NULL;
             for (size_t j = 0; j < count; j++)
                 if (belongs(&lines[j], s) && lines[j].front && cost_of(&lines[j]) > last &&
@@ -452,10 +450,19 @@ static void put_series(struct gnuplot *g, const struct series *s, size_t m, int 
         if (next)
             put_point(g, next, panel);
     }
-    GNUPLOT_ROW(g, NAN, NAN, 1, 0);
+    gnuplot_series(g,
+                   "using 1:($3 > 0 ? NaN : $2) with points lc rgb %1$s pt %2$d ps %4$g notitle, "
+                   "'' using 1:($3 > 0 ? $2 : NaN) with points lc rgb %1$s pt %3$d ps %5$g "
+                   "notitle, '' using 1:($4 > 0 ? $2 : NaN) with points lc rgb '#b00000' pt 2 ps "
+                   "1.6 lw 1.6",
+                   hue, gnuplot_mark(s->style) - 1, gnuplot_mark(s->style), all ? 0.7 : 1.0,
+                   all ? 0.5 : 0.9);
+    for (size_t k = 0; k < count; k++)
+        if (belongs(&lines[k], s))
+            put_point(g, &lines[k], panel);
 }
 
-static void put_legend(struct gnuplot *g, const struct series *s, size_t m)
+static void put_legend(struct gnuplot *g, const struct series *s)
 {
     char text[PEER_NAME + PEER_REASON];
     uint64_t failed = 0, all = 0;
@@ -468,7 +475,7 @@ static void put_legend(struct gnuplot *g, const struct series *s, size_t m)
     }
     snprintf(text, sizeof text, "%s%s", s->peer ? s->peer->name : s->method->name,
              s->usual ? ", defaults" : "");
-    gnuplot_text(g, text, "series_name[%zu]", m);
+    gnuplot_legend(g, gnuplot_hue(s->style), 0, 0, text, "");
     if (s->peer && s->peer->cannot[0])
         snprintf(text, sizeof text, "cannot: %.40s", s->peer->cannot);
     else
@@ -479,29 +486,28 @@ static void put_legend(struct gnuplot *g, const struct series *s, size_t m)
             snprintf(text, sizeof text, "order %.2f of %s %.0e ... %.0e", a.order[k].position,
                      a.order[k].by_tolerance ? "tolerance" : "step", a.order[k].from,
                      a.order[k].to);
-    gnuplot_text(g, text, "about[%zu]", 2 * m - 1);
-    snprintf(text, sizeof text, "gave up in %" PRIu64 " of %" PRIu64 " cases", failed, all);
-    gnuplot_text(g, failed > 0 ? text : "", "about[%zu]", 2 * m);
+    gnuplot_about(g, "%s", text);
+    if (failed > 0)
+        gnuplot_about(g, "gave up in %" PRIu64 " of %" PRIu64 " cases", failed, all);
 }
 
 static bool draw(const struct plot *plot)
 {
     enum { MOST = ACCURACY_METHODS + 2 * PEERS };
     struct series series[MOST];
-    size_t style[MOST], n = 0;
+    size_t n = 0;
     struct gnuplot g;
     for (size_t m = 0; stance_methods()[m]; m++)
         for (size_t k = 0; k < a.rows; k++)
             if (lines[k].row.method == stance_methods()[m] && k != a.truth) {
-                style[n] = m % 5 + 1; /* as in the charts of `stance bench accuracy` */
-                series[n++] = (struct series){.method = stance_methods()[m]};
+                series[n++] = /* styles as in the charts of `stance bench accuracy` */
+                    (struct series){.method = stance_methods()[m], .style = m % 5};
                 break;
             }
-    for (size_t p = 0; p < 2 * asked; p++) {
-        style[n] = 6 + p / 2 % 2;
-        series[n++] = (struct series){.peer = &peers[p / 2], .usual = p % 2};
-    }
-    if (!gnuplot_begin(&g, plot, "", plot_peers_gp))
+    for (size_t p = 0; p < 2 * asked; p++)
+        series[n++] =
+            (struct series){.peer = &peers[p / 2], .usual = p % 2, .style = 5 + p / 2 % 2};
+    if (!gnuplot_begin(&g, plot, ""))
         return false;
     gnuplot_say(&g,
                 "Error against cost. Reference: %s, tolerance %g. A cross marks points where cases "
@@ -509,37 +515,34 @@ static bool draw(const struct plot *plot)
                 a.row[a.truth].method->name, a.row[a.truth].tolerance,
                 a.labels ? "; open symbols: none unlike, drawn where one cell is."
                          : ". Errors of exactly zero are not drawn.");
-    gnuplot_set(&g, "panels = %d; labels = %d; series = %zu", a.labels ? 1 : 2, a.labels, n);
-    gnuplot_set(&g,
-                "array series_name[%zu]\narray style[%zu]\narray peer[%zu]\narray about[%zu]\n"
-                "array error_low[2]\narray error_high[2]",
-                n, n, n, 2 * n);
-    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {0};
+    struct plot_range range[3] = {PLOT_NOTHING, PLOT_NOTHING, PLOT_NOTHING};
     for (size_t k = 0; k < count; k++) {
         const struct accuracy_row *const row = &lines[k].row;
         const double share = fmax((double)row->differ, 1) / (double)row->compared;
         const double shown[] = {a.labels ? share : row->position, row->velocity,
                                 cost_of(&lines[k])};
-        for (size_t i = 0; i < 3 && k != a.truth && row->compared > 0; i++) {
-            low[i] = shown[i] > 0 ? fmin(low[i], shown[i]) : low[i];
-            high[i] = fmax(high[i], shown[i]);
-        }
+        for (size_t i = 0; i < 3 && k != a.truth && row->compared > 0; i++)
+            plot_widen(&range[i], log10(shown[i]));
     }
-    for (int i = 0; i < 3; i++) { /* of nothing any range will do */
-        const char *const name = i < 2 ? "error_%s[%d]" : "cost_%s";
-        gnuplot_number(&g, low[i] <= high[i] ? low[i] : 0.2, name, "low", i + 1);
-        gnuplot_number(&g, low[i] <= high[i] ? high[i] : 6, name, "high", i + 1);
+    for (int i = 0; i < 3; i++) /* of nothing any range will do */
+        range[i] = range[i].low <= range[i].high
+                       ? (struct plot_range){range[i].low - 0.22, range[i].high + 0.23}
+                       : (struct plot_range){-0.9, 1};
+    gnuplot_set(&g, "columns = 2; chart_width = 400");
+    gnuplot_axis(&g, 'x', PLOT_LOG, range[2], "cost: microseconds of one core per simulated second",
+                 "");
+    for (int p = 0; p < (a.labels ? 1 : 2); p++) {
+        gnuplot_panel(&g, 380, "");
+        gnuplot_axis(&g, 'y', PLOT_LOG, range[p],
+                     a.labels ? "share of cells unlike the reference"
+                     : p == 0 ? "largest error of a coordinate (m, rad)"
+                              : "mean over time of the velocity error (m/s, rad/s)",
+                     "");
+        for (size_t m = 0; m < n; m++)
+            put_series(&g, &series[m], p);
     }
-    for (size_t m = 1; m <= n; m++) {
-        const struct series *const s = &series[m - 1];
-        put_legend(&g, s, m);
-        gnuplot_set(&g, "style[%zu] = %zu; peer[%zu] = %d", m, style[m - 1], m,
-                    !s->peer   ? 0
-                    : s->usual ? 2
-                               : 1);
-        for (int p = 0; p < (a.labels ? 1 : 2); p++)
-            put_series(&g, s, m, p);
-    }
+    for (size_t m = 0; m < n; m++)
+        put_legend(&g, &series[m]);
     return gnuplot_end(&g);
 }
 

@@ -33,8 +33,6 @@
 #include <string.h>
 #include <sys/stat.h>
 
-GNUPLOT_SCRIPT(plot_truths_gp, "tests/plot_truths.gp");
-
 enum { TEXTS = 12, METHODS = 16 };
 
 struct texts {
@@ -438,24 +436,32 @@ static bool draw(struct look *look, stance_message *message)
                               .look = look,
                               .message = message};
     struct gnuplot g;
-    if (!gnuplot_directory(look->directory) || !gnuplot_begin(&g, &plot, "", plot_truths_gp))
+    if (!gnuplot_directory(look->directory) || !gnuplot_begin(&g, &plot, ""))
         return false;
     gnuplot_say(&g, "Error of each method; grey: within the error bar of what is known. A cross at "
                     "the right end: no number");
-    gnuplot_set(&g, "rows = %zu; methods = %zu\narray name[%zu]", rows, methods, rows);
-    gnuplot_block(&g, "bars");
+    gnuplot_set(&g, "chart_width = 560");
+    gnuplot_axis(&g, 'x', PLOT_LOG, (struct plot_range){log10(4e-17), 3},
+                 "error, in the unit of what is read", "");
+    gnuplot_axis(&g, 'y', PLOT_LIST, (struct plot_range){0.4, (double)rows + 0.6}, "", "");
     for (size_t i = 0; i < rows; i++)
-        GNUPLOT_ROW(&g, truths[i].bar > 0 ? truths[i].bar : NAN, (double)(i + 1));
+        gnuplot_word(&g, (double)(rows - i), truths[i].name);
+    gnuplot_panel(&g, fmax(17 * (double)rows + 12, 110), "");
+    gnuplot_series(&g, "using 1:2:(-17):1:($2-0.5):($2+0.5) with boxxyerror fs solid noborder lc "
+                       "rgb 0xdedede");
     for (size_t i = 0; i < rows; i++)
-        gnuplot_text(&g, truths[i].name, "name[%zu]", i + 1);
+        GNUPLOT_ROW(&g, truths[i].bar > 0 ? log10(truths[i].bar) : NAN, (double)(rows - i));
     for (size_t m = 0; m < methods; m++) {
-        static const int markers[] = {7, 5, 9, 11, 13, 15, 2};
-        gnuplot_legend(&g, gnuplot_hue(m), 0, markers[m % 7], method[m]->name, "");
-        gnuplot_block(&g, "errors%zu", m + 1);
+        const double aside = 0.1 * (0.5 * (double)(methods - 1) - (double)m);
+        gnuplot_legend(&g, gnuplot_hue(m), 0, gnuplot_mark(m), method[m]->name, "");
+        gnuplot_series(&g,
+                       "using 1:2 with points lc rgb %1$s pt %2$d ps 0.8 notitle, '' using ($3 > 0 "
+                       "? 2.7 : NaN):2 with points lc rgb %1$s pt 2 ps 0.7 lw 1.4",
+                       gnuplot_hue(m), gnuplot_mark(m));
         for (size_t i = 0; i < rows; i++) {
             const double error = fabs(reached[i * methods + m].value - truths[i].value);
-            GNUPLOT_ROW(&g, isnan(error) ? NAN : fmin(fmax(error, least), most), (double)(i + 1),
-                        isnan(error));
+            GNUPLOT_ROW(&g, isnan(error) ? NAN : log10(fmin(fmax(error, least), most)),
+                        (double)(rows - i) + aside, isnan(error));
         }
     }
     return gnuplot_end(&g);

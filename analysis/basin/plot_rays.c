@@ -215,7 +215,7 @@ static void put_legend(struct page *page)
 static bool draw(const struct plot *plot, const struct basin_rays *rays)
 {
     struct page page = {.rays = rays};
-    if (!gnuplot_begin(&page.g, plot, "rays", NULL))
+    if (!gnuplot_begin(&page.g, plot, "rays"))
         return false;
     page.curves = rays->rows < CURVES ? rays->rows : CURVES;
     seek_nearest(&page);

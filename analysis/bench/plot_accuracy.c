@@ -116,7 +116,7 @@ bool accuracy_plot(const struct accuracy *a, const struct plot *plot)
     size_t style[ACCURACY_METHODS + 1];
     const size_t methods = list_methods(a, method, style);
 
-    if (!gnuplot_begin(&g, plot, "", NULL))
+    if (!gnuplot_begin(&g, plot, ""))
         return false;
     gnuplot_say(&g,
                 "Error against cost. Reference: %s, tolerance %g. %llu cases per point; a cross "

@@ -120,7 +120,7 @@ static bool draw_verdicts(struct maps *maps, const struct plot *plot)
     const struct failure *f = maps->f;
     const bool step = strcmp(maps->across.axis->name, "method.step") == 0 ||
                       strcmp(maps->up.axis->name, "method.step") == 0;
-    if (!gnuplot_begin(&maps->g, plot, "", NULL))
+    if (!gnuplot_begin(&maps->g, plot, ""))
         return false;
     gnuplot_say(&maps->g,
                 "%zu cases per map, each with the worst verdict that applies. Reference: "
@@ -138,7 +138,7 @@ static bool draw_energy(struct maps *maps, const struct plot *plot)
 {
     const struct failure *f = maps->f;
     struct gnuplot *const g = &maps->g;
-    if (!gnuplot_begin(g, plot, "energy", NULL))
+    if (!gnuplot_begin(g, plot, "energy"))
         return false;
     gnuplot_say(g, "Energy that the method created: the largest rise above the energy at the start "
                    "and the work done since, as a share of the energy at the start. Less than "

@@ -184,7 +184,7 @@ bool speed_plot(const struct speed_table *table, const struct plot *plot)
     const struct speed_row *row = &table->row[0];
     char heading[160];
 
-    if (!gnuplot_begin(&g, plot, "", NULL))
+    if (!gnuplot_begin(&g, plot, ""))
         return false;
     gnuplot_say(
         &g, "Steps of 1 ms. Medians; bars from the lowest to the highest. %s, %s, revision %s, %s.",

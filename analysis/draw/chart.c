@@ -74,18 +74,13 @@ void gnuplot_arrays(struct gnuplot *g, size_t size, const char *names)
     }
 }
 
-static void put_text(struct gnuplot *g, const char *text)
-{
-    fputs(" = ", g->data);
-    gnuplot_quote(g->data, text);
-    putc('\n', g->data);
-}
-
 void gnuplot_text(struct gnuplot *g, const char *text, const char *name, ...)
 {
     close_block(g);
     PUT_FORMATTED(g, name);
-    put_text(g, text);
+    fputs(" = ", g->data);
+    gnuplot_quote(g->data, text);
+    putc('\n', g->data);
 }
 
 void gnuplot_number(struct gnuplot *g, double value, const char *name, ...)
@@ -99,15 +94,6 @@ void gnuplot_number(struct gnuplot *g, double value, const char *name, ...)
 }
 
 /* ---- rows --------------------------------------------------------------------------------- */
-
-void gnuplot_block(struct gnuplot *g, const char *name, ...)
-{
-    close_block(g);
-    putc('$', g->data);
-    PUT_FORMATTED(g, name);
-    fputs(" << EOD\n", g->data);
-    g->rows = 0;
-}
 
 void gnuplot_row(struct gnuplot *g, const double *values, size_t count)
 {
@@ -209,8 +195,8 @@ void gnuplot_series(struct gnuplot *g, const char *style, ...)
     close_block(g);
     fprintf(g->data, "panel_plot[panels] = panel_plot[panels].\", '$series%d' ", number);
     PUT_FORMATTED(g, style);
-    fputs(" notitle\"\n", g->data);
-    gnuplot_block(g, "series%d", number);
+    fprintf(g->data, " notitle\"\n$series%d << EOD\n", number);
+    g->rows = 0;
 }
 
 /* ---- legend ------------------------------------------------------------------------------- */

@@ -1,6 +1,46 @@
 # chart.gp - a chart: panels in a grid, `columns` across, with axes x under and y beside all of them or axes of their
 # own; the first `leads` panels stand above the grid, one to a row. A panel without an axis y is a strip. Series are drawn
 # in the order in which the data have them.
+
+# ---- what the legend takes of the page: beside the panels legend_width px, or below them, where an asked width has no
+# room for that, legend_height px. `bars`: it has a colour bar, too ----
+legend_below = legend_low || table_columns > 0 || asked_width > 0 && asked_width < 760
+# Dashes are told apart from some length on.
+legend_indent = 22
+do for [k=1:legends] { if (legend_dash[k] > 0) { legend_indent = 52 } }
+entry_width(k) = legend_indent + 8.2*strlen(legend_text[k])
+array entry_x[40]
+array entry_y[40]
+legend_width = bars ? 112 : 0
+f_x = 0
+f_y = 0
+if (legend_head ne '') {
+    legend_head = wrap(legend_head, letters((legend_below && asked_width > 0 ? asked_width : 300) - 2*margin, 11))
+    f_y = 6 + 16*lines(legend_head)
+    legend_width = 7.6*longest_line(legend_head)
+}
+do for [k=1:legends] {
+    if (legend_below && f_x > 0 && f_x + entry_width(k) > (asked_width > 0 ? asked_width : 1120) - 2*margin) { f_x = 0; f_y = f_y + legend_step }
+    entry_x[k] = f_x
+    entry_y[k] = f_y
+    about_height = 14*(lines(legend_about[k]) - 1)
+    if (legend_below && about_height == 0 && !table_columns) { f_x = f_x + entry_width(k) + 20 } else { f_y = f_y + legend_step + about_height; f_x = 0 }
+    legend_width = at_least(legend_width, at_least(entry_width(k), legend_indent + 6.4*longest_line(legend_about[k])))
+}
+if (f_x > 0) { f_y = f_y + legend_step }
+do for [k=1:notes] {
+    note[k] = wrap(note[k], letters((legend_below && asked_width > 0 ? asked_width : 320) - 2*margin, 11))
+    legend_width = legend_width > 7.6*longest_line(note[k]) ? legend_width : 7.6*longest_line(note[k])
+}
+notes_y = f_y
+do for [k=1:notes] { f_y = f_y + 17*lines(note[k]) }
+legend_tall = f_y
+bar_y = at_least(70, f_y + 14)
+legend_height = legend_below ? f_y + (bars ? 90 : 0) + 8 + table_top : 0
+# What it takes of the width, its margins included; below, half a label of a tic at the right end is beyond the panel.
+legend_room = legend_below ? margin + 10 : 20 + legend_width + margin
+
+# ---- where panels stand ----
 columns = at_most(columns, panels - leads)
 own_x = 0; own_y = 0; logs = 0; headed = 0; asides = 0
 do for [p=1:panels] {
@@ -64,7 +104,40 @@ do for [r=1:rows] {
 do for [p=1:panels] { panel_top[p] = row_top[row_of(p)]; panel_high[p] = row_high[row_of(p)] }
 bottom = row_top[rows] + row_high[rows]
 page_height = at_least(bottom + foot, legend_below || asked_height > 0 ? 0 : row_top[1] + legend_tall + 24)
-load 'page.gp'
+
+# ---- the page, of page_width x page_height px, with title and subtitle, and the legend below the panels where it stands
+# there. A px is px_points pt of a page of an asked size and of PDF, px_dots dots of a PNG ----
+needed(px) = int(px*px_points/72*25.4 + 0.999)
+if ((asked_width > 0 && page_width > asked_width + 1) || (asked_height > 0 && page_height + legend_height > asked_height + 1)) {
+    print sprintf('the picture needs %d x %d mm with text of this size', needed(page_width), needed(page_height + legend_height))
+    exit status 3
+}
+legend_floor = page_height
+page_height = asked_height > 0 ? asked_height : page_height + legend_height
+# Fonts are said in pt of 3/4 of a px, lines of PDF in half pt.
+if (drawing eq 'svg') {
+    set terminal svg size page_width,page_height font font_name.',12' fontscale 1.3333 background '#ffffff' noenhanced
+}
+if (drawing eq 'png') {
+    set terminal pngcairo size int(px_dots*page_width),int(px_dots*page_height) font font_name.',12' fontscale px_dots \
+        linewidth px_dots pointscale px_dots background '#ffffff' noenhanced
+}
+if (drawing eq 'pdf') {
+    set terminal pdfcairo size page_width*px_points/72,page_height*px_points/72 font font_name.',12' fontscale px_points \
+        linewidth 2*px_points pointscale px_points background '#ffffff' noenhanced
+}
+if (drawing eq 'gif') {
+    set terminal gif animate delay delay optimize size page_width,page_height font font_name.',12' \
+        fontscale 1 background '#ffffff' noenhanced
+}
+set output 'picture.'.drawing
+if (drawing ne 'gif') { set multiplot } # each plot is a frame of its own
+set datafile missing 'NaN'
+unset key
+set label title_text(title, title_size) at screen X(margin), Y(margin + 0.6*title_size) left font ',15' front
+set label title_text(subtitle, text_size) at screen X(margin), \
+    Y(margin + lines_height(title_text(title, title_size), title_size) + 2 + 0.6*text_size) \
+    left font ',12' textcolor '#505050' front
 
 do for [p=1:panels] {
     f_middle = panel_top[p] + 0.5*panel_high[p]
@@ -118,7 +191,42 @@ if (ends > 0) {
 }
 legend_x = (leads ? left + lead_width : right + row_head) + 20
 legend_y = row_top[1] + 10
-load 'panels.gp'
+
+# ---- title, labels and objects given so far, with the legend at legend_x, legend_y (its first line) or below the panels;
+# panels follow, over it ----
+if (legend_below) { legend_x = margin; legend_y = legend_floor + 6 + table_top }
+if (legend_head ne '') { set label legend_head at screen X(legend_x), Y(legend_y) left @small front }
+do for [k=1:legends] {
+    eval mark(k, legend_x + entry_x[k], legend_y + entry_y[k])
+    set label legend_text[k] at screen X(legend_x + entry_x[k] + legend_indent), Y(legend_y + entry_y[k]) left font ',12' front
+    if (legend_about[k] ne '') { set label legend_about[k] at screen X(legend_x + entry_x[k] + legend_indent), Y(legend_y + entry_y[k] + 3) left font ',9' front }
+}
+# Entries of the legend as rows of a table.
+f_wide = table_columns > 0 ? (page_width - 2*margin - table_names)/table_columns : 0
+do for [c=1:table_columns] {
+    f_left = margin + table_names + (c - 1)*f_wide
+    set label wrap(table_head[c], f_wide/8) at screen X(f_left), Y(legend_y - 22 - 8*(lines(wrap(table_head[c], f_wide/8)) - 1)) left @small front
+    do for [k=1:legends] {
+        f_cell = (k - 1)*table_columns + c
+        set label cell_text[f_cell] at screen X(f_left), Y(legend_y + entry_y[k]) left @small front
+        set label cell_more[f_cell] at screen X(f_left), Y(legend_y + entry_y[k] + 15) left @small front
+    }
+}
+line = legend_y + notes_y + 2
+do for [k=1:notes] {
+    set label note[k] at screen X(legend_x), Y(line) left @small front
+    line = line + 17*lines(note[k])
+}
+eval panel(0, 0, page_width, page_height)
+unset border; unset tics
+# Nothing of the plot is seen but what was set before; frames of a picture that moves have that each.
+if (frames < 2) {
+    plot [0:1][0:1] 2 notitle
+    unset label; unset object; unset arrow
+}
+set border 31 lw 0.8 lc '#404040'
+set xtics nomirror out scale 0.6 textcolor '#202020'
+set ytics nomirror out scale 0.6 textcolor '#202020'
 
 if (bars) {
     if (!(bar_high > bar_low)) { bar_low = bar_low - 0.5; bar_high = bar_low + 1 } # a range of nothing cannot be drawn

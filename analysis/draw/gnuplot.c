@@ -17,24 +17,20 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-/* Exit statuses: of page.gp where the asked size has no room, of sh. */
+/* Exit statuses: of chart.gp where the asked size has no room, of sh. */
 enum { TOO_SMALL = 3, NOT_FOUND = 127 };
 
-GNUPLOT_SCRIPT(style_gp, "analysis/draw/style.gp");
-GNUPLOT_SCRIPT(legend_gp, "analysis/draw/legend.gp");
-GNUPLOT_SCRIPT(page_gp, "analysis/draw/page.gp");
-GNUPLOT_SCRIPT(panels_gp, "analysis/draw/panels.gp");
-GNUPLOT_SCRIPT(chart_gp, "analysis/draw/chart.gp");
+/* Embeds a script as a constant string; the Makefile has the object made anew when it changes. */
+#define SCRIPT(symbol, path)                                                                       \
+    __asm__(".pushsection .rodata\n" #symbol ":\n.incbin \"" path "\"\n.byte 0\n.popsection\n");   \
+    extern const char symbol[] __attribute__((visibility("hidden")))
+SCRIPT(style_gp, "analysis/draw/style.gp");
+SCRIPT(chart_gp, "analysis/draw/chart.gp");
 
-/* What can be in a picture's directory beside cells; with a text: what all pictures share. */
-static const struct {
-    const char *name, *text;
-} files[] = {{"style.gp", style_gp},   {"legend.gp", legend_gp}, {"page.gp", page_gp},
-             {"panels.gp", panels_gp}, {"script", NULL},         {"picture.gp", NULL},
-             {"data.gp", NULL},        {"drawn.gp", NULL},       {"errors", NULL},
-             {"picture.svg", NULL},    {"picture.png", NULL},    {"picture.pdf", NULL},
-             {"picture.gif", NULL}};
-enum { FILES = sizeof files / sizeof *files };
+/* What can be in a picture's directory beside cells. */
+static const char *const files[] = {"style.gp",    "chart.gp",   "script",      "data.gp",
+                                    "drawn.gp",    "errors",     "picture.svg", "picture.png",
+                                    "picture.pdf", "picture.gif"};
 
 /* ---- directories --------------------------------------------------------------------------- */
 
@@ -56,8 +52,8 @@ static void remove_picture(const char *directory)
 {
     char path[1100];
     int cells = 0;
-    for (size_t i = 0; i < FILES; i++) {
-        snprintf(path, sizeof path, "%s/%s", directory, files[i].name);
+    for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
+        snprintf(path, sizeof path, "%s/%s", directory, files[i]);
         unlink(path);
     }
     do
@@ -156,7 +152,7 @@ static void leave(struct gnuplot *g)
     free(g->text);
 }
 
-bool gnuplot_begin(struct gnuplot *g, const struct plot *plot, const char *name, const char *script)
+bool gnuplot_begin(struct gnuplot *g, const struct plot *plot, const char *name)
 {
     const char *base = kept_in() ? kept_in() : getenv("TMPDIR");
     *g = (struct gnuplot){.plot = plot, .rows = -1};
@@ -170,10 +166,8 @@ bool gnuplot_begin(struct gnuplot *g, const struct plot *plot, const char *name,
         leave(g);
         return false;
     }
-    for (size_t k = 0; k < FILES && files[k].text; k++)
-        put_file(g, files[k].name, files[k].text, strlen(files[k].text));
-    script = script ? script : chart_gp;
-    put_file(g, "picture.gp", script, strlen(script));
+    put_file(g, "style.gp", style_gp, strlen(style_gp));
+    put_file(g, "chart.gp", chart_gp, strlen(chart_gp));
     put_look(g);
     return true;
 }
@@ -254,8 +248,8 @@ static void put_formats(struct gnuplot *g)
     for (int f = 0; f < LOOK_FORMAT_COUNT; f++)
         if (g->plot->look->format[f])
             add_text(script, sizeof script,
-                     "drawing = '%s'\nload 'style.gp'\nload '%s'\nload 'legend.gp'\n"
-                     "load 'picture.gp'\nunset multiplot; unset output; reset\n",
+                     "drawing = '%s'\nload 'style.gp'\nload '%s'\nload 'chart.gp'\n"
+                     "unset multiplot; unset output; reset\n",
                      look_endings[f], drawn && f != LOOK_SVG ? "drawn.gp" : "data.gp");
     put_file(g, "script", script, strlen(script));
     free(drawn);

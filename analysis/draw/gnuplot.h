@@ -1,11 +1,10 @@
 /* gnuplot.h - a picture, drawn by gnuplot in the formats and sizes of a look.
  *
  * A picture is data: panels, axes, series of rows of numbers, a legend, notes. chart.gp lays it
- * out, one panel under the other or in a grid; what has a form of its own has a script NAME.gp
- * beside the NAME.c that hands it the data. What they share stands in style.gp, legend.gp, page.gp
- * and panels.gp here; all are embedded in the program. In a scratch directory gnuplot loads
- * style.gp, the data (variables, data blocks), legend.gp and the script, so that no path of the
- * user's enters a script; the finished files are copied to where they belong. No text is
+ * out, one panel under the other or in a grid, with colours, sizes and tics of style.gp; both are
+ * embedded in the program. In a scratch directory gnuplot loads style.gp, the data (variables, data
+ * blocks) and chart.gp, so that no path of the user's enters a script; the finished files are
+ * copied to where they belong. No text is
  * interpreted: see gnuplot_quote. STANCE_SCRIPTS=DIR in the environment keeps scripts and data in
  * DIR/STEM, where `gnuplot script` draws the picture anew.
  */
@@ -15,12 +14,6 @@
 #include "look.h"
 
 #include "engine/stance.h"
-
-/* Embeds a file of the tree as the constant string `symbol`; the Makefile has objects made anew
- * when the .gp of their name changes. */
-#define GNUPLOT_SCRIPT(symbol, path)                                                               \
-    __asm__(".pushsection .rodata\n" #symbol ":\n.incbin \"" path "\"\n.byte 0\n.popsection\n");   \
-    extern const char symbol[] __attribute__((visibility("hidden")))
 
 /* What is drawn, how, and where the files go: DIRECTORY/STEM-<picture>.svg and .png, or as the look
  * has it. */
@@ -54,10 +47,8 @@ struct gnuplot {
  * nothing can be written there. */
 bool gnuplot_directory(const char *directory);
 
-/* Begins a picture that a script, NULL: chart.gp, draws under the plot's title. False: no scratch
- * directory. */
-bool gnuplot_begin(struct gnuplot *g, const struct plot *plot, const char *name,
-                   const char *script);
+/* Begins a picture under the plot's title. False: no scratch directory. */
+bool gnuplot_begin(struct gnuplot *g, const struct plot *plot, const char *name);
 /* Where the look wants the picture, runs gnuplot, writes the look's file, or
  * DIRECTORY/STEM-NAME.svg, .png ..., and prints the paths. Ends the picture in any case. False: a
  * write failed, gnuplot is missing or complains, or something was missing; the files are as they
@@ -86,9 +77,7 @@ void gnuplot_text(struct gnuplot *g, const char *text, const char *name, ...)
     __attribute__((format(printf, 3, 4)));
 void gnuplot_number(struct gnuplot *g, double value, const char *name, ...)
     __attribute__((format(printf, 3, 4)));
-/* $NAME << EOD; rows of numbers follow, NAN for a gap, up to the next of anything else. A block
- * without rows is given one of NANs: to gnuplot none at all would be an error. */
-void gnuplot_block(struct gnuplot *g, const char *name, ...) __attribute__((format(printf, 2, 3)));
+/* A row of numbers of the last series, NAN for a gap. */
 void gnuplot_row(struct gnuplot *g, const double *values, size_t count);
 #define GNUPLOT_ROW(g, ...)                                                                        \
     gnuplot_row((g), (const double[]){__VA_ARGS__},                                                \
@@ -131,7 +120,9 @@ void gnuplot_word(struct gnuplot *g, double place, const char *text);
 /* The next panel of a chart, of this height in px as long as the page has no other, under a heading
  * ("": none): how panels stand is said in variables of style.gp, columns, chart_width ... */
 void gnuplot_panel(struct gnuplot *g, double height, const char *heading);
-/* What is drawn in it next, a data block as gnuplot's `plot` has it: "using 1:2 with lines". */
+/* What is drawn in it next, as gnuplot's `plot` has it: "using 1:2 with lines"; its rows follow, up
+ * to the next of anything else. One without rows is given one of NANs: to gnuplot none at all would
+ * be an error. */
 void gnuplot_series(struct gnuplot *g, const char *style, ...)
     __attribute__((format(printf, 2, 3)));
 

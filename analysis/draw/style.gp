@@ -42,9 +42,8 @@ Y(px) = 1 - 1.0*px/page_height
 panel(left, top, width, height) = sprintf( \
     "set lmargin at screen %.6f; set rmargin at screen %.6f; set tmargin at screen %.6f; set bmargin at screen %.6f", \
     X(left), X(left + width), Y(top), Y(top + height))
-# What is left for each of n panels in a row, or one above the other, of a size that was asked for; else `own` px.
+# What is left for each of n panels in a row, of a width that was asked for; else `own` px.
 wide(own, n, others) = asked_width > 0 ? at_least(60, 1.0*(asked_width - others)/n) : own
-high(own, n, others) = asked_height > 0 ? at_least(50, 1.0*(asked_height - legend_height - others)/n) : own
 at_least(a, b) = a > b ? a : b
 at_most(a, b) = a < b ? a : b
 colour_bar(left, top, width, height) = sprintf( \
@@ -161,21 +160,20 @@ linear_tics(a, low, high, n, labelled) = (f_round = round_step(low, high, n), f_
     range(a, low, high).(f_two == f_round ? sprintf('%.10g', f_round) : (f_from = tic_first(low, f_two), \
         f_to = tic_last(high, f_two), sprintf('%.10g,%.10g,%.10g', f_from, f_to - f_from, f_to))) \
     .sprintf("; set format %s '%s'", a[1:1], labelled ? '%.10g' : ''))
-# Places are decimal logarithms, low and high too; on an axis that is logarithmic itself they are not.
+# Places are decimal logarithms, low and high too.
 # Less than a decade has round steps, more the mantissas for which there is room.
-log_place(real, power) = real ? 10**power : power
-round_tics(low, high, n, labelled, real) = (f_tics = '', f_count = 0, f_step = round_step(10**low, 10**high, n), \
+round_tics(low, high, n, labelled) = (f_tics = '', f_count = 0, f_step = round_step(10**low, 10**high, n), \
     sum [f_i=int(ceil(10**low/f_step - 1e-9)):int(floor(10**high/f_step + 1e-9))] (f_count = f_count + 1, f_tics = f_tics \
-        .tic(labelled ? sprintf('%g', f_i*f_step) : '', log_place(real, log10(f_i*f_step))), 0), \
-    f_count < 2 && n < 20 ? round_tics(low, high, n + 1, labelled, real) : f_tics[3:*])
-digit_tics(low, high, n, labelled, real) = (f_tics = '', f_count = 0, f_every = int(ceil((high - low)/n)), \
+        .tic(labelled ? sprintf('%g', f_i*f_step) : '', log10(f_i*f_step)), 0), \
+    f_count < 2 && n < 20 ? round_tics(low, high, n + 1, labelled) : f_tics[3:*])
+digit_tics(low, high, n, labelled) = (f_tics = '', f_count = 0, f_every = int(ceil((high - low)/n)), \
     f_digits = n >= 3*(high - low) ? '1 2 5' : n >= 2*(high - low) ? '1 3' : '1', \
     sum [f_i=int(floor(low)):int(ceil(high))] sum [f_k=1:words(f_digits)] (f_place = f_i + log10(word(f_digits, f_k) + 0), \
         f_place > low - 1e-9 && f_place < high + 1e-9 && f_i % f_every == 0 ? (f_count = f_count + 1, f_tics = f_tics \
-            .tic(labelled ? sprintf('%g', 10**f_place) : '', log_place(real, f_place)), 0) : 0), \
-    f_count < 2 && n < 20 ? digit_tics(low, high, n + 1, labelled, real) : f_tics[3:*])
-log_tics(a, low, high, n, labelled, real) = range(a, log_place(real, low), log_place(real, high)).'(' \
-    .(high - low < 0.8 ? round_tics(low, high, n, labelled, real) : digit_tics(low, high, n, labelled, real)).')'
+            .tic(labelled ? sprintf('%g', 10**f_place) : '', f_place), 0) : 0), \
+    f_count < 2 && n < 20 ? digit_tics(low, high, n + 1, labelled) : f_tics[3:*])
+log_tics(a, low, high, n, labelled) = range(a, low, high).'(' \
+    .(high - low < 0.8 ? round_tics(low, high, n, labelled) : digit_tics(low, high, n, labelled)).')'
 # Words, and numbers without an even spacing: every so-manieth of those that the data name.
 list_tics(a, low, high, n, labelled) = value(a.'_words') < 1 ? range(a, low, high).'()' : (f_tics = '', f_every = (value(a.'_words') + int(n) - 1)/int(n), \
     sum [f_i=0:(value(a.'_words') - 1)/f_every] (f_tics = f_tics.sprintf(', %s %s_at[%d]', \
@@ -183,5 +181,5 @@ list_tics(a, low, high, n, labelled) = value(a.'_words') < 1 ? range(a, low, hig
 # Range and tics of the axis that the data describe.
 axis_tics(a, n, labelled) = (f_n = at_least(2, n), \
     value(a.'_scale') eq 'linear' ? linear_tics(a, value(a.'_low'), value(a.'_high'), f_n, labelled) \
-    : value(a.'_scale') eq 'log' ? log_tics(a, value(a.'_low'), value(a.'_high'), f_n, labelled, 0) \
+    : value(a.'_scale') eq 'log' ? log_tics(a, value(a.'_low'), value(a.'_high'), f_n, labelled) \
     : list_tics(a, value(a.'_low'), value(a.'_high'), f_n, labelled))

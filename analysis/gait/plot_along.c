@@ -127,7 +127,7 @@ int along_draw(const struct scenario *s, const struct along *along, const struct
                               .message = &message};
     struct picture p = {.along = along, .gait = gait, .count = count};
     struct plot_range range = PLOT_NOTHING;
-    bool good = gnuplot_begin(&p.g, &plot, "along", NULL);
+    bool good = gnuplot_begin(&p.g, &plot, "along");
     if (good) {
         for (size_t k = 0; k < count; k++)
             plot_widen(&range, gait[k].value);

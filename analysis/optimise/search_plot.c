@@ -260,7 +260,7 @@ static bool plot_convergence(const struct search_study *study, const struct plot
     const struct search_file *const f = &study->f;
     struct course page = {.study = study, .scale = study->plain ? 100 : 1};
     struct gnuplot *const g = &page.g;
-    if (!gnuplot_begin(g, plot, "convergence", NULL))
+    if (!gnuplot_begin(g, plot, "convergence"))
         return false;
     gnuplot_say(g, "%zu candidates in %zu ", f->length[SEARCH_CANDIDATE],
                 f->length[SEARCH_GENERATION]);
@@ -367,7 +367,7 @@ static bool plot_starts(const struct search_study *study, const struct plot *plo
     struct gnuplot *const g = &page.g;
     if (!study->done || varied == 0)
         return true;
-    if (!gnuplot_begin(g, plot, "starts", NULL))
+    if (!gnuplot_begin(g, plot, "starts"))
         return false;
     page.circumstance = search_worst(study, (size_t)f->chosen);
     page.allowed = gnuplot_room(g, starts, sizeof *page.allowed);
@@ -409,7 +409,7 @@ static bool plot_front(const struct search_front *front, const struct plot *plot
     struct row *row[CURVES];
     double most = 0;
     bool limited = true, had = true;
-    if (!gnuplot_begin(&g, plot, "front", NULL))
+    if (!gnuplot_begin(&g, plot, "front"))
         return false;
     for (int c = 0; c < CURVES; c++)
         had = (row[c] = gnuplot_room(&g, front->count, sizeof *row[c])) && had;

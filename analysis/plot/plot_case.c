@@ -146,7 +146,7 @@ static void describe(struct gnuplot *g, const struct plot_case *c)
 bool plot_case_begin(const struct plot_case *c, struct gnuplot *g, const char *name,
                      const char *what)
 {
-    if (!gnuplot_begin(g, c->plot, name, NULL))
+    if (!gnuplot_begin(g, c->plot, name))
         return false;
     gnuplot_say(g, "%s; ", what);
     describe(g, c);

@@ -164,7 +164,7 @@ static bool draw_curves(const struct plot *plot, const struct critical *c, int x
     struct page page = {.c = c, .x = x, .stride = 1};
     char text[400];
     const struct results_axis *const along = &c->r->axis[c->along];
-    if (!gnuplot_begin(&page.g, plot, "critical", NULL))
+    if (!gnuplot_begin(&page.g, plot, "critical"))
         return false;
     plot_axis_make_curve(&page.across, &c->r->axis[x]);
     plot_axis_make_curve(&page.up, along);

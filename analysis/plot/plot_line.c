@@ -36,7 +36,7 @@ static void put_runs(struct line *line)
 /* The page STEM-`name`, its axis and the outcomes. */
 static bool begin(struct line *line, const struct plot *plot, const char *name)
 {
-    if (!gnuplot_begin(&line->g, plot, name, NULL))
+    if (!gnuplot_begin(&line->g, plot, name))
         return false;
     plot_axis_make_curve(&line->along, &plot->r->axis[0]);
     line->points = plot_axis_points(&line->along, &line->g);

@@ -136,7 +136,7 @@ bool plot_maps(const struct plot *plot)
     uint64_t inferred = 0;
     if (r->sample >= 0 || r->axes < 2)
         return true;
-    if (!gnuplot_begin(&g, plot, "map", NULL))
+    if (!gnuplot_begin(&g, plot, "map"))
         return false;
     gnuplot_needs(&g, statistics_inferred(r, &inferred, NULL, plot->message));
     plot_say_became(&g);
@@ -195,7 +195,7 @@ bool plot_number_map(const struct plot *plot, const struct plot_number *number,
     char text[200];
     if (!plot_range_of(&range, values, plot->r->cases))
         return true; /* there is nothing to be drawn */
-    if (!gnuplot_begin(&g, plot, number->picture, NULL))
+    if (!gnuplot_begin(&g, plot, number->picture))
         return false;
     gnuplot_needs(&g, statistics_inferred(plot->r, &inferred, NULL, plot->message));
     const char *const name = number->name ? number->name : number->picture, *const label =

@@ -367,7 +367,7 @@ static int draw_model(const struct scenario *s, const stance_case *c, void *aske
     struct gnuplot g;
     if (!look->file && !gnuplot_directory(plot.directory))
         return EXIT_IO;
-    bool good = gnuplot_begin(&g, &plot, "model", NULL);
+    bool good = gnuplot_begin(&g, &plot, "model");
     struct model *const m = good ? gnuplot_room(&g, 1, sizeof *m) : NULL;
     if (m) {
         m->scene = s->scene;

@@ -259,7 +259,7 @@ bool plot_outline(const struct plot *plots, int files, enum results_kind of)
     page.of = of == RESULTS_KIND_COUNT ? statistics_judged(plots[0].r) : of;
     snprintf(title, sizeof title, "Domains of %d files", files);
     plot.title = same ? NULL : title;
-    if (!gnuplot_begin(&page.g, &plot, "outline", NULL))
+    if (!gnuplot_begin(&page.g, &plot, "outline"))
         return false;
     put(&page);
     return gnuplot_end(&page.g);

@@ -254,7 +254,7 @@ bool plot_sample(const struct plot *plot)
         return true;
     const int panels = r->varied < MOST_PANELS ? r->varied : MOST_PANELS;
     const size_t points = r->axis[r->sample].count;
-    if (!gnuplot_begin(g, plot, "sample", NULL))
+    if (!gnuplot_begin(g, plot, "sample"))
         return false;
     page.judged = statistics_judged(r);
     page.span = gnuplot_room(g, (size_t)r->varied, sizeof *page.span);

@@ -303,7 +303,7 @@ bool plot_shares(const struct plot *plot)
     struct page page = {.r = r};
     if (r->axes < 2 || r->axis[0].offset)
         return true;
-    if (!gnuplot_begin(&page.g, plot, "curve", NULL))
+    if (!gnuplot_begin(&page.g, plot, "curve"))
         return false;
     choose_parameters(&page);
     plot_axis_make_curve(&page.along, &r->axis[page.first]);

@@ -216,7 +216,7 @@ bool sensitivity_picture(const struct sensitivity_study *study, const struct plo
         return true;
     }
     snprintf(name, sizeof name, "%.80s%ssensitivity", answer ? answer : "", answer ? "-" : "");
-    if (!gnuplot_begin(&d.g, plot, name, NULL))
+    if (!gnuplot_begin(&d.g, plot, name))
         return false;
     measure_ranges(&d);
     say(&d);
