@@ -71,7 +71,9 @@ void basin_sample_free(struct basin_sample *sample)
     *sample = (struct basin_sample){.axis = -1};
 }
 
-bool basin_sample_counts(const struct basin_sample *sample, size_t point)
+/* Whether a point counts towards shares: of Saltelli's blocks only the first and the last points,
+ * which are evenly distributed over the box; the others repeat their coordinates. */
+static bool counts(const struct basin_sample *sample, size_t point)
 {
     return sample->method != DOE_SALTELLI || point % sample->block == 0 ||
            point % sample->block == sample->block - 1;
@@ -147,7 +149,7 @@ static bool choose_sample(struct basin *b, stance_message *message)
                             : NULL;
     if (wrong)
         return complain(message, "%.100s: %s", b->r->file, wrong);
-    b->starts = BASIN_SAMPLE;
+    b->sampled = true;
     b->averaged = -1;
     b->start[b->start_axes++] = sample->axis;
     b->box = isfinite(sample->box) ? sample->box : 1;
@@ -158,13 +160,12 @@ static bool choose_sample(struct basin *b, stance_message *message)
 
 size_t basin_starts(const struct basin *basin)
 {
-    return basin->starts == BASIN_GRID ? (size_t)basin->start_axes : basin->sample.factors;
+    return basin->sampled ? basin->sample.factors : (size_t)basin->start_axes;
 }
 
 const struct results_axis *basin_start(const struct basin *basin, size_t k)
 {
-    return basin->starts == BASIN_GRID ? &basin->r->axis[basin->start[k]]
-                                       : basin->sample.factor[k].of;
+    return basin->sampled ? basin->sample.factor[k].of : &basin->r->axis[basin->start[k]];
 }
 
 /* Distances are in units of weights. */
@@ -249,7 +250,7 @@ static bool choose_axes(struct basin *b, stance_message *message)
 
 /* What all slices share. */
 struct lattice {
-    size_t *order[SCENARIO_MAX_AXES]; /* of the start axes: points by rising value */
+    struct statistics_place *order[SCENARIO_MAX_AXES]; /* of the start axes, by rising value */
     double *place[SCENARIO_MAX_AXES];
     uint64_t stride[SCENARIO_MAX_AXES]; /* of the file's axes */
     size_t slices[SCENARIO_MAX_AXES];   /* points of these, 1 of the start axes */
@@ -270,14 +271,15 @@ static void free_lattice(struct lattice *lattice)
 /* The places of a start axis, sorted. */
 static bool sort_axis(struct lattice *lattice, int d, const struct results_axis *axis)
 {
-    size_t *order = lattice->order[d] = basin_order(axis);
+    const struct statistics_place *order = lattice->order[d] =
+        statistics_ordered(axis->value, axis->count);
     double *place = lattice->place[d] = malloc(axis->count * sizeof *place);
     if (!order || !place)
         return false;
     const size_t zero = statistics_nearest_zero(axis);
     for (size_t i = 0; i < axis->count; i++) {
-        place[i] = axis->value[order[i]];
-        lattice->origin[d] = order[i] == zero ? i : lattice->origin[d];
+        place[i] = order[i].value;
+        lattice->origin[d] = order[i].index == zero ? i : lattice->origin[d];
     }
     lattice->map.count[d] = axis->count;
     lattice->map.place[d] = place;
@@ -313,7 +315,7 @@ static void take_slice(struct lattice *lattice, const struct basin *b, const siz
     for (uint64_t i = 0; i < lattice->map.cases; i++) {
         uint64_t index = base;
         for (int d = 0; d < b->start_axes; d++)
-            index += lattice->order[d][at[d]] * lattice->stride[b->start[d]];
+            index += lattice->order[d][at[d]].index * lattice->stride[b->start[d]];
         lattice->kind[i] = b->r->kind[index];
         basin_next_point(b->start_axes, lattice->map.count, at);
     }
@@ -448,7 +450,7 @@ static void add_sampled(struct basin *b, const struct lattice *lattice, struct b
 {
     struct draw *own = draws_of(b, row, draws);
     for (size_t i = 0; i < lattice->map.cases; i++) {
-        if (basin_sample_counts(&b->sample, i)) {
+        if (counts(&b->sample, i)) {
             const uint8_t kind = lattice->kind[i];
             row->cases++;
             own[i].cases++;
@@ -500,7 +502,7 @@ static void finish_sampled(const struct basin *b, struct basin_row *row, struct 
 
 static bool make_rows(struct basin *b, stance_message *message)
 {
-    const bool sampled = b->starts == BASIN_SAMPLE;
+    const bool sampled = b->sampled;
     struct lattice lattice;
     size_t point[SCENARIO_MAX_AXES] = {0};
 
@@ -559,8 +561,7 @@ static int by_volume(const void *left, const void *right)
 bool basin_make(struct basin *basin, const struct results *r, const struct basin_choice *choice,
                 struct basin_sample *sample, bool *usage, stance_message *message)
 {
-    *basin = (struct basin){
-        .r = r, .choice = *choice, .starts = BASIN_GRID, .sample = *sample, .averaged = -1};
+    *basin = (struct basin){.r = r, .choice = *choice, .sample = *sample, .averaged = -1};
     *sample = (struct basin_sample){.axis = -1};
     *usage = true;
     bool good = choose_axes(basin, message) && choose_weights(basin, message);

@@ -36,16 +36,7 @@ bool basin_sample_make(struct basin_sample *sample, const struct results *r,
                        stance_message *message);
 void basin_sample_free(struct basin_sample *sample);
 
-/* Whether a point counts towards shares: of Saltelli's blocks only the first and the last points,
- * which are evenly distributed over the box; the others repeat their coordinates. */
-bool basin_sample_counts(const struct basin_sample *sample, size_t point);
-
 /* ---- the study ------------------------------------------------------------------------------ */
-
-enum basin_starts {
-    BASIN_GRID,   /* start axes of numbers: volumes as basin_map.h has them */
-    BASIN_SAMPLE, /* sampled starts: shares */
-};
 
 /* A row of the table. Of a sample, volumes come from the share and its interval (intervals.h):
  * `low` with every unknown case outside, `high` with all of them inside, `reach` the longer side.
@@ -98,7 +89,8 @@ struct basin_choice {
 struct basin {
     const struct results *r;
     struct basin_choice choice;
-    enum basin_starts starts;
+    bool sampled; /* the starts, of which there are shares; else they are a grid, whose volumes are
+                   * as basin_map.h has them */
     int start[SCENARIO_MAX_AXES], start_axes; /* axes of the file: of a grid those that vary, or
                                                * that of the sample */
     int by[SCENARIO_MAX_AXES], by_axes;
@@ -107,7 +99,7 @@ struct basin {
     struct faces faces;               /* of the box */
     double box;                       /* volume of the box of starts */
     char unit[256];                   /* of volumes, "" without one */
-    struct basin_sample sample;       /* of starts; with BASIN_GRID unused */
+    struct basin_sample sample;       /* of starts, if `sampled` */
     int averaged; /* axis of a sample of parameters that is averaged over, or -1 */
     size_t rows;
     struct basin_row *row; /* [rows], row-major over by[] */

@@ -116,8 +116,7 @@ static bool glued(const struct row *row)
     X("unreached", "modes that no torque moves and that do not decay",                             \
       known ? as_whole((uint64_t)stance_null_set_unreached(row->of.set, NULL, NULL))               \
             : as_nothing(NULL))                                                                    \
-    X("glued", "several contacts carry", known ? as_truth(glued(row)) : as_nothing(NULL),          \
-      .hidden = TABLE_NO_CSV)
+    X("glued", "several contacts carry", as_tree(known ? json_boolean(glued(row)) : NULL))
 #define EXCUSED(NAME, name, heading)                                                               \
     {{#name "_starts", heading, .width = 9, .group = #name, .key = "starts"},                      \
      known ? as_whole(row->excuse[NAME].starts) : as_nothing(NULL)},                               \

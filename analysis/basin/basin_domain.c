@@ -194,24 +194,14 @@ static bool follow_all(const struct basin_map *map, enum results_kind of, const 
 static void find_extent(const struct basin_map *map, enum results_kind of, const size_t *origin,
                         struct basin_distance *distance)
 {
-    uint64_t stride[SCENARIO_MAX_AXES];
-    basin_strides(map, stride);
-    const uint64_t index = basin_index(map, stride, origin);
     for (int side = 0; side < 2 * map->axes; side++) {
         const int a = side / 2, up = side % 2;
-        const double *const place = map->place[a];
-        const size_t last = up ? map->count[a] - 1 : 0;
-        size_t at = origin[a];
-        uint64_t case_at = index;
-        while (at != last && map->kind[case_at] == of) {
-            at += up ? 1 : (size_t)-1;
-            case_at += up ? stride[a] : -stride[a];
-        }
-        const uint8_t kind = map->kind[case_at];
-        *(up ? &distance->high[a] : &distance->low[a]) =
-            distance->inside && kind != of && basin_is_known(kind)
-                ? 0.5 * (place[at] + place[up ? at - 1 : at + 1])
-                : NAN;
+        double step[SCENARIO_MAX_AXES] = {0}, end = NAN;
+        bool leaves = true;
+        step[a] = up ? 1 : -1;
+        if (distance->inside)
+            end = follow(map, of, origin, step, &leaves);
+        *(up ? &distance->high[a] : &distance->low[a]) = leaves ? NAN : up ? end : 0 - end;
     }
 }
 

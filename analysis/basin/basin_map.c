@@ -15,23 +15,6 @@ bool basin_next_point(int axes, const size_t *count, size_t *point)
     return false;
 }
 
-static int by_value(const void *left, const void *right, void *values)
-{
-    const double *value = values, x = value[*(const size_t *)left],
-                 y = value[*(const size_t *)right];
-    return (x > y) - (x < y);
-}
-
-size_t *basin_order(const struct results_axis *axis)
-{
-    size_t *const order = malloc(axis->count * sizeof *order);
-    for (size_t i = 0; order && i < axis->count; i++)
-        order[i] = i;
-    if (order)
-        qsort_r(order, axis->count, sizeof *order, by_value, axis->value);
-    return order;
-}
-
 bool basin_take(struct basin_flood *flood, uint64_t number)
 {
     if (basin_has_taken(flood, number))

@@ -57,8 +57,6 @@ static inline bool basin_is_known(uint8_t kind)
 }
 /* Moves to the next point of a lattice of these counts; false after the last. */
 bool basin_next_point(int axes, const size_t *count, size_t *point);
-/* The points of an axis by rising value, freed by the caller; NULL: no memory. */
-size_t *basin_order(const struct results_axis *axis);
 /* Numbers below a count, each taken once and put behind a queue: {0} but for `seen`, zero, with a
  * bit for each. */
 struct basin_flood {

@@ -22,8 +22,7 @@
       .before = "   ")                                                                             \
     X("high", "", as_number(row->high), .format = "%.5g", .joined = true, .before = " ... ")       \
     X("cut_at", NULL, as_text(cut), "cut at", .left = true, .hidden = TABLE_NO_JSON)               \
-    X("cut", "[{path, end: lower or upper, at}]", as_tree(faces_json(&b->faces, row->cut)),        \
-      .hidden = TABLE_NO_CSV)                                                                      \
+    X("cut", "[{path, end: lower or upper, at}]", as_tree(faces_json(&b->faces, row->cut)))        \
     X("cells", "", as_whole(row->cells), .hidden = TABLE_NO_CSV)                                   \
     X("crossed", "", as_whole(row->crossed), .hidden = TABLE_NO_CSV)                               \
     X("entropy", "", as_number(basin_entropy(&row->entropy)), "S_b", "%.4f", 9)                    \
@@ -39,10 +38,10 @@
     X("alpha_missing", "why there is none: small, none, wide, bent, few",                          \
       as_text(exponent.refusal ? basin_refusal_words[exponent.refusal] : NULL),                    \
       .hidden = TABLE_NO_CSV)                                                                      \
-    X("fractal", "", as_truth(fractal), .hidden = TABLE_NO_CSV)                                    \
+    X("fractal", "", as_truth(fractal))                                                            \
     X("dimension", "", as_number(b->start_axes - exponent.alpha), "dimension", "%.3f", 10)         \
-    X("distances", "[cells]", as_tree(distances), .hidden = TABLE_NO_CSV)                          \
-    X("uncertain", "[share]", as_tree(shares), .hidden = TABLE_NO_CSV)                             \
+    X("distances", "[cells]", as_tree(distances))                                                  \
+    X("uncertain", "[share]", as_tree(shares))                                                     \
     X("connected", "", as_number(known ? row->part.volume : NAN), "connected", "%.5g", 11)         \
     X("connected_reach", "", as_number(known ? row->part.reach : NAN), "+-", "%.2g", 9)            \
     X("connected_low", "", as_number(about ? row->part.low : NAN), "bounds", "%.5g", 25,           \
@@ -52,10 +51,9 @@
     X("bounded", "", as_text(bounded), "bounded", .width = 7, .left = true,                        \
       .hidden = TABLE_NO_JSON)                                                                     \
     X("is_bounded", NULL,                                                                          \
-      bounded &&bounded[0] != 'u' ? as_truth(bounded[0] == 'y') : as_nothing(NULL),                \
-      .key = "bounded", .hidden = TABLE_NO_CSV)                                                    \
-    X("connected_cut", "[as cut]", as_tree(about ? faces_json(&b->faces, row->part.faces) : NULL), \
-      .hidden = TABLE_NO_CSV)                                                                      \
+      as_tree(bounded &&bounded[0] != 'u' ? json_boolean(bounded[0] == 'y') : NULL),               \
+      .key = "bounded")                                                                            \
+    X("connected_cut", "[as cut]", as_tree(about ? faces_json(&b->faces, row->part.faces) : NULL)) \
     X("nearest", "", as_number(any ? distance->nearest : NAN), "nearest", "%.4g", 9)               \
     X("nearest_least", "", as_number(any ? fmin(distance->nearest, distance->clear) : NAN))        \
     X("median", "", as_number(any ? distance->median : NAN), "median", "%.4g", 9)                  \
@@ -63,13 +61,12 @@
     X("leaving", "share",                                                                          \
       as_number(any &&grid ? (double)distance->leave / (double)distance->directions : NAN),        \
       "leaving", "%.1f %%", 8, .percent = true)                                                    \
-    X("nearest_at", "{path: value}", as_tree(at), .hidden = TABLE_NO_CSV)                          \
-    X("extent", "{path: [low, high]}", as_tree(extent), .hidden = TABLE_NO_CSV)
+    X("nearest_at", "{path: value}", as_tree(at))                                                  \
+    X("extent", "{path: [low, high]}", as_tree(extent))
 
 static void add_row(struct table *t, const struct basin *b, const struct basin_row *row)
 {
-    const bool grid = b->starts == BASIN_GRID, about = grid && b->around,
-               known = about && row->part.known > 0;
+    const bool grid = !b->sampled, about = grid && b->around, known = about && row->part.known > 0;
     const struct basin_uncertainty *const uncertainty = &row->uncertainty;
     const struct basin_exponent exponent = basin_exponent(uncertainty);
     const bool fractal = basin_is_fractal(&row->entropy, uncertainty);
@@ -222,7 +219,7 @@ json_t *basin_factor_names(const struct basin_sample *sample)
 
 static json_t *head_facts(const struct basin *b)
 {
-    const bool grid = b->starts == BASIN_GRID;
+    const bool grid = !b->sampled;
     const char *path[256];
     const size_t count = basin_averaged(b, path, sizeof path / sizeof path[0]);
     json_t *const weights = b->around ? json_object() : NULL;
@@ -296,8 +293,7 @@ static const char text[] =
 
 bool basin_print(const struct basin *b, enum table_form form)
 {
-    const bool one = b->rows == 1, grid = b->starts == BASIN_GRID,
-               bounded = grid && b->choice.rank == 0;
+    const bool one = b->rows == 1, grid = !b->sampled, bounded = grid && b->choice.rank == 0;
     const struct basin_row *const row = &b->row[0];
     const struct basin_distance *const distance = &row->distance;
     const bool far = one && row->has_distance && distance->inside;

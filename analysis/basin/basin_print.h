@@ -14,7 +14,8 @@ enum { BASIN_SHOWN = 40 }; /* rows that people see */
 extern const struct say_key basin_keys[], basin_threshold_keys[], basin_loss_keys[],
     basin_allowed_keys[], basin_answer_keys[], basin_rays_keys[];
 bool basin_print(const struct basin *basin, enum table_form form);
-bool basin_rays_print(const struct basin_rays *rays, enum table_form form);
+/* Returns an exit code. */
+int basin_rays_print(const struct basin_rays *rays, enum table_form form);
 /* The points of the boundary, every ray, as CSV. */
 bool basin_print_boundary(const struct basin *basin);
 bool basin_rays_print_boundary(const struct basin_rays *rays);

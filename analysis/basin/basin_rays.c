@@ -1,6 +1,5 @@
 /* basin_rays.c - follows each ray from the smallest scale to where the outcome is lost, and says
  * where that is, to people and to programs. */
-#include "basin_map.h"
 #include "basin_print.h"
 
 #include "analysis/statistics/statistics.h"
@@ -25,38 +24,37 @@ bool basin_is_rays(const struct results *r, const struct basin_sample *sample)
 }
 
 /* One ray: its cases are kind[place * stride]. */
-static struct basin_ray follow(const struct results_axis *scale, const size_t *order,
+static struct basin_ray follow(const struct statistics_place *scale, size_t count,
                                const uint8_t *kind, uint64_t stride, enum results_kind of)
 {
     struct basin_ray ray = {RAY_UNKNOWN, NAN, NAN, of};
-    for (size_t i = 0; i < scale->count; i++) {
-        const uint8_t here = kind[order[i] * stride];
+    for (size_t i = 0; i < count; i++) {
+        const uint8_t here = kind[scale[i].index * stride];
         if (here == RESULTS_PENDING || here == RESULTS_FAILED)
             continue; /* the bracket grows over it */
         if (here != of) {
             ray.end = ray.end == RAY_UNKNOWN ? RAY_OUTSIDE : RAY_CROSSES;
-            ray.high = scale->value[order[i]];
+            ray.high = scale[i].value;
             ray.to = (enum results_kind)here;
             return ray;
         }
         ray.end = RAY_OPEN;
-        ray.low = scale->value[order[i]];
+        ray.low = scale[i].value;
     }
     return ray;
 }
 
-static void follow_all(struct basin_rays *rays, const size_t *order)
+static void follow_all(struct basin_rays *rays, const struct statistics_place *scale)
 {
     const struct results *r = rays->r;
-    const struct results_axis *const scale = &r->axis[rays->scale];
     const uint64_t step = statistics_stride(r, rays->scale),
                    next = statistics_stride(r, rays->sample.axis);
     for (size_t row = 0; row < rays->rows; row++) {
         size_t point[SCENARIO_MAX_AXES];
         const uint64_t first = statistics_row(r, rays->by, rays->by_axes, row, point);
         for (size_t p = 0; p < rays->sample.points; p++)
-            rays->ray[row * rays->sample.points + p] =
-                follow(scale, order, r->kind + first + p * next, step, rays->of);
+            rays->ray[row * rays->sample.points + p] = follow(
+                scale, r->axis[rays->scale].count, r->kind + first + p * next, step, rays->of);
     }
 }
 
@@ -72,16 +70,16 @@ bool basin_rays_make(struct basin_rays *rays, const struct results *r, enum resu
             rays->rows *= r->axis[a].count;
         }
     }
-    size_t *const order = basin_order(&r->axis[rays->scale]);
+    const struct results_axis *const along = &r->axis[rays->scale];
+    struct statistics_place *const scale = statistics_ordered(along->value, along->count);
     rays->ray = malloc(rays->rows * rays->sample.points * sizeof *rays->ray);
-    if (!order || !rays->ray) {
-        free(order);
+    const bool good = scale && rays->ray;
+    if (good)
+        follow_all(rays, scale);
+    else
         basin_rays_free(rays);
-        return statistics_no_memory(r, message);
-    }
-    follow_all(rays, order);
-    free(order);
-    return true;
+    free(scale);
+    return good || statistics_no_memory(r, message);
 }
 
 void basin_rays_free(struct basin_rays *rays)
@@ -185,17 +183,15 @@ static json_t *nearest_json(const struct basin_rays *rays, const struct basin_ne
       .width = 9)                                                                                  \
     X("descended", NULL, as_number(nearest ? 0.5 * (nearest->end.low + nearest->end.high) : NAN),  \
       "nearest", "%.5g", 10, .hidden = TABLE_NO_JSON)                                              \
-    X("nearest", NULL, as_tree(nearest ? nearest_json(rays, nearest) : NULL),                      \
-      .hidden = TABLE_NO_CSV)                                                                      \
+    X("nearest", NULL, as_tree(nearest ? nearest_json(rays, nearest) : NULL))                      \
     X("smallest", "", as_number(reach.smallest), "smallest", "%.5g", 10)                           \
     X("median", "", as_number(reach.median), "median", "%.5g", 10)                                 \
     X("largest", "", as_number(reach.largest), "largest", "%.5g", 10)                              \
     X("first_ray", "", first ? as_whole(reach.first) : as_nothing(NULL))                           \
     X("first_low", NULL, as_number(first ? first->low : NAN), .hidden = TABLE_NO_JSON)             \
     X("first_high", NULL, as_number(first ? first->high : NAN), .hidden = TABLE_NO_JSON)           \
-    X("first_bracket", "[low, high]", as_tree(first ? table_pair(first->low, first->high) : NULL), \
-      .hidden = TABLE_NO_CSV)                                                                      \
-    X("first_at", "{path: value}", as_tree(at), .hidden = TABLE_NO_CSV)
+    X("first_bracket", "[low, high]", as_tree(first ? table_pair(first->low, first->high) : NULL)) \
+    X("first_at", "{path: value}", as_tree(at))
 #define HEAD(X)                                                                                    \
     X("outcome", "", as_text(results_kind_names[rays->of]))                                        \
     X("starts", "[paths]", as_tree(basin_factor_names(&rays->sample)))                             \
@@ -256,7 +252,7 @@ static const char text[] = BASIN_TITLE
     "{first_bracket/1%.6g} ({.to} there), at\n"
     "[.along*:    {name%-24s} {is%.5g} +- {off%.2g} {unit}\n]]]]";
 
-bool basin_rays_print(const struct basin_rays *rays, enum table_form form)
+int basin_rays_print(const struct basin_rays *rays, enum table_form form)
 {
     struct table t = {0};
     json_t *const facts = TABLE_OBJECT(HEAD(TABLE_MEMBER){".descends", as_truth(rays->nearest)},
@@ -266,11 +262,12 @@ bool basin_rays_print(const struct basin_rays *rays, enum table_form form)
     basin_add_axis(facts, ".over", &rays->r->axis[rays->scale]);
     for (size_t row = 0; good && row < rays->rows; row++)
         good = add_row(&t, rays, row, facts);
-    return basin_say(rays->r, form, facts, &t,
-                     rays->nearest ? "at/ descended smallest median largest crossing open outside"
-                                   : "at/ smallest median largest crossing open outside",
-                     text) &&
-           good;
+    const int code =
+        basin_say(rays->r, form, facts, &t,
+                  rays->nearest ? "at/ descended smallest median largest crossing open outside"
+                                : "at/ smallest median largest crossing open outside",
+                  text);
+    return good ? code : EXIT_IO;
 }
 
 bool basin_rays_print_boundary(const struct basin_rays *rays)

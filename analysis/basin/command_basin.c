@@ -43,12 +43,13 @@ static int show_rays(const struct report *report, const struct results *r,
     }
     if (!basin_rays_make(&rays, r, request->choice.of, sample, message))
         return EXIT_IO;
-    const bool good =
-        (request->descents == 0 || basin_rays_descend(&rays, request->descents, message)) &&
-        (request->boundary ? basin_rays_print_boundary(&rays)
-                           : basin_rays_print(&rays, report->form));
+    int code =
+        report_code(!request->descents || basin_rays_descend(&rays, request->descents, message));
+    if (code == EXIT_DONE)
+        code = request->boundary ? report_code(basin_rays_print_boundary(&rays))
+                                 : basin_rays_print(&rays, report->form);
     basin_rays_free(&rays);
-    return report_code(good);
+    return code;
 }
 
 static int show_basin(const struct report *report, const struct results *r,
@@ -75,7 +76,7 @@ static int show_basin(const struct report *report, const struct results *r,
         code = basin_print_allowed(&basin, form, message);
     else if (request->answer)
         code = basin_print_answer(&basin, request->answer, form, message);
-    else if (request->boundary && basin.starts != BASIN_GRID)
+    else if (request->boundary && basin.sampled)
         code = refuse(message,
                       "stance basin: --boundary needs starts on a grid; those of %.150s are a "
                       "sample",

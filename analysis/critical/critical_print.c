@@ -58,14 +58,14 @@ static const char *remark(const struct critical_row *row)
       .format = "%.6g", .joined = true, .before = " ... ", .empty = "-")                           \
     X("least_share", "", as_number(v->least_share), "least", "%.2f %%", .width = 9,                \
       .percent = true)                                                                             \
-    X("exact", "", as_truth(exact), .hidden = TABLE_NO_CSV)                                        \
+    X("exact", "", as_truth(exact))                                                                \
     X("unknown", "values at which failed or pending cases leave it open", as_whole(v->unknown))    \
     X("unseen", "widest gap between values simulated", as_number(row->unseen))                     \
     X("again", NULL, as_text(again[0] ? again : NULL), "again", .left = true, .before = "  ",      \
       .hidden = TABLE_NO_JSON)                                                                     \
     X("remark", NULL, as_text(remark(row)), "", .left = true, .before = "  ", .empty = "",         \
       .hidden = TABLE_VIEW_ONLY)                                                                   \
-    X("islands", "[{from: [a, b], to: [a, b]}]", as_tree(islands), .hidden = TABLE_NO_CSV)
+    X("islands", "[{from: [a, b], to: [a, b]}]", as_tree(islands))
 
 static void add_row(struct table *t, const struct critical *c, const struct critical_row *row)
 {

@@ -168,8 +168,8 @@ static int repeats(const struct along_gait *row)
       .width = 4, .empty = "")                                                                     \
     X("repeats", "", row->settled ? as_number(repeats(row)) : as_nothing(NULL), "repeats", "%.0f", \
       .width = 7, .empty = "")                                                                     \
-    X("settled", "the 16 times", as_tree(times), .hidden = TABLE_NO_CSV)                           \
-    X("multipliers", "[{re, im}]", as_tree(list), .hidden = TABLE_NO_CSV)
+    X("settled", "the 16 times", as_tree(times))                                                   \
+    X("multipliers", "[{re, im}]", as_tree(list))
 
 const struct say_key along_keys[] = {ROW(TABLE_KEY){0}};
 

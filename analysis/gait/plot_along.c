@@ -40,10 +40,15 @@ static double speed(const struct picture *p, const struct along_gait *gait)
     return gait->length / gait->period;
 }
 
-/* A number of each gait as a line, dashed where the gait does not hold. */
-static void put_gaits(struct picture *p,
+/* A panel with a number of each gait as a line, dashed where the gait does not hold; `range` holds
+ * what else is drawn. */
+static void put_gaits(struct picture *p, double height, struct plot_range range, const char *name,
+                      const char *unit,
                       double (*number)(const struct picture *, const struct along_gait *))
 {
+    for (size_t k = 0; k < p->count; k++)
+        plot_widen(&range, number(p, &p->gait[k]));
+    put_panel(p, height, range, name, unit);
     for (int stable = 1; stable >= 0; stable--) {
         gnuplot_series(&p->g, "using 1:2 with lines dt %d lw 1.8 lc rgb hue[1]", stable ? 1 : 2);
         for (size_t k = 0; k < p->count; k++) {
@@ -59,26 +64,14 @@ static void put_gaits(struct picture *p,
 static void put_times(struct picture *p)
 {
     struct plot_range range = PLOT_NOTHING;
-    for (size_t k = 0; k < p->count; k++) {
-        plot_widen(&range, step_time(p, &p->gait[k]));
+    for (size_t k = 0; k < p->count; k++)
         for (int i = 0; i < p->gait[k].settled; i++)
             plot_widen(&range, p->gait[k].time[i]);
-    }
-    put_panel(p, 220, range, "time of a step", "s");
-    put_gaits(p, step_time);
+    put_gaits(p, 220, range, "time of a step", "s", step_time);
     gnuplot_series(&p->g, "using 1:2 with points pt 7 ps 0.35 lc rgb hue[2]");
     for (size_t k = 0; k < p->count; k++)
         for (int i = 0; i < p->gait[k].settled; i++)
             GNUPLOT_ROW(&p->g, p->gait[k].value, p->gait[k].time[i]);
-}
-
-static void put_speed(struct picture *p)
-{
-    struct plot_range range = PLOT_NOTHING;
-    for (size_t k = 0; k < p->count; k++)
-        plot_widen(&range, speed(p, &p->gait[k]));
-    put_panel(p, 110, range, "speed", "m/s");
-    put_gaits(p, speed);
 }
 
 static void put_multipliers(struct picture *p, struct plot_range along)
@@ -136,7 +129,7 @@ int along_draw(const struct scenario *s, const struct along *along, const struct
                     along->steps, along->steps == 1 ? "" : "s");
         gnuplot_axis(&p.g, 'x', PLOT_LINEAR, range, along->path, unit_of(s, along->path));
         put_times(&p);
-        put_speed(&p);
+        put_gaits(&p, 110, PLOT_NOTHING, "speed", "m/s", speed);
         put_multipliers(&p, range);
         gnuplot_legend(&p.g, "hue[1]", 1, 0, "gait that holds", "");
         gnuplot_legend(&p.g, "hue[1]", 2, 0, "gait that does not", "");

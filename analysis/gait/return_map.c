@@ -318,37 +318,35 @@ static bool check(const stance_case *c, const stance_kernel *kernel, int steps,
                   stance_message *message)
 {
     const char *const method = kernel->method->name;
-    if (!c->scene->exchange.any)
-        return complain(message, "no two legs of the robot are alike in structure");
-    if (strcmp(method, "capturing") != 0 && strcmp(method, "event-driven") != 0)
+    const bool noisy = c->noise != 0 || c->angle_noise != 0 || c->rate_noise != 0,
+               late =
+                   c->delay > 0 || c->lag > 0 || (c->torque_rate > 0 && isfinite(c->torque_rate));
+    bool uneven = false;
+    if (c->scene->exchange.any && strcmp(method, "capturing") != 0 &&
+        strcmp(method, "event-driven") != 0)
         return complain(message,
                         "%s puts footfalls at the end of a step; give method.name capturing or "
                         "event-driven",
                         method);
-    if (c->noise != 0 || c->angle_noise != 0 || c->rate_noise != 0)
-        return complain(message,
-                        "a gait with noise has no cycle: set controller.noise, angle_noise "
-                        "and rate_noise to 0");
-    if (c->delay > 0 || c->lag > 0 || (c->torque_rate > 0 && isfinite(c->torque_rate)))
-        return complain(message, "controller.delay, lag and torque_rate remember the step before, "
-                                 "which the section does not");
-    if (c->restitution > 0)
-        return complain(message,
-                        "a foot that rebounds is not on the ground after its footfall: set "
-                        "ground.restitution to 0");
     for (int k = 0; k < c->body.plates; k++)
-        if (c->body.plate[k].footfall == 0 && c->body.plate[k].height != 0)
-            return complain(message,
-                            "on uneven ground no step is as the one before: leave out "
-                            "ground.plates, but for one with footfall: 1 and height: 0 that "
-                            "--sensitivity varies");
-    if (timed(c))
-        return complain(message,
-                        "a gait has no time of its own: pushes, ramps and integrals of a run "
-                        "begin once, not at each footfall");
-    return steps % 2 == 0 || alike(c->scene, c) ||
-           complain(message, "the legs, or what drives them, differ: a gait repeats after an even "
-                             "number of steps; give --steps 2");
+        uneven |= c->body.plate[k].footfall == 0 && c->body.plate[k].height != 0;
+    const char *const wrong =
+        !c->scene->exchange.any ? "no two legs of the robot are alike in structure"
+        : noisy ? "a gait with noise has no cycle: set controller.noise, angle_noise and "
+                  "rate_noise to 0"
+        : late  ? "controller.delay, lag and torque_rate remember the step before, which the "
+                  "section does not"
+        : c->restitution > 0 ? "a foot that rebounds is not on the ground after its footfall: set "
+                               "ground.restitution to 0"
+        : uneven   ? "on uneven ground no step is as the one before: leave out ground.plates, but "
+                     "for one with footfall: 1 and height: 0 that --sensitivity varies"
+        : timed(c) ? "a gait has no time of its own: pushes, ramps and integrals of a run begin "
+                     "once, not at each footfall"
+        : steps % 2 != 0 && !alike(c->scene, c)
+            ? "the legs, or what drives them, differ: a gait repeats after an even number of "
+              "steps; give --steps 2"
+            : NULL;
+    return !wrong || complain(message, "%s", wrong);
 }
 
 bool return_map_settle(const struct return_map *map, const struct return_point *from, size_t first,

@@ -33,12 +33,23 @@ enum { SERIES = sizeof series / sizeof series[0] };
 
 /* ---- sizes -------------------------------------------------------------------------------- */
 
-/* Widens a range to hold estimates and intervals. */
+/* The ends of its interval; where there is none, the estimate. */
+static double low_of(const struct sensitivity_value *v)
+{
+    return isfinite(v->low) ? v->low : v->estimate;
+}
+
+static double high_of(const struct sensitivity_value *v)
+{
+    return isfinite(v->low) ? v->high : v->estimate;
+}
+
+/* Widens a range to hold these. */
 static void widen(struct plot_range *range, const struct sensitivity_value *v, size_t n)
 {
     for (size_t j = 0; v && j < n; j++) {
-        plot_widen(range, isfinite(v[j].low) ? v[j].low : v[j].estimate);
-        plot_widen(range, isfinite(v[j].high) ? v[j].high : v[j].estimate);
+        plot_widen(range, low_of(&v[j]));
+        plot_widen(range, high_of(&v[j]));
     }
 }
 
@@ -80,17 +91,6 @@ static void say(struct drawing *d)
 }
 
 /* ---- panels ------------------------------------------------------------------------------- */
-
-/* The ends of its interval; where there is none, the estimate. */
-static double low_of(const struct sensitivity_value *v)
-{
-    return isfinite(v->low) ? v->low : v->estimate;
-}
-
-static double high_of(const struct sensitivity_value *v)
-{
-    return isfinite(v->low) ? v->high : v->estimate;
-}
 
 /* A row of the axis y for each factor, two series above and below its middle. */
 static void put_indices(struct drawing *d, size_t t)

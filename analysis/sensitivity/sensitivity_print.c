@@ -68,7 +68,7 @@ static void add_factors(struct table *t, const struct sensitivity_study *study,
             table_append(paths, as_text(path));
         TABLE_FACTS(t, {{"factor", .key = "path"}, as_text(sensitivity_factor_path(study, j, 0))},
                     {{"label", "factor", .hidden = TABLE_VIEW_ONLY, .left = true}, as_text(name)},
-                    {{"paths", .hidden = TABLE_NO_CSV}, as_tree(paths)});
+                    {{.name = "paths"}, as_tree(paths)});
         for (int m = 0; m < SENSITIVITY_MEASURE_COUNT; m++)
             if (table->s.measure[m])
                 add_measure(t, sensitivity_words[m], &table->s.measure[m][j], !is_morris(study));

@@ -359,25 +359,23 @@ static bool make_tables(struct sensitivity_study *study, const double *answers)
 static bool make_order(struct sensitivity_study *study)
 {
     const size_t k = study->factors, tables = study->tables;
-    double *weight = calloc(k, sizeof *weight);
+    struct statistics_place *const place = calloc(k, sizeof *place);
     study->order = calloc(k, sizeof *study->order);
-    const bool good = weight && study->order;
+    const bool good = place && study->order;
     for (size_t i = 0; good && i < k; i++) {
         size_t found = 0;
         for (size_t t = 0; t < tables; t++) { /* a table that has none says nothing */
             const double own = sensitivity_weight(&study->table[t].s, i);
             found += isfinite(own);
-            weight[i] += isfinite(own) ? own : 0;
+            place[i].value -= isfinite(own) ? own : 0;
         }
-        weight[i] = found > 0 ? weight[i] : -INFINITY;
-        size_t at = i;
-        while (at > 0 && weight[i] > weight[study->order[at - 1]]) {
-            study->order[at] = study->order[at - 1];
-            at--;
-        }
-        study->order[at] = i;
+        place[i] = (struct statistics_place){found > 0 ? place[i].value : INFINITY, i};
     }
-    free(weight);
+    if (good)
+        statistics_order(place, k);
+    for (size_t i = 0; good && i < k; i++)
+        study->order[i] = place[i].index;
+    free(place);
     return good;
 }
 

@@ -8,7 +8,7 @@ bool doe_bins_make(struct doe_bins *bins, const struct results *r, int k, size_t
 {
     const struct results_varied *v = &r->vary[k];
     const size_t n = v->of.count;
-    struct statistics_place *place = malloc(n * sizeof *place);
+    struct statistics_place *place = statistics_ordered(v->of.value, n);
     struct statistics_counts *counts = malloc(n * sizeof *counts);
     uint32_t *part = malloc(n * sizeof *part); /* the bin of each point */
 
@@ -19,10 +19,6 @@ bool doe_bins_make(struct doe_bins *bins, const struct results *r, int k, size_t
     most = most < 2 ? 2 : most;
     if (good)
         statistics_count_axis(r, r->sample, counts);
-    for (size_t i = 0; good && i < n; i++)
-        place[i] = (struct statistics_place){v->of.value[i], i};
-    if (good)
-        statistics_order(place, n);
     for (size_t i = 1; good && i < n; i++)
         values += place[i].value != place[i - 1].value;
     bins->listed = values <= (v->word ? SAMPLE_BINS : most);

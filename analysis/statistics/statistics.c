@@ -112,6 +112,16 @@ void statistics_order(struct statistics_place *place, size_t n)
     qsort(place, n, sizeof *place, compare_places);
 }
 
+struct statistics_place *statistics_ordered(const double *value, size_t n)
+{
+    struct statistics_place *const place = malloc((n + 1) * sizeof *place);
+    for (size_t i = 0; place && i < n; i++)
+        place[i] = (struct statistics_place){value[i], i};
+    if (place)
+        statistics_order(place, n);
+    return place;
+}
+
 double statistics_quantile(const double *sorted, size_t n, double p)
 {
     double place = p * (double)(n - 1);

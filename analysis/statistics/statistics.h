@@ -58,6 +58,8 @@ struct statistics_place {
     size_t index;
 };
 void statistics_order(struct statistics_place *place, size_t n);
+/* Those of value[n], to be freed by the caller; NULL: no memory. */
+struct statistics_place *statistics_ordered(const double *value, size_t n);
 /* Quantile p (0 ... 1) of sorted values[n], n > 0, linear between them. */
 double statistics_quantile(const double *sorted, size_t n, double p);
 

@@ -98,7 +98,7 @@ static bool add_extents(struct table *t, const struct results *r, int axis, size
                          .before = "  ", .width = 24, .left = true, .group = "extent"},
                         as_text(text)});
     }
-    TABLE_FACTS(t, {{.name = "extents", .hidden = TABLE_NO_CSV}, as_tree(object)});
+    TABLE_FACTS(t, {{.name = "extents"}, as_tree(object)});
     return shown > 0;
 }
 

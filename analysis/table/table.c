@@ -71,8 +71,10 @@ void table_values(struct table *t, const struct table_value *value, size_t count
 void table_facts(struct table *t, const struct table_fact *fact, size_t count)
 {
     for (size_t k = 0; k < count; k++) {
+        struct table_column column = fact[k].column;
+        column.hidden |= fact[k].value.kind == TABLE_TREE ? TABLE_NO_CSV : 0;
         if (!t->closed)
-            table_columns(t, &fact[k].column, 1);
+            table_columns(t, &column, 1);
         table_values(t, &fact[k].value, 1);
     }
 }
@@ -373,7 +375,7 @@ static json_t *json_of(const struct table_value *value)
     case TABLE_WHOLE:
         return json_integer((json_int_t)value->whole);
     case TABLE_TREE:
-        return json_incref(value->tree);
+        return value->tree ? json_incref(value->tree) : json_null();
     default:
         return json_null();
     }

@@ -28,7 +28,7 @@ enum table_kind {
     TABLE_NUMBER, /* NAN and infinities: nothing, but in CSV "inf" or "-inf" */
     TABLE_WHOLE,
     TABLE_PLACE, /* a point of an axis: its word or its number */
-    TABLE_TREE,  /* of JSON, where alone it is seen */
+    TABLE_TREE,  /* of JSON, where alone its column is */
 };
 
 /* Texts and axes are borrowed until the row is added, a tree is taken over. */
@@ -69,10 +69,10 @@ static inline struct table_value as_varied(const struct results_varied *v, doubl
            : isinf(value) ? as_text("none")
                           : as_number(value);
 }
-/* NULL: nothing. */
+/* NULL: null. */
 static inline struct table_value as_tree(json_t *tree)
 {
-    return (struct table_value){.kind = tree ? TABLE_TREE : TABLE_NOTHING, .tree = tree};
+    return (struct table_value){.kind = TABLE_TREE, .tree = tree};
 }
 static inline struct table_value as_truth(bool truth)
 {
