@@ -146,20 +146,9 @@ static const char *value_name(const struct option *o, bool listed, char *text, s
 
 /* ---- help ----------------------------------------------------------------------------------- */
 
-/* Fills lines with words, from a column on; returns where the last one ends. */
 static size_t fill(const char *text, size_t length, size_t column, size_t indent)
 {
-    const char *const end = text + length;
-    for (size_t word; (text += strspn(text, " ")) < end; text += word) {
-        word = strcspn(text, " \n");
-        if (column >= indent && column + 1 + word > MARGIN) {
-            putchar('\n');
-            column = 0;
-        }
-        column += (size_t)printf("%*s%.*s", column < indent ? (int)(indent - column) : column > 0,
-                                 "", (int)word, text);
-    }
-    return column;
+    return words_fill(stdout, text, length, column, indent, MARGIN);
 }
 
 /* Where a line that begins with a blank goes on when it is filled: under the text behind its name.

@@ -3,7 +3,6 @@
 #include "numbers.h"
 
 #include <stdarg.h>
-#include <stdio.h>
 #include <string.h>
 #include <strings.h>
 
@@ -148,4 +147,21 @@ void words_add(char *text, size_t size, const char *format, ...)
     if (used < size)
         vsnprintf(text + used, size - used, format, arguments);
     va_end(arguments);
+}
+
+size_t words_fill(FILE *out, const char *text, size_t length, size_t column, size_t indent,
+                  size_t margin)
+{
+    const char *const end = text + length;
+    for (size_t word; (text += strspn(text, " ")) < end; text += word) {
+        word = strcspn(text, " \n");
+        if (column >= indent && column + 1 + word > margin) {
+            fputc('\n', out);
+            column = 0;
+        }
+        column +=
+            (size_t)fprintf(out, "%*s%.*s", column < indent ? (int)(indent - column) : column > 0,
+                            "", (int)word, text);
+    }
+    return column;
 }

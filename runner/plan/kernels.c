@@ -130,8 +130,7 @@ static size_t list_checks(const struct plan *plan, stance_case *check, double *s
     size_t count = 0;
     *steps = 0;
     for (uint64_t i = 0; i < tried; i++) {
-        const uint64_t row =
-            tried == plan->rows ? i : (uint64_t)((double)plan->rows * i / OWN_CHECKS);
+        const uint64_t row = (uint64_t)((double)plan->rows * i / tried);
         if (plan->design_status[plan_design(plan, plan_case(plan, row))] != STANCE_DONE ||
             !plan_resolve(plan, row, &check[count], NULL))
             continue;

@@ -17,21 +17,7 @@ enum { WIDTH = 78, TEXT_INDENT = 4 };
 /* Prints words, broken at WIDTH. */
 static void print_wrapped(FILE *out, const char *text)
 {
-    int column = TEXT_INDENT;
-    fprintf(out, "%*s", TEXT_INDENT, "");
-    while (*text) {
-        int length = (int)strcspn(text, " ");
-        if (column > TEXT_INDENT && column + 1 + length > WIDTH) {
-            fprintf(out, "\n%*s", TEXT_INDENT, "");
-            column = TEXT_INDENT;
-        } else if (column > TEXT_INDENT) {
-            fputc(' ', out);
-            column++;
-        }
-        fprintf(out, "%.*s", length, text);
-        column += length;
-        text += length + (text[length] == ' ');
-    }
+    words_fill(out, text, strlen(text), 0, TEXT_INDENT, WIDTH);
     fputc('\n', out);
 }
 

@@ -130,6 +130,30 @@ static void sobol_point(const struct doe *s, size_t n, uint64_t point, uint64_t 
 
 /* ---- methods --------------------------------------------------------------------------------- */
 
+static void random_units(const struct doe *s, uint64_t point, double *u)
+{
+    for (size_t j = 0; j < s->factors; j++)
+        u[j] = random_unit(s, point, j);
+}
+
+static void lhs_unit(const struct doe *s, uint64_t point, double *u)
+{
+    for (size_t j = 0; j < s->factors; j++) {
+        const double place = s->stratum[j * s->count + point] + random_unit(s, point, j);
+        /* The last number below the stratum's end where rounding would leave it. */
+        const double end = (s->stratum[j * s->count + point] + 1.0) / (double)s->count;
+        u[j] = fmin(place / (double)s->count, nextafter(end, 0));
+    }
+}
+
+static void sobol_unit(const struct doe *s, uint64_t point, double *u)
+{
+    uint64_t x[DOE_MAX_FACTORS];
+    sobol_point(s, s->factors, point, x);
+    for (size_t j = 0; j < s->factors; j++)
+        u[j] = unit_number(x[j]);
+}
+
 static void saltelli_unit(const struct doe *s, uint64_t point, double *u)
 {
     const size_t k = s->factors;
@@ -160,12 +184,6 @@ static void morris_unit(const struct doe *s, uint64_t point, double *u)
     }
 }
 
-/* The odd multiples of 2^-53: inside (0, 1), and never a half. */
-static double inner_number(uint64_t bits)
-{
-    return unit_number(bits | 1);
-}
-
 static void sphere_unit(const struct doe *s, uint64_t point, double *u)
 {
     const size_t k = s->factors;
@@ -182,7 +200,8 @@ static void sphere_unit(const struct doe *s, uint64_t point, double *u)
         return;
     }
     for (size_t j = 0; j < k; j++) {
-        direction[j] = gsl_cdf_ugaussian_Pinv(inner_number(x[j]));
+        /* of odd multiples of 2^-53: inside (0, 1), and never a half */
+        direction[j] = gsl_cdf_ugaussian_Pinv(unit_number(x[j] | 1));
         square += direction[j] * direction[j];
     }
     for (size_t j = 0; j < k; j++)
@@ -248,34 +267,9 @@ void doe_end(struct doe *s)
 
 void doe_unit(const struct doe *s, uint64_t point, double *u)
 {
-    uint64_t x[DOE_MAX_FACTORS];
-
-    switch (s->method) {
-    case DOE_SALTELLI:
-        saltelli_unit(s, point, u);
-        return;
-    case DOE_MORRIS:
-        morris_unit(s, point, u);
-        return;
-    case DOE_SPHERE:
-        sphere_unit(s, point, u);
-        return;
-    case DOE_SOBOL:
-        sobol_point(s, s->factors, point, x);
-        break;
-    default:
-        break;
-    }
-    for (size_t j = 0; j < s->factors; j++) {
-        if (s->method == DOE_SOBOL) {
-            u[j] = unit_number(x[j]);
-        } else if (s->method == DOE_LHS) {
-            const double place = s->stratum[j * s->count + point] + random_unit(s, point, j);
-            /* The last number below the stratum's end where rounding would leave it. */
-            const double end = (s->stratum[j * s->count + point] + 1.0) / (double)s->count;
-            u[j] = fmin(place / (double)s->count, nextafter(end, 0));
-        } else {
-            u[j] = random_unit(s, point, j);
-        }
-    }
+    static void (*const unit[])(const struct doe *, uint64_t, double *) = {
+        [DOE_RANDOM] = random_units,    [DOE_LHS] = lhs_unit,       [DOE_SOBOL] = sobol_unit,
+        [DOE_SALTELLI] = saltelli_unit, [DOE_MORRIS] = morris_unit, [DOE_SPHERE] = sphere_unit,
+    };
+    unit[s->method](s, point, u);
 }

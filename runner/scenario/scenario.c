@@ -89,7 +89,6 @@ static void read_map(struct reader *r, const struct tree_node *map, const char *
 static bool read_bound(struct reader *r, const struct scenario_field *field,
                        const struct tree_node *node)
 {
-    char *place = (char *)&r->s->base + field->offset;
     double number = 0;
     uint64_t mask = 0;
     const size_t pole = (field->offset - offsetof(struct scenario_values, pole_re)) / sizeof number;
@@ -99,13 +98,9 @@ static bool read_bound(struct reader *r, const struct scenario_field *field,
         : field->type == FIELD_WORDS ? field_words(&r->problems, field, field->path, node, &mask)
                                      : field_value(&r->problems, field, field->path, node, &number);
     if (good && field->type == FIELD_WORDS)
-        mask = mechanism_contacts(r->s->scene, (uint32_t)mask);
-    if (good && field->type == FIELD_NUMBER) {
-        memcpy(place, &number, sizeof number);
-    } else if (good) {
-        const int word = field->type == FIELD_WORDS ? (int)mask : (int)number;
-        memcpy(place, &word, sizeof word);
-    }
+        number = (double)mechanism_contacts(r->s->scene, (uint32_t)mask);
+    if (good)
+        scenario_put(&r->s->base, field->offset, field->type != FIELD_NUMBER, number);
     return good;
 }
 
@@ -274,18 +269,11 @@ static void set_defaults(struct reader *r)
         const struct scenario_field *field = &r->schema->field[i];
         if (field->offset == NO_OFFSET || reader_described(r, field->path))
             continue;
-        char *place = (char *)base + field->offset;
-        if (field->type == FIELD_NUMBER) {
-            for (size_t k = 0;
-                 k < schema_items(field) &&
-                 !(strchr(field->path, '[') && isnan(field->fallback) && !field->fewer);
-                 k++)
-                memcpy(place + k * sizeof field->fallback, &field->fallback,
-                       sizeof field->fallback);
-        } else if (field->type == FIELD_WORD) {
-            int word = isnan(field->fallback) ? 0 : (int)field->fallback;
-            memcpy(place, &word, sizeof word);
-        }
+        const bool required = strchr(field->path, '[') && isnan(field->fallback) && !field->fewer;
+        for (size_t k = 0; field->type == FIELD_NUMBER && k < schema_items(field) && !required; k++)
+            scenario_put(base, field->offset + k * sizeof(double), false, field->fallback);
+        if (field->type == FIELD_WORD)
+            scenario_put(base, field->offset, true, isnan(field->fallback) ? 0 : field->fallback);
     }
     if (r->s->scene && r->s->scene->actuators == 0)
         base->torque_limit = INFINITY;

@@ -276,6 +276,8 @@ void scenario_axis_text(const struct scenario_axis *axis, size_t i, int k, char 
  * without one). By these random numbers are keyed: they do not depend on sweep.sample.count. */
 void scenario_case_keys(const struct scenario *s, uint64_t index, uint64_t *grid, uint64_t *sample);
 
+/* Puts a number, or (`integer`) a word or whole number, at the offset of its field. */
+void scenario_put(struct scenario_values *values, size_t offset, bool integer, double value);
 /* Fields of case `index` (flat, row-major in the order of the axes): base, then the axes. */
 void scenario_case_values(const struct scenario *s, uint64_t index, struct scenario_values *values);
 

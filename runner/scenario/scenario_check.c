@@ -169,13 +169,6 @@ static void check_required(struct reader *r, const struct situation *is)
 
 /* ---- equilibria ------------------------------------------------------------------------------ */
 
-/* Whether an equilibrium, initial.equilibrium or controller.equilibrium, is there, or may be. */
-static bool has_equilibrium(struct reader *r, const char *path)
-{
-    const struct seen *const map = reader_seen(r, path);
-    return map->node || map->bad || any_below(r, path, false) || any_below(r, path, true);
-}
-
 /* What a mechanism stands on: a state in which it stands has no translation of its own. */
 static void check_standing(struct reader *r, const struct situation *is)
 {
@@ -234,7 +227,10 @@ static void check_controller(struct reader *r, const struct situation *is)
         reader_refuse(r, "controller.kind", ": the scene %s has no actuators", r->s->scene->name);
     if (!is->law->designed)
         return;
-    base->design_point.given = has_equilibrium(r, "controller.equilibrium");
+    const struct seen *const target = reader_seen(r, "controller.equilibrium");
+    base->design_point.given = target->node || target->bad || /* or may be there */
+                               any_below(r, "controller.equilibrium", false) ||
+                               any_below(r, "controller.equilibrium", true);
     if (!base->design_point.given && is->start_known && !is->from_equilibrium) {
         reader_refuse(r, "controller.equilibrium",
                       " is missing: %s needs one where the run does not begin at one",

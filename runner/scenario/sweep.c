@@ -574,6 +574,13 @@ void scenario_case_keys(const struct scenario *s, uint64_t index, uint64_t *grid
     *sample = index % points;
 }
 
+void scenario_put(struct scenario_values *values, size_t offset, bool integer, double value)
+{
+    const int whole = integer ? (int)value : 0;
+    memcpy((char *)values + offset, integer ? (const void *)&whole : (const void *)&value,
+           integer ? sizeof whole : sizeof value);
+}
+
 void scenario_case_values(const struct scenario *s, uint64_t index, struct scenario_values *values)
 {
     *values = s->base;
@@ -582,14 +589,8 @@ void scenario_case_values(const struct scenario *s, uint64_t index, struct scena
         size_t point = (size_t)(index % axis->count);
         index /= axis->count;
         for (int k = 0; k < axis->paths; k++) {
-            double value = scenario_axis_value(axis, point, k);
-            char *place = (char *)values + axis->offset[k];
-            if (axis->integer[k]) {
-                int number = (int)value;
-                memcpy(place, &number, sizeof number);
-            } else {
-                memcpy(place, &value, sizeof value);
-            }
+            scenario_put(values, axis->offset[k], axis->integer[k],
+                         scenario_axis_value(axis, point, k));
         }
     }
 }
