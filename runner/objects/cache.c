@@ -155,17 +155,18 @@ static DIR *list(const struct cache *cache)
     return stream;
 }
 
-bool cache_find(const struct cache *cache, const char *name, bool stem, struct image *image)
+bool cache_find(const struct cache *cache, const char *name, struct image *image)
 {
+    const size_t stem = strlen(name) - strlen(of_object);
     bool found = false;
     *image = (struct image){NULL, 0};
     if (cache->directory < 0)
         return false;
-    if (!stem)
+    if (name[stem - 1] != '-')
         return take_file(cache, name, image);
     DIR *const names = list(cache);
     for (struct dirent *e; names && !found && (e = readdir(names));)
-        found = ends(e->d_name, of_object) && strncmp(e->d_name, name, strlen(name)) == 0 &&
+        found = ends(e->d_name, of_object) && strncmp(e->d_name, name, stem) == 0 &&
                 take_file(cache, e->d_name, image);
     if (names)
         closedir(names);

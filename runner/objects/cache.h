@@ -30,12 +30,12 @@ struct cache {
 bool cache_open(struct cache *cache, bool looks, stance_message *message);
 void cache_close(struct cache *cache);
 
-/* The file of an object: NAME-KEY.so, key as in its label. */
+/* The file of an object: NAME-KEY.so, key as in its label, HASH-COMPILER. */
 enum { CACHE_NAME = 160 };
 
-/* Finds an object by the name of its file or (`stem`) by its beginning: of any compiler. What is
- * there and no such object is thrown away, and said. */
-bool cache_find(const struct cache *cache, const char *name, bool stem, struct image *image);
+/* Finds an object by the name of its file; NAME-HASH-.so: of any compiler. What is there and no
+ * such object is thrown away, and said. */
+bool cache_find(const struct cache *cache, const char *name, struct image *image);
 
 /* Keeps a sealed image under this name. false: it cannot, for the reason in `why`. */
 bool cache_keep(const struct cache *cache, const char *name, const struct image *image,

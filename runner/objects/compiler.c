@@ -65,55 +65,30 @@ static size_t split(char *text, char **word, size_t most)
 
 /* ---- processes ----------------------------------------------------------------------------- */
 
-/* This process's environment, but for temporary files in the working directory and messages in
- * English; to be freed. */
-static char **environment(void)
-{
-    static char tmpdir[] = "TMPDIR=.", language[] = "LC_ALL=C";
-    size_t n = 0, kept = 0;
-    while (environ[n])
-        n++;
-    char **const all = malloc((n + 3) * sizeof *all);
-    for (size_t i = 0; all && i < n; i++)
-        if (strncmp(environ[i], "TMPDIR=", 7) != 0 && strncmp(environ[i], "LC_ALL=", 7) != 0)
-            all[kept++] = environ[i];
-    if (all) {
-        all[kept++] = tmpdir;
-        all[kept++] = language;
-        all[kept] = NULL;
-    }
-    return all;
-}
-
 /* Starts a program, in a directory (negative: here), that writes into `output`. Negative: it cannot
- * be started; errno says why. */
+ * be started. */
 static pid_t start(char *const *argument, int directory, int output)
 {
     posix_spawn_file_actions_t actions;
     posix_spawnattr_t group; /* of its own, to be ended as a whole */
-    pid_t child = -1;
-    char **const variables = environment();
-    int error = variables ? posix_spawn_file_actions_init(&actions) : ENOMEM;
-    if (error == 0 && (error = posix_spawnattr_init(&group)) != 0)
+    pid_t child;
+    if (posix_spawn_file_actions_init(&actions) != 0)
+        return -1;
+    if (posix_spawnattr_init(&group) != 0) {
         posix_spawn_file_actions_destroy(&actions);
-    if (error == 0) {
-        error = posix_spawnattr_setflags(&group, POSIX_SPAWN_SETPGROUP);
-        error = error ? error : posix_spawnattr_setpgroup(&group, 0);
-        error = error ? error
-                      : posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null",
-                                                         O_RDONLY, 0);
-        error = error ? error : posix_spawn_file_actions_adddup2(&actions, output, STDOUT_FILENO);
-        error = error ? error : posix_spawn_file_actions_adddup2(&actions, output, STDERR_FILENO);
-        if (directory >= 0)
-            error = error ? error : posix_spawn_file_actions_addfchdir_np(&actions, directory);
-        error = error ? error
-                      : posix_spawnp(&child, argument[0], &actions, &group, argument, variables);
-        posix_spawn_file_actions_destroy(&actions);
-        posix_spawnattr_destroy(&group);
+        return -1;
     }
-    free(variables);
-    errno = error;
-    return error == 0 ? child : -1;
+    const bool good =
+        posix_spawnattr_setflags(&group, POSIX_SPAWN_SETPGROUP) == 0 &&
+        posix_spawnattr_setpgroup(&group, 0) == 0 &&
+        posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0) == 0 &&
+        posix_spawn_file_actions_adddup2(&actions, output, STDOUT_FILENO) == 0 &&
+        posix_spawn_file_actions_adddup2(&actions, output, STDERR_FILENO) == 0 &&
+        (directory < 0 || posix_spawn_file_actions_addfchdir_np(&actions, directory) == 0) &&
+        posix_spawnp(&child, argument[0], &actions, &group, argument, environ) == 0;
+    posix_spawn_file_actions_destroy(&actions);
+    posix_spawnattr_destroy(&group);
+    return good ? child : -1;
 }
 
 /* Its status as of waitpid, -1 when there is none. Where the watch (NULL: nobody) says stop it is
@@ -159,30 +134,37 @@ static bool ask(const struct compiler *compiler, char *option, char text[OUTPUT]
     return status == 0 && text[0];
 }
 
+enum { BEFORE = 3 }; /* words before the compiler's own */
+
 /* It will run in another directory. */
 static bool make_absolute(struct compiler *compiler)
 {
     char here[PATH_MAX];
-    const char *const name = compiler->word[0];
+    char **const word = &compiler->word[BEFORE];
+    const char *const name = *word;
     if (name[0] == '/' || !strchr(name, '/'))
         return true;
     const int n = getcwd(here, sizeof here)
                       ? snprintf(compiler->path, sizeof compiler->path, "%s/%s", here, name)
                       : -1;
-    compiler->word[0] = compiler->path;
+    *word = compiler->path;
     return n > 0 && (size_t)n < sizeof compiler->path;
 }
 
-/* Is there a compiler of this name? */
+/* Is there a compiler of this name? It has temporary files in the directory that it runs in, and
+ * says what it says in English. */
 bool compiler_named(struct compiler *compiler, const char *name)
 {
+    static char *const before[BEFORE] = {"/usr/bin/env", "TMPDIR=.", "LC_ALL=C"};
     static char version[] = "--version", machine[] = "-dumpmachine";
     char said[2 * OUTPUT], hash[CHECKSUM_SHA256_TEXT];
     if (strlen(name) >= sizeof compiler->text)
         return false;
     snprintf(compiler->text, sizeof compiler->text, "%s", name);
-    compiler->words = split(compiler->text, compiler->word, COMPILER_WORDS);
-    if (compiler->words == 0 || !make_absolute(compiler) || !ask(compiler, version, said))
+    memcpy(compiler->word, before, sizeof before);
+    compiler->words =
+        BEFORE + split(compiler->text, compiler->word + BEFORE, COMPILER_WORDS - BEFORE);
+    if (compiler->words == BEFORE || !make_absolute(compiler) || !ask(compiler, version, said))
         return false;
     snprintf(compiler->version, sizeof compiler->version, "%.*s", (int)strcspn(said, "\n"), said);
     if (!ask(compiler, machine, said + strlen(said)))
@@ -206,6 +188,29 @@ bool compiler_find(struct compiler *compiler, stance_message *why)
         if (compiler_named(compiler, names[i]))
             return true;
     return complain(why, "there is no compiler here (CC, cc, gcc, clang)");
+}
+
+bool compiler_label(const struct compiler *compiler, const char *const *text, size_t texts,
+                    struct image_label *label)
+{
+    size_t size, embedded;
+    char *all = NULL, hash[CHECKSUM_SHA256_TEXT];
+    const char *const engine = sources(&embedded);
+    FILE *const stream = open_memstream(&all, &size);
+    for (size_t i = 0; stream && i < texts; i++)
+        fwrite(text[i], 1, strlen(text[i]) + 1, stream); /* each with its end */
+    if (stream)
+        fwrite(engine, 1, embedded, stream);
+    const bool good = stream && !ferror(stream);
+    if ((stream && fclose(stream) != 0) || !good || !all) {
+        free(all);
+        return false;
+    }
+    checksum_sha256(all, size, hash);
+    free(all);
+    snprintf(label->key, sizeof label->key, "%.32s-%s", hash, compiler->identity);
+    snprintf(label->compiler, sizeof label->compiler, "%s", compiler->version);
+    return true;
 }
 
 /* ---- compiling ----------------------------------------------------------------------------- */

@@ -11,7 +11,7 @@
 
 #include "engine/stance.h"
 
-enum { COMPILER_WORDS = 16 };
+enum { COMPILER_WORDS = 19 };
 
 /* The environment variable CC if it is set, else the first of cc, gcc and clang in PATH. */
 struct compiler {
@@ -26,6 +26,10 @@ struct compiler {
 bool compiler_find(struct compiler *compiler, stance_message *why);
 /* The one of this name. */
 bool compiler_named(struct compiler *compiler, const char *name);
+/* The label of what it makes of these texts and of the embedded sources, its key by all of that: of
+ * one without an identity "HASH-". false: no memory. */
+bool compiler_label(const struct compiler *compiler, const char *const *text, size_t texts,
+                    struct image_label *label);
 
 /* The flags that an instruction set is compiled with, separated by blanks; NULL: there is none of
  * this name. And the name of each instruction set of this build, NULL past the last. */

@@ -8,7 +8,6 @@
 #include "load.h"
 #include "sources.h"
 
-#include "runner/base/checksum.h"
 #include "runner/base/message.h"
 
 #include <dlfcn.h>
@@ -31,7 +30,6 @@ struct making {
     const char *isa;
     const stance_kernel *reference; /* of this rank; NULL: none, or others alone want it */
     struct image image;             /* sealed */
-    size_t stem;                    /* characters of the name that are any compiler's */
     enum object_origin origin;
     bool checked; /* on this rank */
     struct image_label label;
@@ -56,32 +54,13 @@ static bool on_demand(const stance_method *method)
     return sources_have(path);
 }
 
-/* ---- keys ---------------------------------------------------------------------------------- */
-
-/* The name of its file: by a hash of all that it is made of, and the compiler's. */
+/* The name of its file: by all that it is made of. */
 static bool name_object(struct making *m, const char *tables, const struct compiler *compiler)
 {
     const char *const text[] = {tables, m->method->name, m->isa, compiler_flags(m->isa)};
-    size_t size, embedded;
-    char *all = NULL, hash[CHECKSUM_SHA256_TEXT];
-    const char *const engine = sources(&embedded);
-    FILE *const stream = open_memstream(&all, &size);
-    for (size_t i = 0; stream && i < sizeof text / sizeof *text; i++)
-        fwrite(text[i], 1, strlen(text[i]) + 1, stream); /* each with its end */
-    if (stream)
-        fwrite(engine, 1, embedded, stream);
-    const bool good = stream && !ferror(stream);
-    if ((stream && fclose(stream) != 0) || !good || !all) {
-        free(all);
+    if (!compiler_label(compiler, text, sizeof text / sizeof *text, &m->label))
         return false;
-    }
-    checksum_sha256(all, size, hash);
-    free(all);
-    snprintf(m->label.key, sizeof m->label.key, "%.32s-%s", hash, compiler->identity);
-    snprintf(m->label.compiler, sizeof m->label.compiler, "%s", compiler->version);
-    m->stem =
-        (size_t)snprintf(m->name, sizeof m->name, "%s-%s-%.32s", m->method->name, m->isa, hash);
-    snprintf(m->name + m->stem, sizeof m->name - m->stem, "-%s.so", compiler->identity);
+    snprintf(m->name, sizeof m->name, "%s-%s-%s.so", m->method->name, m->isa, m->label.key);
     return true;
 }
 
@@ -283,16 +262,14 @@ void objects_later_free(struct objects_later *later)
 
 /* Which of them have no image and may get one, after a look into the cache. `why`: one is refused,
  * as is known. */
-static size_t look(const struct objects_request *request, const struct cache *cache, bool stem,
+static size_t look(const struct objects_request *request, const struct cache *cache,
                    struct making *making, size_t count, struct making **missing,
                    stance_message *why)
 {
     size_t n = 0;
     for (size_t i = 0; i < count; i++) {
         struct making *const m = &making[i];
-        char name[CACHE_NAME];
-        snprintf(name, sizeof name, "%.*s", stem ? (int)m->stem : CACHE_NAME, m->name);
-        if (cache_find(cache, name, stem, &m->image)) {
+        if (cache_find(cache, m->name, &m->image)) {
             m->origin = OBJECT_KEPT;
             continue;
         }
@@ -319,7 +296,7 @@ static enum exit_code make(const struct objects_request *request, bool may_come,
             return no_memory(why) ? EXIT_DONE : EXIT_IO;
     if (!cache_open(&cache, request->looks, why))
         return request->looks ? EXIT_DONE : EXIT_IO;
-    const size_t n = look(request, &cache, !compiles, making, count, missing, why);
+    const size_t n = look(request, &cache, making, count, missing, why);
     for (size_t i = 0; i < n && !compiles; i++)
         missing[i]->origin = OBJECT_REFUSED; /* as good as */
     if (request->brief || request->looks) {
@@ -443,33 +420,38 @@ static size_t place_of(const struct objects_wanted *wanted, const struct making 
     return at;
 }
 
-/* What this rank wants, from what there is. refused[count]: what it must not have. */
+/* What this rank wants and does not have, from what there is. refused[count]: what it must not
+ * have. */
 static enum exit_code take_all(const struct objects_request *request, const struct making *making,
                                size_t count, struct object *object, uint8_t *refused,
                                stance_message *message)
 {
+    enum exit_code code = EXIT_DONE;
     for (size_t k = 0; k < request->count; k++) {
         const struct objects_wanted *const wanted = &request->wanted[k];
         const size_t at = place_of(wanted, making, count);
         const bool found = at < count && making[at].image.size > 0;
+        if (object[k].origin != OBJECT_COMING)
+            continue;
         if (found &&
-            !take(request, &making[at], wanted->reference, &object[k], &refused[at], message) &&
-            !refused[at])
-            return EXIT_IO;
-        if (!found && !wanted->reference) {
+            take(request, &making[at], wanted->reference, &object[k], &refused[at], message))
+            continue;
+        if (found && !refused[at]) {
+            code = EXIT_IO;
+        } else if (!found && !wanted->reference) {
             if (!on_demand(wanted->method)) /* else make has said why */
                 complain(message, "%s is not compiled on demand, and none of this size is built in",
                          wanted->method->name);
             return EXIT_USAGE;
         }
-        if (!found || refused[at]) /* refused by a reference */
+        if (wanted->reference) /* which alone refuses */
             take_reference(wanted,
-                           at == count   ? OBJECT_REFERENCE
-                           : refused[at] ? OBJECT_REFUSED
-                                         : making[at].origin,
+                           at == count ? OBJECT_REFERENCE
+                           : found     ? OBJECT_REFUSED
+                                       : making[at].origin,
                            &object[k]);
     }
-    return EXIT_DONE;
+    return code;
 }
 
 /* Objects of the cache that are refused are not taken again. */
@@ -507,11 +489,6 @@ static void ask_to_stop(void *context)
         request->stop(request->context); /* which tells rank 0 */
 }
 
-const char *objects_isa(size_t index)
-{
-    return compiler_isa(index);
-}
-
 enum exit_code objects_take(const struct parallel *ranks, const struct objects_request *request,
                             struct object *object, struct objects_later **later,
                             stance_message *message)
@@ -525,6 +502,7 @@ enum exit_code objects_take(const struct parallel *ranks, const struct objects_r
         object[k] = (struct object){.kernel = {.structure = request->scene->name,
                                                .method = request->wanted[k].method,
                                                .isa = request->wanted[k].isa},
+                                    .origin = OBJECT_COMING,
                                     .memory = -1};
     }
     message->text[0] = '\0';
@@ -579,28 +557,24 @@ void objects_later_take(struct objects_later *later, struct object *object)
     stance_message why = later->why;
     uint8_t refused[OBJECTS_MOST] = {0};
     struct cache cache;
-    bool missing = false;
+    int missing = 0;
     if (!later->begun && cache_open(&cache, false, &why)) { /* they are in rank 0's memory */
         for (size_t i = 0; i < later->count; i++)
             if (later->making[i].origin == OBJECT_COMING &&
-                cache_find(&cache, later->making[i].name, false, &later->making[i].image))
+                cache_find(&cache, later->making[i].name, &later->making[i].image))
                 later->making[i].origin = OBJECT_KEPT;
         cache_close(&cache);
     }
-    for (size_t k = 0; k < request->count; k++) {
-        if (object[k].origin != OBJECT_COMING)
-            continue;
-        const struct objects_wanted *const wanted = &request->wanted[k];
-        const size_t at = place_of(wanted, later->making, later->count);
-        const bool taken =
-            later->making[at].image.bytes &&
-            take(request, &later->making[at], wanted->reference, &object[k], &refused[at], &why);
-        if (!taken)
-            take_reference(wanted, OBJECT_REFUSED, &object[k]);
-        missing |= !taken;
-    }
+    for (size_t i = 0; i < later->count; i++)
+        if (later->making[i].origin == OBJECT_COMING)
+            later->making[i].origin = OBJECT_REFUSED; /* as good as */
+    for (size_t k = 0; k < request->count; k++)
+        missing -= object[k].origin == OBJECT_REFUSED;
+    take_all(request, later->making, later->count, object, refused, &why);
+    for (size_t k = 0; k < request->count; k++)
+        missing += object[k].origin == OBJECT_REFUSED;
     forget_own(later->making, later->count, refused, &why);
-    if (missing)
+    if (missing > 0)
         cache_say("%s; kernels that are built in compute on, more slowly",
                   why.text[0] ? why.text : "a compiled kernel is not in the cache");
 }

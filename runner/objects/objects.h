@@ -74,10 +74,6 @@ struct object {
     int memory;
 };
 
-/* Names of the instruction sets that this build compiles for, run by this machine or not; NULL past
- * the last. */
-const char *objects_isa(size_t index);
-
 /* What comes later. It has what it needs of the request, but for its scene. */
 struct objects_later;
 

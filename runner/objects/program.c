@@ -3,7 +3,6 @@
 #include "cache.h"
 #include "compiler.h"
 #include "load.h"
-#include "sources.h"
 
 #include "engine/mechanism.h"
 
@@ -12,7 +11,6 @@
 
 #include <dlfcn.h>
 #include <elf.h>
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -30,7 +28,7 @@ struct program {
     const struct law_object *object;
     void *library;
     int descriptor;
-    int coordinates, measured, sample, memory, torques; /* numbers */
+    int measured, sample, memory, torques; /* numbers */
     uint64_t samples;
     struct crash_law *watch;
     char file[100];
@@ -71,13 +69,7 @@ static double *begin(const stance_program *program, const stance_case *c)
         return NULL;
     double *const sample = all + GUARD, *const out = torque_of(p, sample);
     sample[-1] = sample[p->sample] = out[-1] = out[p->torques] = guard;
-    double *const target = sample + p->measured, *const rest = target + p->coordinates;
-    for (int i = 0; i < p->coordinates; i++)
-        target[i] = NAN;
-    for (int k = 0; k < c->scene->postures && c->has_target; k++)
-        target[c->scene->posture[k]] = c->near.target[k];
-    for (int i = 0; i < p->torques; i++)
-        rest[i] = c->has_target ? c->near.feedforward[i] : NAN;
+    program_put_rest(c, sample + p->measured);
     return sample;
 }
 
@@ -147,43 +139,31 @@ static void name_in_c(const char *name, char text[STANCE_NAME + 8])
         snprintf(text + n, 8, "_");
 }
 
-static void print_names(FILE *out, const char *list, const char *count, int n,
-                        const char *(*name)(const stance_scene *scene, int i),
-                        const stance_scene *scene)
+static void print_names(FILE *out, const char *list, int n, const char *const *name)
 {
     char text[STANCE_NAME + 8];
     fprintf(out, "#define LAW_%s(X)", list);
     for (int i = 0; i < n; i++) {
-        name_in_c(name(scene, i), text);
+        name_in_c(name[i], text);
         fprintf(out, " X(%s)", text);
     }
-    fprintf(out, "\nenum { %s = %d };\n", count, n);
-}
-
-static const char *coordinate_name(const stance_scene *scene, int i)
-{
-    return scene->coordinate[i].name;
-}
-static const char *contact_name(const stance_scene *scene, int i)
-{
-    return scene->contact_name[i];
-}
-static const char *actuator_name(const stance_scene *scene, int i)
-{
-    return scene->actuator_name[i];
+    fprintf(out, "\nenum { %s = %d };\n", list, n);
 }
 
 /* names.h, and the source with its name; freed by the caller. NULL: no memory. */
 static char *names_text(const struct program_text *text, const stance_scene *scene)
 {
+    const char *coordinate[STANCE_MAX_COORDINATES];
     char *all = NULL;
     size_t size;
     FILE *const out = open_memstream(&all, &size);
     if (!out)
         return NULL;
-    print_names(out, "COORDINATES", "COORDINATES", scene->coordinates, coordinate_name, scene);
-    print_names(out, "CONTACTS", "CONTACTS", scene->contacts, contact_name, scene);
-    print_names(out, "ACTUATORS", "ACTUATORS", scene->actuators, actuator_name, scene);
+    for (int i = 0; i < scene->coordinates; i++)
+        coordinate[i] = scene->coordinate[i].name;
+    print_names(out, "COORDINATES", scene->coordinates, coordinate);
+    print_names(out, "CONTACTS", scene->contacts, scene->contact_name);
+    print_names(out, "ACTUATORS", scene->actuators, scene->actuator_name);
     fprintf(out, "enum { POSTURES = %d };\n", scene->postures);
     fprintf(out, "enum { DATA = %zu };\nstatic const double data[DATA] = {", text->count);
     for (size_t i = 0; i < text->count; i++)
@@ -243,32 +223,6 @@ static const char *law_flags(const struct compiler *compiler)
 void program_hash(const char *source, char hash[CHECKSUM_SHA256_TEXT])
 {
     checksum_sha256(source, strlen(source), hash);
-}
-
-/* The name of its file in the cache: by all that it is made of. */
-static bool name_it(const char *source, const char *names, const struct compiler *compiler,
-                    char name[CACHE_NAME], struct image_label *label)
-{
-    const char *const part[] = {source, names, LAW_FLAGS_GCC, LAW_FLAGS_CLANG,
-                                compiler_flags(law_isa())};
-    char *all = NULL, hash[CHECKSUM_SHA256_TEXT];
-    size_t size, embedded;
-    const char *const engine = sources(&embedded);
-    FILE *const stream = open_memstream(&all, &size);
-    for (size_t i = 0; stream && i < sizeof part / sizeof *part; i++)
-        fwrite(part[i], 1, strlen(part[i]) + 1, stream);
-    if (stream)
-        fwrite(engine, 1, embedded, stream);
-    if (!stream || fclose(stream) != 0) {
-        free(all);
-        return false;
-    }
-    checksum_sha256(all, size, hash);
-    free(all);
-    snprintf(label->key, sizeof label->key, "%.32s-%s", hash, compiler->identity);
-    snprintf(label->compiler, sizeof label->compiler, "%s", compiler->version);
-    snprintf(name, CACHE_NAME, "program-%.32s-%s.so", hash, compiler->identity);
-    return true;
 }
 
 /* `law` says for what, and how; its image is handed over. */
@@ -410,6 +364,8 @@ static bool look_into(const struct image *image, const char *file, stance_messag
 static bool found(const struct program_text *text, const char *source, const char *names,
                   struct image *image, stance_message *message)
 {
+    const char *const part[] = {source, names, LAW_FLAGS_GCC, LAW_FLAGS_CLANG,
+                                compiler_flags(law_isa())};
     struct compiler compiler = {.identity = ""};
     struct image_label label;
     struct cache cache;
@@ -417,13 +373,12 @@ static bool found(const struct program_text *text, const char *source, const cha
     char name[CACHE_NAME];
     const bool compiles = compiler_find(&compiler, message);
     const stance_message why = *message;
-    if (!name_it(source, names, &compiler, name, &label))
+    if (!compiler_label(&compiler, part, sizeof part / sizeof *part, &label))
         return no_memory(message);
     if (!cache_open(&cache, false, message))
         return false;
-    if (!compiles) /* any compiler's does */
-        name[strlen("program-") + 32] = '\0';
-    bool good = cache_find(&cache, name, !compiles, image);
+    snprintf(name, sizeof name, "program-%s.so", label.key);
+    bool good = cache_find(&cache, name, image);
     if (!good && !compiles) {
         complain(message, "%.80s: %.140s", text->file, why.text);
     } else if (!good) {
@@ -446,7 +401,6 @@ static bool take(struct program *p, const stance_scene *scene, size_t numbers, c
     p->object = dlsym(p->library, "stance_law_object");
     if (!p->object)
         return complain(message, "%.80s: does not include stance_law.h", p->file);
-    p->coordinates = scene->coordinates;
     p->measured = STANCE_SAMPLE_HEAD + 2 * scene->coordinates + scene->contacts;
     p->sample = p->measured + scene->coordinates + scene->actuators;
     p->torques = scene->actuators;

@@ -16,6 +16,8 @@
 
 #include "runner/base/checksum.h"
 
+#include <math.h>
+
 struct program_text {
     const char *file;       /* its name, for messages */
     const char *source;     /* C */
@@ -24,6 +26,20 @@ struct program_text {
     size_t count;
     uint64_t samples; /* points of sweep.sample, 1 without: names cases */
 };
+
+/* The end of what a law is told in each sample of a case: the equilibrium's coordinates, then
+ * torques; NAN where the scenario names none. */
+static inline void program_put_rest(const stance_case *c, double *target)
+{
+    const stance_scene *const scene = c->scene;
+    double *const rest = target + scene->coordinates;
+    for (int i = 0; i < scene->coordinates; i++)
+        target[i] = NAN;
+    for (int k = 0; k < scene->postures && c->has_target; k++)
+        target[scene->posture[k]] = c->near.target[k];
+    for (int i = 0; i < scene->actuators; i++)
+        rest[i] = c->has_target ? c->near.feedforward[i] : NAN;
+}
 
 /* SHA-256 of a source: what is trusted. */
 void program_hash(const char *source, char hash[CHECKSUM_SHA256_TEXT]);

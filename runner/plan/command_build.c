@@ -4,6 +4,7 @@
 #include "asked.h"
 #include "kernels.h"
 
+#include "runner/objects/compiler.h"
 #include "runner/objects/objects.h"
 
 #include <errno.h>
@@ -84,7 +85,7 @@ static const struct option options[] = {
     {.rows = asked_options},
     {"--method", "NAME", OPTION_TO(struct request, methods), .word = asked_method,
      .text = "that method; otherwise those of the scenario"},
-    {"--isa", "NAME", OPTION_TO(struct request, isas), .word = objects_isa,
+    {"--isa", "NAME", OPTION_TO(struct request, isas), .word = compiler_isa,
      .text = "for that instruction set, also one that this machine does not run; otherwise the "
              "one in use (stance --version)"},
     {OPTION_TIME_LIMIT},

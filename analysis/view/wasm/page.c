@@ -14,34 +14,17 @@ enum { MOST_SETS = 64 };
 
 struct page page;
 
-EXPORTED(alloc) void *alloc(size_t bytes);
-EXPORTED(release) void release(void *memory);
-EXPORTED(message) const char *message(void);
-EXPORTED(file_open) int file_open(const char *wire, double single);
-EXPORTED(file_axis) int file_axis(int axis, const double *value, size_t numbers);
-EXPORTED(file_designs) int file_designs(const double *number, const uint8_t *status, size_t count);
-EXPORTED(file_stored) void file_stored(double answers, int number);
-EXPORTED(view_open) int view_open(const char *sets);
-EXPORTED(view_cases) double view_cases(void);
-EXPORTED(run)
-int run(const double *index, int n, uint8_t *kind, uint32_t *checksum, double *answer);
-EXPORTED(answer_count) int answer_count(void);
-EXPORTED(refine_begin) int refine_begin(int start, int margin);
-EXPORTED(refine_ask) int refine_ask(double *index, int room);
-EXPORTED(refine_tell) void refine_tell(const double *index, const uint8_t *kind, int n);
-EXPORTED(refine_end) int refine_end(uint8_t *kind, uint8_t *inferred);
-
-void *alloc(size_t bytes)
+EXPORTED(void *, alloc, size_t bytes)
 {
     return malloc(bytes > 0 ? bytes : 1);
 }
 
-void release(void *memory)
+EXPORTED(void, release, void *memory)
 {
     free(memory);
 }
 
-const char *message(void)
+EXPORTED(const char *, message, void)
 {
     return page.message.text;
 }
@@ -99,7 +82,7 @@ static bool open_plan(struct plan *plan, const struct scenario *s, bool single, 
     return false;
 }
 
-int file_open(const char *wire, double single)
+EXPORTED(int, file_open, const char *wire, double single)
 {
     close_view();
     page_designs_forget();
@@ -128,7 +111,7 @@ static bool give_values(struct scenario_axis *axis, const double *value)
     return true;
 }
 
-int file_axis(int axis, const double *value, size_t numbers)
+EXPORTED(int, file_axis, int axis, const double *value, size_t numbers)
 {
     struct scenario_axis *const own = &page.file.axis[axis];
     if (axis < 0 || axis >= page.file.axes || numbers != own->count * (size_t)own->paths)
@@ -136,7 +119,7 @@ int file_axis(int axis, const double *value, size_t numbers)
     return give_values(own, value);
 }
 
-int file_designs(const double *number, const uint8_t *status, size_t count)
+EXPORTED(int, file_designs, const double *number, const uint8_t *status, size_t count)
 {
     struct plan *const plan = &page.file_plan;
     if (count != plan->designs)
@@ -146,13 +129,13 @@ int file_designs(const double *number, const uint8_t *status, size_t count)
     return 1;
 }
 
-void file_stored(double answers, int number)
+EXPORTED(void, file_stored, double answers, int number)
 {
     page.stored = (uint64_t)answers;
     page.number = number;
 }
 
-int view_open(const char *sets)
+EXPORTED(int, view_open, const char *sets)
 {
     const char *set[MOST_SETS];
     size_t count = 0;
@@ -179,7 +162,7 @@ int view_open(const char *sets)
            (page_design(0) || !page.message.text[0]);
 }
 
-double view_cases(void)
+EXPORTED(double, view_cases, void)
 {
     return (double)page.view_plan.rows;
 }
@@ -315,7 +298,7 @@ static void case_done(void *context, const stance_case *c, stance_result *result
     s->place[slot] = -1;
 }
 
-int run(const double *index, int n, uint8_t *kind, uint32_t *checksum, double *answer)
+EXPORTED(int, run, const double *index, int n, uint8_t *kind, uint32_t *checksum, double *answer)
 {
     static struct stream_of_cases s; /* large */
     s.index = index, s.n = n, s.next = 0;
@@ -331,7 +314,7 @@ int run(const double *index, int n, uint8_t *kind, uint32_t *checksum, double *a
     return s.broken ? 0 : n;
 }
 
-int answer_count(void)
+EXPORTED(int, answer_count, void)
 {
     return STANCE_ANSWER_COUNT;
 }
@@ -342,7 +325,7 @@ static struct refine *refining;
 static uint64_t *asked;
 static size_t asked_room;
 
-int refine_begin(int start, int margin)
+EXPORTED(int, refine_begin, int start, int margin)
 {
     struct refine_map map = refine_map_of(&page.view);
     refine_free(refining);
@@ -358,7 +341,7 @@ int refine_begin(int start, int margin)
     return refining ? 1 : no_memory(&page.message);
 }
 
-int refine_ask(double *index, int room)
+EXPORTED(int, refine_ask, double *index, int room)
 {
     if (asked_room < (size_t)room) {
         free(asked);
@@ -380,13 +363,13 @@ static int label_of(uint8_t kind)
     return kind < sizeof label / sizeof *label ? label[kind] : REFINE_FAILED;
 }
 
-void refine_tell(const double *index, const uint8_t *kind, int n)
+EXPORTED(void, refine_tell, const double *index, const uint8_t *kind, int n)
 {
     for (int i = 0; i < n; i++)
         refine_set(refining, (uint64_t)index[i], label_of(kind[i]));
 }
 
-int refine_end(uint8_t *kind, uint8_t *inferred)
+EXPORTED(int, refine_end, uint8_t *kind, uint8_t *inferred)
 {
     refine_infer(refining);
     for (uint64_t row = 0; row < page.view.cases; row++) {

@@ -11,7 +11,10 @@
 #include "runner/plan/plan.h"
 #include "runner/scenario/schema.h"
 
-#define EXPORTED(name) __attribute__((export_name(#name), used))
+/* EXPORTED(type, name, parameters) begins its definition. */
+#define EXPORTED(type, name, ...)                                                                  \
+    __attribute__((export_name(#name), used)) type name(__VA_ARGS__);                              \
+    type name(__VA_ARGS__)
 
 struct page {
     char *wire; /* the file's scenario, see wire.c */
@@ -48,12 +51,13 @@ uint32_t page_checksum(const stance_result *result);
 /* page_text.c: JSON in a buffer that the next one replaces. */
 struct text {
     char *bytes;
-    size_t length, room;
+    size_t length;
+    FILE *out;
 };
-void text_clear(struct text *text);
-__attribute__((format(printf, 2, 3))) void text_add(struct text *text, const char *format, ...);
+void text_begin(struct text *text);
 /* In the format "'" is a quotation mark, '~' a comma that nothing opens before; '$' stands for a
- * string, '?' for a truth, '#' for a double, null where it is not finite. */
+ * string, '?' for a truth, '#' for a double, null where it is not finite, '&' for an unsigned long
+ * long. */
 void text_json(struct text *text, const char *format, ...);
 const char *text_done(struct text *text);
 

@@ -3,16 +3,14 @@
 #include "page.h"
 
 #include "runner/base/message.h"
+#include "runner/objects/program.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 /* Calls the law: `at` begins with what it is told, then parameters, memory, torques; so many
  * numbers of each. 0: it trapped. */
 __attribute__((import_module("page"), import_name("law"))) int page_law(double *at, int numbers);
-
-EXPORTED(file_law) void file_law(int memory);
 
 static struct {
     stance_program base;
@@ -27,19 +25,13 @@ static size_t told(const stance_case *c)
 
 static double *begin(const stance_program *program, const stance_case *c)
 {
-    const size_t n = (size_t)c->scene->coordinates, actuators = (size_t)c->scene->actuators;
+    const size_t actuators = (size_t)c->scene->actuators;
     const size_t numbers = page.view.law.numbers;
     double *const sample = calloc(told(c) + numbers + law.memory + actuators, sizeof *sample);
     (void)program;
     if (!sample)
         return NULL;
-    double *const rest = sample + told(c) - actuators, *const target = rest - n;
-    for (size_t i = 0; i < n; i++)
-        target[i] = NAN;
-    for (int k = 0; k < c->scene->postures && c->has_target; k++)
-        target[c->scene->posture[k]] = c->near.target[k];
-    for (size_t i = 0; i < actuators; i++)
-        rest[i] = c->has_target ? c->near.feedforward[i] : NAN;
+    program_put_rest(c, sample + told(c) - actuators - c->scene->coordinates);
     memcpy(sample + told(c), c->parameter, numbers * sizeof *sample);
     return sample;
 }
@@ -64,7 +56,7 @@ static void end(const stance_program *program, double *sample)
     free(sample);
 }
 
-void file_law(int memory)
+EXPORTED(void, file_law, int memory)
 {
     law.base = (stance_program){memory > 0, begin, act, end};
     law.memory = (size_t)memory;

@@ -14,10 +14,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-EXPORTED(play) int play(double index, double every, int most_rows);
-EXPORTED(play_text) const char *play_text(void);
-EXPORTED(play_numbers) const double *play_numbers(int which);
-
 enum {
     TIME,
     POSITION,
@@ -124,7 +120,7 @@ static bool make_rows(const stance_scene *scene, const stance_kernel *kernel, in
     return true;
 }
 
-int play(double index, double every, int most_rows)
+EXPORTED(int, play, double index, double every, int most_rows)
 {
     const stance_scene *const scene = page.view.scene;
     const stance_kernel *kernel;
@@ -148,7 +144,7 @@ int play(double index, double every, int most_rows)
     return make_rows(scene, kernel, (int)rows) ? played.rows : 0;
 }
 
-const double *play_numbers(int which)
+EXPORTED(const double *, play_numbers, int which)
 {
     return which >= 0 && which < NUMBERS ? played.number[which] : NULL;
 }
@@ -198,12 +194,12 @@ static void tell_ground(struct text *text)
     }
 }
 
-const char *play_text(void)
+EXPORTED(const char *, play_text, void)
 {
     static struct text text;
     double answer[STANCE_ANSWER_COUNT];
     page_answers(&played.result, answer);
-    text_clear(&text);
+    text_begin(&text);
     text_json(&text,
               "{'rows':#,'interval':#,'step':#,'figure':#,'contacts':#,'kind':#,'checksum':#,"
               "'slope':#,'answers':[",

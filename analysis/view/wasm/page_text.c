@@ -7,72 +7,48 @@
 #include <stdlib.h>
 #include <string.h>
 
-EXPORTED(view_text) const char *view_text(void);
-EXPORTED(answers_text) const char *answers_text(void);
-EXPORTED(case_values) const char *case_values(double index);
-
 /* ---- text that grows; without memory it ends where it was ----------------------------------- */
 
-void text_clear(struct text *text)
+void text_begin(struct text *text)
 {
-    text->length = 0;
+    free(text->bytes);
+    text->bytes = NULL;
+    text->out = open_memstream(&text->bytes, &text->length);
 }
 
-void text_add(struct text *text, const char *format, ...)
+static void add_string(FILE *out, const char *string)
 {
-    va_list arguments;
-    for (;;) {
-        const size_t left = text->room - text->length;
-        va_start(arguments, format);
-        const int n =
-            vsnprintf(text->bytes ? text->bytes + text->length : NULL, left, format, arguments);
-        va_end(arguments);
-        if (n < 0)
-            return;
-        if ((size_t)n < left) {
-            text->length += (size_t)n;
-            return;
-        }
-        const size_t room = 2 * text->room + (size_t)n + 4096;
-        char *const bytes = realloc(text->bytes, room);
-        if (!bytes)
-            return;
-        text->bytes = bytes;
-        text->room = room;
-    }
+    putc('"', out);
+    for (const char *s = string; *s; s++)
+        fprintf(out, (unsigned char)*s < ' ' || *s == '"' || *s == '\\' ? "\\u%04x" : "%c",
+                (unsigned)(unsigned char)*s);
+    putc('"', out);
 }
 
-static void add_string(struct text *text, const char *string)
+/* Whether nothing stands before what is added next, but what opens it. */
+static bool is_first(struct text *text)
 {
-    text_add(text, "\"");
-    for (const char *s = string; *s; s++) {
-        const size_t plain = strcspn(s, "\"\\\b\f\n\r\t\x01\x02\x03\x04\x05\x06\x07\x0b\x0e\x0f"
-                                        "\x10\x11\x12\x13\x14\x15\x16\x17\x18\x19\x1a\x1b\x1c\x1d"
-                                        "\x1e\x1f");
-        text_add(text, "%.*s", (int)plain, s);
-        s += plain;
-        if (!*s)
-            break;
-        text_add(text, "\\u%04x", (unsigned)(unsigned char)*s);
-    }
-    text_add(text, "\"");
+    fflush(text->out);
+    return text->length == 0 || strchr("[{", text->bytes[text->length - 1]);
 }
 
 void text_json(struct text *text, const char *format, ...)
 {
+    FILE *const out = text->out;
     va_list arguments;
     va_start(arguments, format);
-    for (; *format; format++) {
-        const char before = text->length > 0 ? text->bytes[text->length - 1] : '[';
+    for (; out && *format; format++) {
         if (*format == '$') {
-            add_string(text, va_arg(arguments, const char *));
+            add_string(out, va_arg(arguments, const char *));
         } else if (*format == '#') {
             const double number = va_arg(arguments, double);
-            text_add(text, isfinite(number) ? "%.17g" : "null", number);
+            fprintf(out, isfinite(number) ? "%.17g" : "null", number);
+        } else if (*format == '&') {
+            fprintf(out, "%llu", va_arg(arguments, unsigned long long));
         } else if (*format == '?') {
-            text_add(text, va_arg(arguments, int) ? "true" : "false");
-        } else if (*format != '~' || (before != '[' && before != '{')) {
-            text_add(text, "%c", *format == '~' ? ',' : *format == '\'' ? '"' : *format);
+            fputs(va_arg(arguments, int) ? "true" : "false", out);
+        } else if (*format != '~' || !is_first(text)) {
+            putc(*format == '~' ? ',' : *format == '\'' ? '"' : *format, out);
         }
     }
     va_end(arguments);
@@ -80,6 +56,8 @@ void text_json(struct text *text, const char *format, ...)
 
 const char *text_done(struct text *text)
 {
+    if (text->out)
+        fclose(text->out);
     return text->bytes ? text->bytes : "";
 }
 
@@ -183,18 +161,19 @@ static void add_axes(struct text *text, const struct scenario *s)
     text_json(text, "]");
 }
 
-const char *view_text(void)
+EXPORTED(const char *, view_text, void)
 {
     static struct text text;
     const struct scenario *const s = &page.view;
     const stance_law *const law = scenario_law(&s->base);
-    text_clear(&text);
-    text_json(&text, "{'scene':$,'title':$,'method':$,'law':$,'designed':?", s->scene->name,
-              s->title, stance_methods()[s->base.method]->name, law->name,
-              law->designed && s->base.design != DESIGN_GAINS);
-    text_add(&text, ",\"seed\":%llu", (unsigned long long)s->seed);
-    text_json(&text, ",'step':#,'stop_time':#,'slope':#,'cases':#", s->base.step, s->base.stop_time,
-              s->base.robot[STANCE_ROBOT_SLOPE], (double)page.view_plan.rows);
+    text_begin(&text);
+    text_json(&text,
+              "{'scene':$,'title':$,'method':$,'law':$,'designed':?,'seed':&,'step':#,"
+              "'stop_time':#,'slope':#,'cases':#",
+              s->scene->name, s->title, stance_methods()[s->base.method]->name, law->name,
+              law->designed && s->base.design != DESIGN_GAINS, (unsigned long long)s->seed,
+              s->base.step, s->base.stop_time, s->base.robot[STANCE_ROBOT_SLOPE],
+              (double)page.view_plan.rows);
     add_bodies(&text, s->scene);
     add_axes(&text, s);
     text_json(&text, ",'fields':[");
@@ -203,10 +182,10 @@ const char *view_text(void)
     return text_done(&text);
 }
 
-const char *answers_text(void)
+EXPORTED(const char *, answers_text, void)
 {
     static struct text text;
-    text_clear(&text);
+    text_begin(&text);
     text_json(&text, "[");
     for (int a = 0; a < STANCE_ANSWER_COUNT; a++) {
         const stance_answer *const answer = &stance_answers[a];
@@ -224,11 +203,11 @@ const char *answers_text(void)
     return text_done(&text);
 }
 
-const char *case_values(double index)
+EXPORTED(const char *, case_values, double index)
 {
     static struct text text;
     struct scenario_values values;
-    text_clear(&text);
+    text_begin(&text);
     text_json(&text, "{");
     if (index >= 0 && index < (double)page.view_plan.rows) {
         scenario_case_values(&page.view, plan_case(&page.view_plan, (uint64_t)index), &values);
