@@ -15,60 +15,36 @@
  *
  * Also reported: how far a foot is in the ground, and how fast a robot that stands creeps along it.
  */
+#include "accelerations.h"
 #include "analysis/bench/bench.h"
 #include "mujoco_model.h"
 
 #include <math.h>
 
 enum { CASES = 32, ROUNDS = 11, STATES = 200 };
-static const double radius = 1e-4; /* m, of the spheres at the feet */
 
 enum setting { DEFAULT, TRIMMED, SETTINGS };
 static const char *const setting_name[SETTINGS] = {"mujoco default", "mujoco trimmed"};
 
-/* What each setting adds to <option> and to the list of actuators. */
-static const char *const options[SETTINGS] = {
-    [DEFAULT] = "",
-    [TRIMMED] = "solver='PGS' iterations='1' tolerance='0' jacobian='dense'",
-};
-static const char *const flags[SETTINGS] = {
-    [DEFAULT] = "",
-    [TRIMMED] = "<flag equality='disable' frictionloss='disable' limit='disable' passive='disable' "
-                "actuation='disable' sensor='disable' filterparent='disable' refsafe='disable' "
-                "clampctrl='disable'/>",
-};
-
 /* ---- the model ---------------------------------------------------------------------------- */
 
-/* MJCF of the robot (leg, trunk, foot, trunk and hip mass). +theta turns x towards z: about -y. */
-static mjModel *make_model(const double *robot, double friction, double step, enum setting setting)
+static mjModel *make_model(const stance_case *c, enum setting setting)
 {
-    const double l = robot[0], lt = robot[1], m = robot[2], mt = robot[3], mh = robot[4];
-    char xml[4096], leg[2][600];
-    for (int i = 0; i < 2; i++)
-        snprintf(leg[i], sizeof leg[i],
-                 "<body pos='0 0 %.17g'><joint name='q%d' type='hinge' axis='0 -1 0'/>"
-                 "<inertial pos='0 0 %.17g' mass='%.17g' diaginertia='1e-9 1e-9 1e-9'/>"
-                 "<geom type='sphere' size='%.17g' pos='0 0 %.17g' contype='1' conaffinity='1'/>"
-                 "</body>",
-                 -lt, i + 1, -l, m, radius, -l);
-    const double inertia = mt * mh / (mt + mh) * lt * lt;
-    const int length = snprintf(
-        xml, sizeof xml,
-        "<mujoco><compiler angle='radian' inertiafromgeom='false'/>"
-        "<option timestep='%.17g' gravity='0 0 %.17g' %s>%s</option>"
-        "<default><geom friction='%.17g 0.005 0.0001'/></default>"
-        "<worldbody><geom type='plane' size='0 0 1' pos='0 0 %.17g' contype='1' conaffinity='1'/>"
-        "<body><joint type='slide' axis='1 0 0'/><joint type='slide' axis='0 0 1'/>"
-        "<joint type='hinge' axis='0 -1 0'/>"
-        "<inertial pos='0 0 %.17g' mass='%.17g' diaginertia='%.17g %.17g 1e-9'/>%s%s</body>"
-        "</worldbody>%s</mujoco>",
-        step, -STANCE_GRAVITY, options[setting], flags[setting], friction, -radius,
-        -lt * mh / (mt + mh), mt + mh, inertia, inertia, leg[0], leg[1],
-        setting == DEFAULT ? "<actuator><motor joint='q1'/><motor joint='q2'/></actuator>" : "");
-    if (length < 0 || (size_t)length >= sizeof xml)
-        return NULL;
-    return mujoco_model(xml);
+    struct mujoco_biped biped = {.robot = c->robot,
+                                 .gravity = STANCE_GRAVITY,
+                                 .step = c->step,
+                                 .friction = c->friction,
+                                 .point = 1e-9,
+                                 .feet = {1, 1}};
+    if (setting == DEFAULT) {
+        biped.actuator = "<actuator><motor joint='q1'/><motor joint='q2'/></actuator>";
+    } else {
+        biped.option = "solver='PGS' iterations='1' tolerance='0' jacobian='dense'";
+        biped.flag = "<flag equality='disable' frictionloss='disable' limit='disable' "
+                     "passive='disable' actuation='disable' sensor='disable' "
+                     "filterparent='disable' refsafe='disable' clampctrl='disable'/>";
+    }
+    return mujoco_biped(&biped);
 }
 
 /* ---- the same robot? ---------------------------------------------------------------------- */
@@ -79,31 +55,10 @@ static double random_in(uint64_t *state, double low, double high)
     return low + (high - low) * (double)(*state >> 11) * 0x1p-53;
 }
 
-/* Acceleration of ours in flight under held torques: change of the velocity over one step of the
- * midpoint rule, extrapolated from two steps to none. */
-static void acceleration(const stance_kernel *kernel, const stance_case *start, double *result)
-{
-    static const double steps[2] = {1e-4, 5e-5};
-    double change[2][STANCE_MAX_COORDINATES];
-    for (int k = 0; k < 2; k++) {
-        stance_case c = *start;
-        stance_result end;
-        c.step = steps[k];
-        c.steps = 1;
-        kernel->run(&c, &end, 1);
-        for (int i = 0; i < 5; i++)
-            change[k][i] = (end.velocity[i] - c.velocity[i]) / c.step;
-    }
-    for (int i = 0; i < 5; i++)
-        result[i] = 2 * change[1][i] - change[0][i];
-}
-
 /* Largest difference of accelerations in relation to the largest of each state. */
 static double model_difference(const mjModel *model, mjData *data, const stance_scene *scene,
                                const stance_case *base)
 {
-    const stance_kernel *const kernel =
-        stance_kernel_find(scene, stance_method_find("midpoint"), "scalar");
     uint64_t state = 1;
     double largest = 0;
     for (int n = 0; n < STATES; n++) {
@@ -118,7 +73,7 @@ static double model_difference(const mjModel *model, mjData *data, const stance_
         }
         for (int i = 0; i < 2; i++)
             c.near.feedforward[i] = random_in(&state, -10, 10);
-        acceleration(kernel, &c, ours);
+        accelerations(scene, &c, ours);
         mj_resetData(model, data);
         memcpy(data->qpos, c.position, 5 * sizeof(double));
         memcpy(data->qvel, c.velocity, 5 * sizeof(double));
@@ -231,7 +186,7 @@ static bool begin_engines(struct engines *e, const stance_case *base)
     for (e->kernels = 0; e->kernels < MOST_KERNELS && (isa = stance_isa(e->kernels)) != NULL;)
         e->kernel[e->kernels++] = stance_kernel_find(e->scene, stance_method_find("implicit"), isa);
     for (int s = 0; s < SETTINGS; s++) {
-        e->model[s] = make_model(base->robot, base->friction, base->step, (enum setting)s);
+        e->model[s] = make_model(base, (enum setting)s);
         e->data[s] = e->model[s] ? mj_makeData(e->model[s]) : NULL;
         if (!e->data[s])
             return false;

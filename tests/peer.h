@@ -14,13 +14,13 @@
 #include <string.h>
 #include <time.h>
 
-enum { PEER_ROBOT = 16, PEER_STATE = 10, PEER_CONTACTS = 2 };
+enum { PEER_STATE = 10, PEER_CONTACTS = 2 };
 
 /* What is asked for. A state is position[5], velocity[5] of the biped: x, z, theta, q1, q2. */
 struct peer_request {
     char scene[32];
     int robots;
-    double robot[PEER_ROBOT]; /* leg, trunk, foot's, trunk's and hip's mass */
+    double *robot; /* [robots] leg, trunk, foot's, trunk's and hip's mass */
     double gravity, friction, restitution;
     int feet[PEER_CONTACTS]; /* 1: may touch the ground */
     /* torque = feedforward - gain (posture - target, rates), within +-limit (which may be inf),
@@ -28,7 +28,7 @@ struct peer_request {
     double feedforward[2], gain[2][6], target[3], limit[2], sample;
     double time, every; /* s: length of a case; states are told, and outcomes judged, so often */
     int labels;         /* outcomes are asked for, not states */
-    double settle_angle, settle_rate, settle_hold, place, fall_height;
+    double settle[3], place, fall_height; /* angle, rate, how long */
     int support[PEER_CONTACTS];
     double budget, effort; /* s for each setting: repeated for so long; not begun beyond */
     int checks, cases;
@@ -124,16 +124,16 @@ static inline const char *peer_judge(const struct peer_request *r, struct peer_w
     }
     for (int c = 0; c < PEER_CONTACTS; c++)
         alone =
-            alone && (r->support[c] ? load[c] > 0 && fabs(peer_slip(r, state, c)) <= r->settle_rate
+            alone && (r->support[c] ? load[c] > 0 && fabs(peer_slip(r, state, c)) <= r->settle[1]
                                     : load[c] <= 0);
     for (int c = 0; c < PEER_CONTACTS; c++)
         alone = alone && (!r->support[c] ||
                           fabs(peer_along(r, state, c) - peer_along(r, begin, c)) <= r->place);
     const double all = fmax(speed, fmax(fabs(state[5]), fabs(state[6])));
-    const double error = fmax(angle / r->settle_angle, speed / r->settle_rate);
-    const bool settled = peer_lasts(&window[0], alone && error <= 1, error, t, r->settle_hold);
-    const bool rested = peer_lasts(&window[1], !alone && all <= r->settle_rate,
-                                   all / r->settle_rate, t, r->settle_hold);
+    const double error = fmax(angle / r->settle[0], speed / r->settle[1]);
+    const bool settled = peer_lasts(&window[0], alone && error <= 1, error, t, r->settle[2]);
+    const bool rested =
+        peer_lasts(&window[1], !alone && all <= r->settle[1], all / r->settle[1], t, r->settle[2]);
     const double hip = state[1] - r->robot[1] * cos(state[2]);
     if (hip < r->fall_height * r->robot[0] || state[1] <= 0)
         return "fell";
@@ -164,70 +164,60 @@ static inline double *peer_list(int *count, size_t each)
     return list;
 }
 
+static inline void peer_whole(int *n, size_t count)
+{
+    for (size_t i = 0; i < count; i++)
+        n[i] = (int)peer_number();
+}
+
 static inline void peer_read(struct peer_request *r)
 {
+    double version = 1;
+    const struct {
+        const char *word;
+        double *x;
+        int *n;
+        size_t count;
+    } known[] = {{"stance-peer", &version, NULL, 1},
+                 {"gravity", &r->gravity, NULL, 1},
+                 {"friction", &r->friction, NULL, 1},
+                 {"restitution", &r->restitution, NULL, 1},
+                 {"contacts", NULL, r->feet, PEER_CONTACTS},
+                 {"feedforward", r->feedforward, NULL, 2},
+                 {"gain", &r->gain[0][0], NULL, 12},
+                 {"target", r->target, NULL, 3},
+                 {"limit", r->limit, NULL, 2},
+                 {"sample", &r->sample, NULL, 1},
+                 {"time", &r->time, NULL, 1},
+                 {"every", &r->every, NULL, 1},
+                 {"labels", NULL, &r->labels, 1},
+                 {"settle", r->settle, NULL, 3},
+                 {"place", &r->place, NULL, 1},
+                 {"fall_height", &r->fall_height, NULL, 1},
+                 {"supports", NULL, r->support, PEER_CONTACTS},
+                 {"budget", &r->budget, NULL, 1},
+                 {"effort", &r->effort, NULL, 1}};
+    enum { KNOWN = sizeof known / sizeof *known };
     char word[32];
     memset(r, 0, sizeof *r);
     while (scanf("%31s", word) == 1 && strcmp(word, "end") != 0) {
-#define PEER_IS(name) strcmp(word, name) == 0
-        if (PEER_IS("stance-peer")) {
-            if (peer_number() != 1)
-                exit(3);
-        } else if (PEER_IS("scene")) {
-            if (scanf("%31s", r->scene) != 1)
-                exit(3);
-        } else if (PEER_IS("robot")) {
-            double *const list = peer_list(&r->robots, 1);
-            memcpy(r->robot, list,
-                   sizeof(double) * (size_t)(r->robots < PEER_ROBOT ? r->robots : PEER_ROBOT));
-            free(list);
-        } else if (PEER_IS("gravity"))
-            r->gravity = peer_number();
-        else if (PEER_IS("friction"))
-            r->friction = peer_number();
-        else if (PEER_IS("restitution"))
-            r->restitution = peer_number();
-        else if (PEER_IS("contacts"))
-            for (int c = 0; c < PEER_CONTACTS; c++)
-                r->feet[c] = (int)peer_number();
-        else if (PEER_IS("feedforward"))
-            peer_numbers(r->feedforward, 2);
-        else if (PEER_IS("gain"))
-            peer_numbers(&r->gain[0][0], 12);
-        else if (PEER_IS("target"))
-            peer_numbers(r->target, 3);
-        else if (PEER_IS("limit"))
-            peer_numbers(r->limit, 2);
-        else if (PEER_IS("sample"))
-            r->sample = peer_number();
-        else if (PEER_IS("time"))
-            r->time = peer_number();
-        else if (PEER_IS("every"))
-            r->every = peer_number();
-        else if (PEER_IS("labels"))
-            r->labels = (int)peer_number();
-        else if (PEER_IS("settle")) {
-            r->settle_angle = peer_number();
-            r->settle_rate = peer_number();
-            r->settle_hold = peer_number();
-        } else if (PEER_IS("place"))
-            r->place = peer_number();
-        else if (PEER_IS("fall_height"))
-            r->fall_height = peer_number();
-        else if (PEER_IS("supports"))
-            for (int c = 0; c < PEER_CONTACTS; c++)
-                r->support[c] = (int)peer_number();
-        else if (PEER_IS("budget"))
-            r->budget = peer_number();
-        else if (PEER_IS("effort"))
-            r->effort = peer_number();
-        else if (PEER_IS("checks"))
+        size_t k = 0;
+        while (k < KNOWN && strcmp(word, known[k].word) != 0)
+            k++;
+        if (k < KNOWN && known[k].x)
+            peer_numbers(known[k].x, known[k].count);
+        else if (k < KNOWN)
+            peer_whole(known[k].n, known[k].count);
+        else if (strcmp(word, "robot") == 0)
+            r->robot = peer_list(&r->robots, 1);
+        else if (strcmp(word, "checks") == 0)
             r->check = peer_list(&r->checks, PEER_STATE);
-        else if (PEER_IS("cases"))
+        else if (strcmp(word, "cases") == 0)
             r->start = peer_list(&r->cases, PEER_STATE);
-        else
+        else if (strcmp(word, "scene") != 0 || scanf("%31s", r->scene) != 1)
             exit(3);
-#undef PEER_IS
+        if (k == 0 && version != 1)
+            exit(3);
     }
 }
 
@@ -362,6 +352,7 @@ static inline int peer_main(const struct peer_engine *e)
         fflush(stdout);
     }
     puts("end");
+    free(r.robot);
     free(r.check);
     free(r.start);
     return fflush(stdout) == 0 ? 0 : 1;

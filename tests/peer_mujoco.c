@@ -9,8 +9,6 @@
 #include "mujoco_model.h"
 #include "peer.h"
 
-static const double radius = 1e-4; /* m, of the spheres at the feet */
-
 struct setting {
     const char *name;
     int integrator, solver, cone;
@@ -47,49 +45,28 @@ static struct {
 
 /* ---- the model ---------------------------------------------------------------------------- */
 
-static void leg_text(char *text, size_t size, const struct peer_request *r, int i)
-{
-    const double l = r->robot[0];
-    char servo[200] = "";
-    if (engine.servo)
-        snprintf(servo, sizeof servo, "stiffness='%.17g' springref='%.17g' damping='%.17g'",
-                 r->gain[i][1 + i], r->target[1 + i], r->gain[i][4 + i]);
-    snprintf(text, size,
-             "<body pos='0 0 %.17g'><joint name='q%d' type='hinge' axis='0 -1 0' %s/>"
-             "<inertial pos='0 0 %.17g' mass='%.17g' diaginertia='1e-12 1e-12 1e-12'/>"
-             "<geom type='sphere' size='%.17g' pos='0 0 %.17g' contype='%d' conaffinity='%d'/>"
-             "</body>",
-             -r->robot[1], i + 1, servo, -l, r->robot[2], radius, -l, r->feet[i], r->feet[i]);
-}
-
-/* +theta turns x towards z: about -y. */
 static mjModel *make_model(const struct peer_request *r, const struct setting *s, double step)
 {
-    const double lt = r->robot[1], mt = r->robot[3], mh = r->robot[4];
-    const double inertia = mt * mh / (mt + mh) * lt * lt;
-    char xml[4096], leg[2][700], contact[200] = "";
-    for (int i = 0; i < 2; i++)
-        leg_text(leg[i], sizeof leg[i], r, i);
+    char option[100], contact[200] = "", servo[2][200] = {"", ""};
+    snprintf(option, sizeof option, "impratio='%.17g' noslip_iterations='%d'", s->impratio,
+             s->noslip);
     if (s->stiff > 0)
         snprintf(contact, sizeof contact, "solref='%.17g 1'", s->stiff * step);
     if (s->impedance > 0)
         snprintf(contact + strlen(contact), sizeof contact - strlen(contact),
                  " solimp='%.17g %.17g 0.001'", s->impedance, s->impedance);
-    const int length = snprintf(
-        xml, sizeof xml,
-        "<mujoco><compiler angle='radian' inertiafromgeom='false'/>"
-        "<option timestep='%.17g' gravity='0 0 %.17g' impratio='%.17g' noslip_iterations='%d'/>"
-        "<default><geom friction='%.17g 0.005 0.0001' %s/></default>"
-        "<worldbody><geom type='plane' size='0 0 1' pos='0 0 %.17g' contype='1' conaffinity='1'/>"
-        "<body><joint type='slide' axis='1 0 0'/><joint type='slide' axis='0 0 1'/>"
-        "<joint type='hinge' axis='0 -1 0'/>"
-        "<inertial pos='0 0 %.17g' mass='%.17g' diaginertia='%.17g %.17g 1e-9'/>%s%s</body>"
-        "</worldbody></mujoco>",
-        step, -r->gravity, s->impratio, s->noslip, r->friction, contact, -radius,
-        -lt * mh / (mt + mh), mt + mh, inertia, inertia, leg[0], leg[1]);
-    if (length < 0 || (size_t)length >= sizeof xml)
-        return NULL;
-    return mujoco_model(xml);
+    for (int i = 0; i < 2 && engine.servo; i++)
+        snprintf(servo[i], sizeof servo[i], "stiffness='%.17g' springref='%.17g' damping='%.17g'",
+                 r->gain[i][1 + i], r->target[1 + i], r->gain[i][4 + i]);
+    return mujoco_biped(&(struct mujoco_biped){.robot = r->robot,
+                                               .gravity = r->gravity,
+                                               .step = step,
+                                               .friction = r->friction,
+                                               .option = option,
+                                               .contact = contact,
+                                               .joint = {servo[0], servo[1]},
+                                               .point = 1e-12,
+                                               .feet = {r->feet[0], r->feet[1]}});
 }
 
 /* ---- the engine --------------------------------------------------------------------------- */

@@ -3,7 +3,7 @@
  *
  * A case is simulated as a whole when it starts; its steps then only look on.
  */
-#include "engine/stance.h"
+#include "accelerations.h"
 #include "peer.h"
 
 static struct {
@@ -93,27 +93,11 @@ static void start(const double *state)
 
 static void acceleration(const double *state, const double torque[2], double a[5])
 {
-    enum { LEVELS = 6 }; /* ever shorter steps, extrapolated to none */
-    const stance_kernel *const explicit_kernel =
-        stance_kernel_find(stance_scene_find("biped"), stance_method_find("lagrange"), "scalar");
-    double table[LEVELS][5];
-    for (int l = 0; l < LEVELS; l++) {
-        stance_case c = make_case(state);
-        stance_result result;
-        memset(c.near.gain, 0, sizeof c.near.gain);
-        memcpy(c.near.feedforward, torque, 2 * sizeof(double));
-        c.torque_limit = INFINITY;
-        c.step = ldexp(4e-3, -l);
-        c.steps = c.sample_every = 1;
-        explicit_kernel->run(&c, &result, 1);
-        for (int i = 0; i < 5; i++)
-            table[l][i] = (result.velocity[i] - c.velocity[i]) / c.step;
-    }
-    for (int order = 1; order < LEVELS; order++)
-        for (int l = LEVELS - 1; l >= order; l--)
-            for (int i = 0; i < 5; i++)
-                table[l][i] += (table[l][i] - table[l - 1][i]) / (ldexp(1, order) - 1);
-    memcpy(a, table[LEVELS - 1], sizeof table[0]);
+    stance_case c = make_case(state);
+    memset(c.near.gain, 0, sizeof c.near.gain);
+    memcpy(c.near.feedforward, torque, 2 * sizeof(double));
+    c.torque_limit = INFINITY;
+    accelerations(stance_scene_find("biped"), &c, a);
 }
 
 static bool step(const double *torque)

@@ -36,6 +36,8 @@
 #ifndef STANCE_TESTS_PEER_TALK_H
 #define STANCE_TESTS_PEER_TALK_H
 
+#include "accelerations.h"
+
 #include "analysis/bench/measure.h"
 #include "runner/base/command.h"
 #include "runner/store/results.h"
@@ -133,33 +135,7 @@ static stance_case peer_check(int k)
         c.velocity[i] = peer_random(&state, k % 2 ? 2 : 0.05);
     }
     c.position[1] = 100;
-    c.sample_every = 1;
     return c;
-}
-
-/* The change of velocity over a step, extrapolated from ever shorter steps to none. */
-static void peer_acceleration(int k, double *result)
-{
-    enum { LEVELS = 6 };
-    const stance_scene *const scene = talk.task->scene;
-    const stance_kernel *const kernel =
-        stance_kernel_find(scene, stance_method_find("lagrange"), "scalar");
-    double table[LEVELS][STANCE_MAX_COORDINATES] = {{0}};
-    for (int l = 0; l < LEVELS; l++) {
-        stance_case c = peer_check(k);
-        stance_result end;
-        c.step = ldexp(4e-3, -l);
-        c.steps = 1;
-        c.settle = false;
-        kernel->run(&c, &end, 1);
-        for (int i = 0; i < scene->coordinates; i++)
-            table[l][i] = (end.velocity[i] - c.velocity[i]) / c.step;
-    }
-    for (int order = 1; order < LEVELS; order++)
-        for (int l = LEVELS - 1; l >= order; l--)
-            for (int i = 0; i < scene->coordinates; i++)
-                table[l][i] += (table[l][i] - table[l - 1][i]) / (ldexp(1, order) - 1);
-    memcpy(result, table[LEVELS - 1], sizeof table[0]);
 }
 
 /* ---- the request -------------------------------------------------------------------------- */
@@ -320,8 +296,10 @@ static void peer_take_acceleration(const char *line)
     if (sscanf(line, "acceleration %d %n", &k, &at) != 1 || at == 0 || k != talk.checked ||
         k >= PEER_CHECKS || !peer_numbers(line + at, a, n))
         peer_damaged(line);
-    if (talk.peer->settings == 1)
-        peer_acceleration(k, talk.truth[k]);
+    if (talk.peer->settings == 1) {
+        const stance_case check = peer_check(k);
+        accelerations(talk.task->scene, &check, talk.truth[k]);
+    }
     for (int i = 0; i < n; i++) {
         size = fmax(size, fabs(talk.truth[k][i]));
         off = fmax(off, isfinite(a[i]) ? fabs(a[i] - talk.truth[k][i]) : INFINITY);
