@@ -1,9 +1,7 @@
 #!/usr/bin/env bash
 # Scenes that the program carries are descriptions: what those get is theirs, the same comes of both;
 # coordinates with names of their own, bodies turned against their parents, forces that swing.
-# Speaks TAP.
 # about: runner/run runner/plan analysis/compare
-set -u
 . "$(dirname "$0")/scratch.sh"
 export STANCE_CACHE=$scratch/cache
 
@@ -23,7 +21,7 @@ stop: {time: 8}
 END
 expect "a biped, struck at the hip, on a slope, on the moon" 0 "$stance" run own.yaml --set "$grid" -o own.h5
 expect "the same described" 0 "$stance" run "$shipped/mechanisms/pushed.yaml" --set "$grid" --set ground.slope=0.02 --set stop.time=8 -o described.h5
-"$python" - >log 2>&1 <<END
+holds "the same becomes of every case" <<END
 import h5py, numpy as np
 a, b = h5py.File("own.h5"), h5py.File("described.h5")
 assert set(np.unique(a["outcome"][...])) == {1, 2} and np.array_equal(a["outcome"][...], b["outcome"][...])
@@ -34,7 +32,6 @@ for k in ("settle_time", "fall_time", "peak_torque", "slip_distance", "excursion
     off = np.nanmax(np.abs(x - y) / (1 + np.abs(x)))
     assert off < 1e-5 and np.array_equal(np.isnan(x), np.isnan(y)), (k, off)
 END
-result $? "the same becomes of every case"
 
 # ---- the block's slope, and the ball's ---------------------------------------------------------------
 cat >slopes.py <<END
@@ -56,11 +53,10 @@ printf 'stance: 1\nscene: ball\ninitial: {state: {z: %s}}\n%s, slope: 0.4}\n' \
     "$("$python" -c 'import math; print(0.1 / math.cos(0.4))')" "$end" >ball.yaml
 for scene in block ball; do
     expect "a $scene on a slope" 0 "$stance" run $scene.yaml --force -o slopes.h5
-    "$python" slopes.py $scene >log 2>&1
-    result $? "... slides as it must"
+    is "... slides as it must" '"$python" slopes.py $scene >log 2>&1'
 done
-expect "the block has robot.slope, not the ground's" 2 "$stance" check block.yaml --set ground.slope=0.1
-says "... says so" "ground: .*'slope'"
+expect "the block has robot.slope, not the ground's" 2 "$stance" check block.yaml --set ground.slope=0.1 \
+    says "ground: .*'slope'"
 
 # ---- what descriptions may say -----------------------------------------------------------------------
 cat >swing.yaml <<END
@@ -78,25 +74,21 @@ END
 expect "a cart that is pulled to and fro" 0 "$stance" run swing.yaml -o swing.h5
 expect "its pole described upside down, and turned" 0 "$stance" run swing.yaml --set 'robot.bodies.pole.centre=[0, 0.5]' \
     --set robot.bodies.pole.angle=3.141592653589793 -o turned.h5
-"$python" - >log 2>&1 <<END
+holds "moves the same" <<END
 import h5py, numpy as np
 a, b = (h5py.File(n) for n in ("swing.h5", "turned.h5"))
 assert list(a["state"].asstr()) == ["s", "phi", "vs", "vphi"], list(a["state"])
 assert np.abs(a["final_state"][...] - b["final_state"][...]).max() < 1e-12
 assert abs(a["final_state"][0, 0]) > 0.1
 END
-result $? "moves the same"
 for wrong in "pole.coordinate=s:the coordinate of cart" "pole.coordinate=x:'x' is no name" "pole.coordinate=vs:the coordinate of cart" \
     "cart.coordinate=a b:is no name"; do
-    expect "robot.bodies.${wrong%:*} is refused" 2 "$stance" check swing.yaml --set "robot.bodies.${wrong%:*}"
-    says "... says why" "${wrong##*:}"
+    expect "robot.bodies.${wrong%:*} is refused" 2 "$stance" check swing.yaml --set "robot.bodies.${wrong%:*}" \
+        says "${wrong##*:}"
 done
-expect "a point of a carried scene needs a body" 2 "$stance" check own.yaml --set 'robot.points.knee={at: [0, -0.3]}'
-says "... says so" "robot.points.knee.body is missing"
-expect "... and a name of its own" 2 "$stance" check own.yaml --set 'robot.points.leg1={body: leg1}'
-says "... says so" "a part of the scene is called so"
-expect "a push that does not swing has an end" 2 "$stance" check own.yaml --set 'robot.points.trunk={force: [1, 0]}'
-says "... says so" "robot.points.trunk.to is missing"
-
-echo "1..$count"
-exit $((failed > 0))
+expect "a point of a carried scene needs a body" 2 "$stance" check own.yaml --set 'robot.points.knee={at: [0, -0.3]}' \
+    says "robot.points.knee.body is missing"
+expect "... and a name of its own" 2 "$stance" check own.yaml --set 'robot.points.leg1={body: leg1}' \
+    says "a part of the scene is called so"
+expect "a push that does not swing has an end" 2 "$stance" check own.yaml --set 'robot.points.trunk={force: [1, 0]}' \
+    says "robot.points.trunk.to is missing"

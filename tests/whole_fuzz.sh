@@ -45,10 +45,8 @@ END
 theta='{path: initial.offset.theta, from: -0.1, to: 0.05, count: 4}'
 rate='{path: initial.offset.vtheta, from: -0.5, to: 0.5, count: 5}'
 make_file() { # name, option ...
-    local name=$1
-    shift
-    "$stance" run map.yaml -o "$name.h5" --quiet "$@" >log 2>&1
-    result $? "a file to be damaged: $name" log
+    "$stance" run map.yaml -o "$1.h5" --quiet "${@:2}" >log 2>&1
+    result $? "a file to be damaged: $1" log
 }
 make_file one
 make_file grid --set "sweep.grid=[$theta, $rate]"

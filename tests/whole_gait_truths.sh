@@ -1,7 +1,5 @@
 #!/usr/bin/env bash
-# What is known of gaits from outside: compasses, wheels, published walkers, zero dynamics (gait_truths.py). Speaks TAP.
+# What is known of gaits from outside: compasses, wheels, published walkers, zero dynamics (gait_truths.py).
 # about: analysis/gait runner/run
-set -u
-# shellcheck source=tests/scratch.sh
 . "$(dirname "$0")/scratch.sh"
 "$python" "$tests/gait_truths.py" "$stance" "$shipped"

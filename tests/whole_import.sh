@@ -166,7 +166,8 @@ END
 toe() { echo "<body name='toe' pos='0 0 -0.4'><joint name='ankle' $1/><geom name='sh' ${2:-size='0.03'} mass='1'/></body>"; }
 refused() { # WHAT PATTERN [OPTION...] <file: one line, which has the pattern and the file's name
     cat >bad.xml
-    expect "refused: $1" 2 "$stance" import bad.xml -o bad.yaml "${@:3}" lines 1 tells 'bad\.xml' "$2" is [ ! -e bad.yaml ]
+    expect "refused: $1" 2 "$stance" import bad.xml -o bad.yaml "${@:3}" lines 1 tells 'bad\.xml' "$2" \
+        is [ ! -e bad.yaml ]
 }
 chain() { # JOINTS
     local i
@@ -224,5 +225,6 @@ refused "a sole without length" 'its two ends are one place' --sole leg=0.1,0,0.
 refused "a sole of three numbers" 'write LINK=X,Z,X,Z' --sole leg=0,0,1 < <(model)
 model | sed 's/mass="5"/mass="1e20"/' >bad.xml
 expect "what the scenario's reader does not take is said, and not written" 2 "$stance" import bad.xml -o bad.yaml \
-    tells '^stance import: bad.xml: as a scenario: robot.bodies.trunk.mass: 1.0e\+20 is out of range' is [ ! -e bad.yaml ]
+    tells '^stance import: bad.xml: as a scenario: robot.bodies.trunk.mass: 1.0e\+20 is out of range' \
+    is [ ! -e bad.yaml ]
 is "MuJoCo's errors leave no file behind" '! ls | grep -q MUJOCO'

@@ -1,9 +1,7 @@
 #!/usr/bin/env bash
 # `stance plot --model` draws the robot of every scene: each angle from where it is 0 to its link, with its
 # sign, each coordinate, actuator and contact by name.
-# Speaks TAP.
 # about: analysis/plot
-set -u
 . "$(dirname "$0")/scratch.sh"
 mkdir scripts
 cat >model.py <<'END'
@@ -57,8 +55,7 @@ draws() { # scenario, its labels, settings ...
     [ -s "$name-model.png" ] && [ "$(cat log)" = "$name-model.svg
 $name-model.png" ]
     result $? "... both files, and no more words"
-    "$python" -W ignore model.py "$name" "$labels" >log 2>&1
-    result $? "... angles with their signs, names of all"
+    is "... angles with their signs, names of all" '"$python" -W ignore model.py "$name" "$labels" >log 2>&1'
 }
 draws balance_recovers.yaml theta,q1,q2,hip1,hip2,foot1,foot2 --set 'initial.offset={}'
 draws ball_bounce.yaml bottom
@@ -77,4 +74,3 @@ expect "--case is of results files" 2 "$stance" plot --model "$shipped/drop.yaml
 expect "--set is of models" 2 "$stance" plot results.h5 --set stop.time=1
 "$stance" describe initial.offset.q1 >log
 says "describe tells signs" "angle of leg 1 against the trunk, counter-clockwise, 0 in"
-echo "1..$count"

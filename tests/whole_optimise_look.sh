@@ -1,7 +1,5 @@
 #!/usr/bin/env bash
 # What is said and drawn of the file of a search, finished, cut short, damaged, and of several: see searches.py.
-# Speaks TAP.
 # about: runner/optimise analysis/plot
-set -u
 . "$(dirname "$0")/scratch.sh"
 "$python" "$tests/searches.py" "$stance"

@@ -1,8 +1,6 @@
 #!/usr/bin/env bash
 # What the page scenarios/paper.md says of the paper's claims: every command on it runs, and numbers that it
 # gives are what they print.
-# Speaks TAP.
-set -u
 . "$(dirname "$0")/scratch.sh"
 page=$shipped/paper.md
 lines=0
@@ -18,8 +16,7 @@ numbers() { # what the command of a row prints, and what its results file holds
 }
 # The commands, once each.
 grep '^|.*| `stance [^`]*` |$' "$page" | sed 's/.*| `\(stance [^`]*\)` |$/\1/' | sort -u >commands
-[ "$(wc -l <commands)" -ge 18 ]
-result $? "the page has commands"
+is "the page has commands" [ "$(wc -l <commands)" -ge 18 ]
 while read -r command; do
     lines=$((lines + 1))
     timeout "$patience" bash -c "$(declare -f numbers); numbers \"\$1\"" - "$command" >"said.$lines" 2>log </dev/null
@@ -29,8 +26,7 @@ cat said.* >all
 : >log
 # The page gives what is printed there: a number of the page, and what stands beside it in the output.
 while IFS='|' read -r given printed; do
-    grep -qF -- "$given" "$page" && grep -qE -- "$printed" all
-    result $? "the page's $given"
+    is "the page's $given" 'grep -qF -- "$given" "$page" && grep -qE -- "$printed" all'
 done <<'END'
 0.570127|q1 +0\.570127 rad
 (-7.531, 3.766)|hip1 +-7\.531349
@@ -48,4 +44,3 @@ seven of the ten|[*] x-theta .*on a surface of postures
 1.05708|z 1\.05708
 0.278 m in 0.668 s|step length +0\.2779
 END
-echo "1..$count"

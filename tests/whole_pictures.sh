@@ -1,6 +1,5 @@
 #!/usr/bin/env bash
-# Pictures of every kind show what the results files hold: see pictures.py. Speaks TAP.
+# Pictures of every kind show what the results files hold: see pictures.py.
 # about: analysis/plot
-set -u
 . "$(dirname "$0")/scratch.sh"
 "$python" "$tests/pictures.py" "$stance" "$shipped"

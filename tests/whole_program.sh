@@ -83,9 +83,10 @@ mkdir other && sed 's/^title.*/title: Another block/' block.yaml >other/block.ya
 refused() { # name, code, words, arguments of bench accuracy ...: before anything is simulated
     expect "bench accuracy: $1" "$2" "$stance" bench accuracy "${@:4}" lines 1 is grep -qxF "$3" log
 }
-refused "one is no study" 2 "stance bench accuracy: $shipped/ball_bounce.yaml: the first axis does not vary method.name" \
-    "$shipped"/{accuracy/ball,ball_bounce}.yaml -o accuracy
-refused "one is missing" 3 "nosuch.yaml: No such file or directory" "$shipped/accuracy/ball.yaml" nosuch.yaml -o accuracy
+ball=$shipped/accuracy/ball.yaml other=$shipped/ball_bounce.yaml
+refused "one is no study" 2 "stance bench accuracy: $other: the first axis does not vary method.name" "$ball" "$other" \
+    -o accuracy
+refused "one is missing" 3 "nosuch.yaml: No such file or directory" "$ball" nosuch.yaml -o accuracy
 refused "two of a name" 2 "stance bench accuracy: block.yaml and other/block.yaml would write the same files" \
     block.yaml other/block.yaml -o accuracy
 refused "another's file" 3 "stance bench accuracy: other/block.yaml: accuracy/block.h5 is of another scenario" \
@@ -96,7 +97,8 @@ is "... nothing was simulated" [ ! -e accuracy/ball.h5 ]
 sed 's/- \[\(implicit\|lagrange\|capturing\).*//; s/count: 64/count: 6/; s/^title.*/title: Few cells/' \
     "$shipped/accuracy/basin_one_foot.yaml" >few_cells.yaml
 expect "bench accuracy: labels" 0 "$stance" bench accuracy few_cells.yaml -o accuracy \
-    tells '^  midpoint .* [0-9]+ of 36 +[0-9.]+ % +0$' is ! grep -q 'interval\|\.\.\.' log is png accuracy/few_cells.png
+    tells '^  midpoint .* [0-9]+ of 36 +[0-9.]+ % +0$' is ! grep -q 'interval\|\.\.\.' log \
+    is png accuracy/few_cells.png
 
 # ---- an answer as a picture; what summary tells of the controllers ----
 expect "plot --answer" 0 "$stance" plot friction_needed.h5 --answer friction_used --of stabilised -o . \
@@ -114,12 +116,13 @@ summary_tells() { # law, file, words: in the summary, its lines joined
 }
 summary_tells decoupling walk_attempt.h5 'controlled x-theta, proportional.x 75 1/s^2, proportional.theta 50 1/s^2'
 summary_tells switching switching.h5 'design place, design_time continuous, far hold, kp 100 N m/rad'
-expect "summary: two parameters at once" 0 "$stance" summary --json gain_choice_sampled.h5 holds 'pairs = said()["pairs"]
+expect "summary: two parameters at once" 0 "$stance" summary --json gain_choice_sampled.h5 holds '
+pairs = said()["pairs"]
 assert pairs["paths"] == ["controller.design", "controller.design_time"]
 want = (h5py.File("gain_choice_sampled.h5")["outcome"][...] == 1).mean(axis=(2, 3))
 assert pairs["share"] == want.tolist(), (pairs, want)'
-expect "friction that sufficed suffices" 0 "$stance" run "$shipped/controllers/friction_needed.yaml" --quiet -o enough.h5 \
-    --set ground.friction=0.402 --set 'sweep.grid[0].count=13' --set 'sweep.grid[1].count=13' holds '
+expect "friction that sufficed suffices" 0 "$stance" run "$shipped/controllers/friction_needed.yaml" -o enough.h5 \
+    --set ground.friction=0.402 --set 'sweep.grid[0].count=13' --set 'sweep.grid[1].count=13' --quiet holds '
 a, b = h5py.File("friction_needed.h5"), h5py.File("enough.h5")
 recovers = a["outcome"][...] == 1
 assert recovers.sum() > 20 and a["friction_used"][...][recovers].max() < 0.402
@@ -128,7 +131,8 @@ for k in ("final_state", "settle_time", "least_normal_force"):
 
 # ---- outcomes ----
 outcome() { # name, file, code
-    holds "$1" 'f = h5py.File(sys.argv[1]); assert (f["outcome"][...] == int(sys.argv[2])).all(), f["outcome"][...]' "$2" "$3"
+    holds "$1" 'found = h5py.File(sys.argv[1])["outcome"][...]
+assert (found == int(sys.argv[2])).all(), found' "$2" "$3"
 }
 outcome "section 3.2, test 1 recovers" balance_recovers.h5 1
 outcome "section 3.2, test 2 falls" balance_falls.h5 2
@@ -164,8 +168,8 @@ for set in "${sets[@]}"; do
     for name in drop basin_both_feet walk_attempt; do
         reduce=(--quiet)
         [ $name = basin_both_feet ] && reduce=("${small[@]}")
-        STANCE_ISA=$set expect "$set: run $name" 0 "$stance" run "$shipped/$name.yaml" "${reduce[@]}" -o "$name-$set.h5" \
-            as $name.h5
+        STANCE_ISA=$set expect "$set: run $name" 0 "$stance" run "$shipped/$name.yaml" "${reduce[@]}" \
+            -o "$name-$set.h5" as $name.h5
         holds "$set: the file says so" 'assert h5py.File(sys.argv[1]).attrs["instruction_set"] in (sys.argv[2],
             sys.argv[2].encode())' "$name-$set.h5" "$built"
     done
@@ -178,7 +182,8 @@ for command in bench 'bench accuracy' 'bench failure'; do
     # shellcheck disable=SC2086
     STANCE_ISA=mmx expect "$command: an unknown instruction set" 2 "$stance" $command
 done
-STANCE_ISA=mmx expect "two ranks: an unknown instruction set" 2 mpirun -n 2 "$stance" run "$shipped/drop.yaml" says STANCE_ISA
+STANCE_ISA=mmx expect "two ranks: an unknown instruction set" 2 mpirun -n 2 "$stance" run "$shipped/drop.yaml" \
+    says STANCE_ISA
 
 # ---- one case again ----
 expect "--only --trace" 0 "$stance" run "$shipped/basin_one_foot.yaml" --only 300 --trace "${small[@]}" holds '
@@ -206,7 +211,7 @@ assert c["design"] == "place" and c["design_time"] == "sampled" and c["stable"]
 assert len(c["sampled_loop"]["eigenvalues"]) == 8 and c["sampled_loop"]["delay"] == 1
 assert 0.9 < c["sampled_loop"]["spectral_radius"] < 1 and c["lyapunov"] is None
 assert c["critical_sample_time_delayed"] < c["critical_sample_time"]'
-expect "design --json: what any controller is allowed, the set within bounds" 0 "$stance" design --json "$recovers" holds '
+expect "design --json: what any controller is allowed, a set within bounds" 0 "$stance" design --json "$recovers" holds '
 a, s = said()["allowed"], said()["controller"]["lyapunov"]
 assert abs(a["low"]["theta"] + 0.20485) < 1e-5 and abs(a["high"]["theta"] - 0.11614) < 1e-5
 assert [round(re, 3) for re, im in a["unstable_modes"]] == [5.616, 3.601]
@@ -224,8 +229,8 @@ assert all(r["steps"] == 8000 and abs(r["ns_per_second"] / r["ns_per_step"] - 10
 expect "bench --csv: one width" 0 "$stance" bench --csv "${biped[@]}" --method implicit \
     is awk -F, 'NF != 21 {exit 1}' log
 cp log speed.csv
-STANCE_ISA=scalar expect "bench: one instruction set" 0 "$stance" bench "${biped[@]}" --regime flight --method event-driven \
-    is awk 'NR > 2 && $4 != "scalar" {exit 1} END {exit NR != 3}' log
+STANCE_ISA=scalar expect "bench: one instruction set" 0 "$stance" bench "${biped[@]}" --regime flight \
+    --method event-driven is awk 'NR > 2 && $4 != "scalar" {exit 1} END {exit NR != 3}' log
 expect "bench: no such regime" 2 "$stance" bench --scene biped --regime 'three feet'
 expect "bench plot" 0 "$stance" bench plot speed.csv -o . is png speed.png
 expect "bench plot: not a table" 3 "$stance" bench plot "$tests/run.sh"

@@ -1,10 +1,8 @@
 #!/usr/bin/env bash
 # `import stance`: the package from a checkout and from where it is installed, every line of analysis/python.md, and
-# its first study in a notebook where Debian's kernel is. Speaks TAP.
+# its first study in a notebook where Debian's kernel is.
 # about: runner/install analysis/python/stance analysis
 # shellcheck disable=SC2154
-set -u
-# shellcheck source=tests/scratch.sh
 . "$(dirname "$0")/scratch.sh"
 root=$(dirname "$tests") build=$(cd "$root" && realpath "${BUILD:-build}") page=$root/analysis/python.md
 export PYTHONPATH=$root/analysis/python PYTHONDONTWRITEBYTECODE=1
@@ -14,19 +12,11 @@ here() { # folder: a fresh one, with the README's robot
 }
 checks() { # what python_package.py tells, counted on here
     "$python" "$tests/python_package.py" "$@" >log 2>&1
-    while read -r line; do
-        case $line in
-        "ok "*) echo "ok $((++count)) - ${line#* - }" ;;
-        "not ok "*) echo "not ok $((++count)) - ${line#* - }" && failed=$((failed + 1)) ;;
-        "# "*) echo "$line" ;;
-        esac
-    done <log
-    grep -qE '^1\.\.[0-9]+$' log
-    result $? "... all of $1"
+    retold log
+    tells "... all of $1" '^1\.\.[0-9]+$'
 }
 if ! "$python" -c 'import h5py, xarray, yaml' 2>/dev/null; then
     skip "the package" "no h5py, xarray or PyYAML"
-    echo "1..$count"
     exit
 fi
 
@@ -67,4 +57,3 @@ assert stance.scenario("own.yaml").check()["cases"] == 1' "$scratch/dest ü$pref
     [ -z "$(find "$scratch/dest ü" -name '*.py*' -o -name stance 2>/dev/null)" ]
     result $? "... leaves nothing of it, nor what Python made of it"
 done
-echo "1..$count"
