@@ -1,10 +1,8 @@
 #!/usr/bin/env bash
 # A newcomer's first hour, as the README tells it: every command there works, and what each leaves is what a
-# newcomer needs next. Speaks TAP.
+# newcomer needs next.
 # long
 # shellcheck disable=SC2154
-set -u
-# shellcheck source=tests/scratch.sh
 . "$(dirname "$0")/scratch.sh"
 mkdir bin && ln -s "$stance" bin/stance
 begins() { # file, bytes
@@ -22,19 +20,15 @@ result $? "the robot is drawn"
 grep -A9 '^sweep:' own.yaml | grep -q 'path: initial.offset.body, from: -'
 result $? "its scenario has ranges"
 bin/stance basin results/own.h5 --json >basin.json
-"$python" - <<'END' >log 2>&1
-import json
-row, = json.load(open("basin.json"))["rows"]
+holds "the map shows a bounded domain" <<'END'
+row, = said("basin.json")["rows"]
 assert row["bounded"] and 0.9 < row["connected"] < 1.3 and 0.04 < row["share"] < 0.2, row
 END
-result $? "the map shows a bounded domain"
 bin/stance basin results/ankles.h5 --threshold 0.8 --of robot.actuators.ankle.limit --json >threshold.json
-"$python" - <<'END' >log 2>&1
-import json
-row, = json.load(open("threshold.json"))["rows"]
+holds "the ankle's limit has an interval" <<'END'
+row, = said("threshold.json")["rows"]
 assert 60 < row["high"] < row["value"] < row["low"] < 110, row
 END
-result $? "the ankle's limit has an interval"
 begins fig1.pdf %PDF- && bin/stance plot results/own.h5 --picture map --for column --format svg -o column >log 2>&1 &&
     grep -q 'width="88.00mm"' column/own-map.svg
 result $? "the figure is a PDF, a column wide"

@@ -2,8 +2,6 @@
 # `make install`: everything is there and works from there, and `make uninstall` leaves nothing. What is made
 # of the tables of options (help, manual pages, completion) has every command and option; the schema takes every
 # scenario that ships, as PyYAML (YAML 1.1) reads it.
-# Speaks TAP.
-set -u
 . "$(dirname "$0")/scratch.sh"
 root=$(dirname "$tests") build=$(cd "$root" && realpath "${BUILD:-build}")
 # As it is: other tests run beside this one.
@@ -16,15 +14,13 @@ expect "make install" 0 "${made[@]}" install
 for f in bin/stance lib/libstance.a lib/libstance_control.a lib/pkgconfig/stance.pc include/stance/engine/stance.h \
     include/stance/engine/control/design.h share/stance/scenario.schema.json share/doc/stance/LICENSE \
     share/doc/stance/CITATION.cff share/stance/scenarios/basin_one_foot.yaml share/man/man5/stance-scenario.5; do
-    test -s "$at/$f"
-    result $? "... $f"
+    is "... $f" test -s "$at/$f"
 done
 expect "the program runs there" 0 "$at/bin/stance" check "$at/share/stance/scenarios/drop.yaml"
 
 # ---- manual pages -------------------------------------------------------------------------------
 names=$("$stance" -h | awk '/^  [a-z]/ {print $1}')
-[ "$(wc -w <<<"$names")" -ge 15 ]
-result $? "the help lists commands"
+is "the help lists commands" [ "$(wc -w <<<"$names")" -ge 15 ]
 for name in $names bench-accuracy; do
     page=$at/share/man/man1/stance-$name.1
     man --warnings -l "$page" >page 2>log
@@ -46,32 +42,26 @@ done
 cut -f2 commands | grep -v '^-$' | sort -u >offered
 grep -rhoE '(\{| )"--?[a-z-]+",' "$root"/runner "$root"/analysis --include='*.[ch]' | grep -oE -- '-[^"]*' | sort -u >taken
 comm -23 offered taken >log
-[ ! -s log ] && [ "$(wc -l <offered)" -ge 40 ]
-result $? "options are rows of tables"
+is "options are rows of tables" '[ ! -s log ] && [ "$(wc -l <offered)" -ge 40 ]'
 awk -F'\t' '$2 != "-" {print $1 "\t" $2}' commands | while IFS=$'\t' read -r command option; do
     # shellcheck disable=SC2086
     "$stance" $command -h | awk '/^$/ { exit } { print }' | grep -qE -- "[[| ]$option( |\]|\$)" || echo "$command $option"
 done >log
-[ ! -s log ]
-result $? "every option that a command takes is in its synopsis"
+is "every option that a command takes is in its synopsis" [ ! -s log ]
 # (-h after it: nothing else is done.)
 awk -F'\t' '$2 != "-" {print $1, $2, $3 == "-" ? "" : "x", "-h"}' commands | while read -r command; do
     # shellcheck disable=SC2086
     "$stance" $command </dev/null >/dev/null 2>&1 || echo "$command"
 done >log
-[ ! -s log ]
-result $? "... and taken by the command whose synopsis has it"
+is "... and taken by the command whose synopsis has it" [ ! -s log ]
 complete_bash() { # words ...: what is offered, in a line
     PATH=$at/bin:$PATH bash -c '. "$0"; COMP_WORDS=("$@") COMP_CWORD=$(($# - 1)); _stance; echo "${COMPREPLY[@]}"' \
         "$at/share/bash-completion/completions/stance" "$@"
 }
 cp "$shipped/drop.yaml" .
 offers() { # name, wanted, words ...
-    local name=$1 wanted=$2
-    shift 2
-    complete_bash "$@" >log 2>&1
-    [ "$(cat log)" = "$wanted" ]
-    result $? "bash: $name"
+    complete_bash "${@:3}" >log 2>&1
+    is "bash: $1" [ "$(cat log)" = "$2" ]
 }
 offers "commands" "summary" stance su
 offers "options" "--resume" stance run --re
@@ -91,8 +81,7 @@ for shell in zsh fish; do
     fi
     missing=$(cut -f2 commands | grep -v '^-$' | sed 's/^-*//' | sort -u | while read -r o; do grep -qE -- "-[ls]? ?$o\b" "$file" || echo "$o"; done)
     echo "$missing" >log
-    [ -z "$missing" ]
-    result $? "... with every option"
+    is "... with every option" [ -z "$missing" ]
 done
 if command -v fish >/dev/null; then
     HOME=$scratch PATH=$at/bin:$PATH fish -c "source $at/share/fish/vendor_completions.d/stance.fish; complete -C 'stance run --re'" >log 2>&1
@@ -148,15 +137,12 @@ sweep: {grid: [{path: initial.offset.theta, from: -0.12, to: 0.06, count: 19}]}
 END
     "$stance" run example.yaml --quiet -o example.h5
     "$stance" table example.h5 --answer outcome | awk -F, 'NR > 1 {print $NF}' | tr -d '\r' | tr '\n' ' ' >program
-    diff example program >log
-    result $? "... its cases end as the program's do"
+    is "... its cases end as the program's do" 'diff example program >log'
 fi
 
 # ---- again, and gone ----------------------------------------------------------------------------
 expect "make install over it" 0 "${made[@]}" install
 expect "make uninstall" 0 "${made[@]}" uninstall
 find "$scratch/dest" -mindepth 1 | grep -v '/opt$\|/opt/other$' >log
-[ ! -s log ] && [ -e "$scratch/dest/opt/other" ]
-result $? "... leaves nothing, and what was there before"
+is "... leaves nothing, and what was there before" '[ ! -s log ] && [ -e "$scratch/dest/opt/other" ]'
 expect "make uninstall of nothing says so" 2 "${made[@]}" uninstall
-echo "1..$count"

@@ -2,12 +2,9 @@
 # Kernels that are compiled on demand, and their cache, under all circumstances that a user's machine
 # may have: whatever is wrong is safe and said. The lanes of the ball and of the rod stand for those of
 # a mechanism; what is compiled must give the bits of the kernel that is built in (test_objects).
-# Speaks TAP.
 # about: runner/objects runner/run analysis/table
 # shellcheck disable=SC2016,SC2034
-set -u
 build=$(cd "$(dirname "$0")/../${BUILD:-build}" && pwd)
-# shellcheck source=tests/scratch.sh
 . "$(dirname "$0")/scratch.sh"
 job=$build/tests/test_objects isa=scalar
 export STANCE_CACHE=$scratch/cache TMPDIR=$scratch/tmp && mkdir tmp
@@ -20,16 +17,8 @@ others() { # what there is in a directory
 object() { # a file of the cache, by what its name begins with
     ls -d "$STANCE_CACHE/$1"-*.so
 }
-is() { # name, command: ok when it succeeds; the log stays that of the job before
-    local name=$1
-    shift
-    "$@" >/dev/null 2>&1
-    result $? "$name"
-}
 compiles() { # name, number of lines that the program says beside, job ...: compiled, with the right bits
-    expect "$1" 0 "$job" "${@:3}"
-    says "... compiled, the same bits" 'compiled, the same bits'
-    is "... and $2 lines more are said" test "$(grep -c '^stance:' log)" = $((1 + $2))
+    expect "$1" 0 "$job" "${@:3}" says 'compiled, the same bits' times $((1 + $2)) '^stance:'
 }
 # A stand-in for the compiler, of which --version and -dumpmachine are the true ones.
 compiler() { # file, what it does instead of compiling
@@ -64,21 +53,19 @@ scenes=(ball)
 long_tests && scenes+=(rod)
 for scene in "${scenes[@]}"; do
     expect "$scene: compiled" 0 "$job" $scene implicit,midpoint,capturing,lagrange $isa
-    is "$scene: ... each with the right bits" test "$(grep -c 'compiled, the same bits' log)" = 4
-    expect "$scene: kept" 0 "$job" $scene implicit,midpoint,capturing,lagrange $isa
-    is "$scene: ... each with the right bits" test "$(grep -c 'kept, the same bits' log)" = 4
+    times "$scene: ... each with the right bits" 4 'compiled, the same bits'
+    expect "$scene: kept" 0 "$job" $scene implicit,midpoint,capturing,lagrange $isa times 4 'kept, the same bits'
 done
-expect "event-driven is always the one that is built in" 0 "$job" rod event-driven scalar
-says "... which computes" 'event-driven scalar: built in, the same bits'
-expect "... or none" 2 "$job" rod event-driven scalar alone
-says "... which is said" 'event-driven is not compiled on demand, and none of this size is built in'
+expect "event-driven is always the one that is built in" 0 "$job" rod event-driven scalar \
+    says 'event-driven scalar: built in, the same bits'
+expect "... or none" 2 "$job" rod event-driven scalar alone \
+    says 'event-driven is not compiled on demand, and none of this size is built in'
 objects=$((4 * ${#scenes[@]}))
 is "the cache has $objects objects and nothing else" test "$(others "$STANCE_CACHE" | grep -c '\.so$')/$(others "$STANCE_CACHE" | wc -l)" = $objects/$objects
 is "... and is the user's alone" test "$(stat -c %a "$STANCE_CACHE" "$STANCE_CACHE"/*.so | sort -u | tr '\n' ' ')" = "600 700 "
 fastest=$(timeout "$patience" "$stance" --version | sed -n 's/.*in use: //p')
 for isa in $(timeout "$patience" "$stance" --version | sed -n 's/instruction sets \(.*\); in use.*/\1/p' | tr -d ,); do
-    expect "rod, $isa" 0 "$job" ball lagrange "$isa"
-    says "... the same bits" 'the same bits'
+    expect "rod, $isa" 0 "$job" ball lagrange "$isa" says 'the same bits'
 done
 isa=scalar
 HOME=$scratch/home && mkdir home && export HOME
@@ -94,14 +81,11 @@ wait
 cat log[123] >log
 is "three jobs at once have the right bits" test "$(grep -Ec '(compiled|kept), the same bits' log)" = 3
 is "... and leave one object" test "$(others "$STANCE_CACHE")" = "$(object lagrange-$isa)"
-expect "... which is whole" 0 "$job" ball lagrange $isa
-says "... to the next one" 'kept, the same bits'
+expect "... which is whole" 0 "$job" ball lagrange $isa says 'kept, the same bits'
 rm -rf "$STANCE_CACHE"
-expect "two ranks" 0 mpirun -n 2 "$job" ball lagrange,capturing $isa
-is "... compile once" test "$(grep -c '^stance: compiling' log)" = 1
-is "... and both have the right bits" test "$(grep -c 'compiled, the same bits' log)" = 4
-expect "two ranks, kept" 0 mpirun -n 2 "$job" ball lagrange,capturing $isa
-is "... and both have the right bits" test "$(grep -c 'kept, the same bits' log)" = 4
+expect "two ranks" 0 mpirun -n 2 "$job" ball lagrange,capturing $isa \
+    says '^stance: compiling' times 4 'compiled, the same bits'
+expect "two ranks, kept" 0 mpirun -n 2 "$job" ball lagrange,capturing $isa times 4 'kept, the same bits'
 
 rm -rf "$STANCE_CACHE"
 expect "two ranks on different processors" 0 mpirun -n 1 "$job" ball lagrange,capturing scalar : -n 1 "$job" ball lagrange "$fastest"
@@ -112,10 +96,8 @@ spoilt() { # name, what is said, command that spoils a file
     local file # of the command
     file=$(object lagrange-$isa)
     eval "$3" || echo "cannot be made: $3" >&2
-    compiles "$1: compiled anew" 1 ball lagrange $isa
-    says "... and said" "$2: thrown away"
-    expect "... and kept" 0 "$job" ball lagrange $isa
-    says "... whole" 'kept, the same bits'
+    compiles "$1: compiled anew" 1 ball lagrange $isa says "$2: thrown away"
+    expect "... and kept" 0 "$job" ball lagrange $isa says 'kept, the same bits'
 }
 {
     spoilt "an object cut short" 'truncated or damaged' 'truncate -s 1000 "$file"'
@@ -135,9 +117,7 @@ spoilt() { # name, what is said, command that spoils a file
 
 # ---- directories that cannot be trusted -----------------------------------------------------------
 distrusted() { # name, what is said
-    expect "$1 is refused" 3 "$job" ball lagrange $isa
-    says "... and said, with the mend" "$2"
-    is "... in one line" test "$(wc -l <log)" = 1
+    expect "$1 is refused" 3 "$job" ball lagrange $isa says "$2" lines 1
 }
 chmod 777 "$STANCE_CACHE"
 distrusted "a directory that others can write to" "others can write to it: not used as cache; chmod go-w $STANCE_CACHE"
@@ -154,47 +134,45 @@ else
 fi
 
 # ---- no room --------------------------------------------------------------------------------------
-STANCE_CACHE=/sys/stance compiles "a home that nothing can be written to" 1 ball lagrange $isa
-says "... and said" "compiled for this run alone"
+STANCE_CACHE=/sys/stance compiles "a home that nothing can be written to" 1 ball lagrange $isa \
+    says "compiled for this run alone"
 env -u STANCE_CACHE -u HOME "$job" ball lagrange $isa >log 2>&1
 says "no home" "neither STANCE_CACHE nor HOME names a directory; compiled for this run alone"
 if ((UID == 0)) && mount -t tmpfs -o size=64k none "$disk" 2>/dev/null; then
     mkdir -m 700 "$disk/cache"
-    STANCE_CACHE=$disk/cache compiles "a full disk" 1 ball lagrange $isa
-    says "... is said" 'No space left on device; compiled for this run alone'
-    is "... and left as it was" test -z "$(others "$disk/cache")"
+    STANCE_CACHE=$disk/cache compiles "a full disk" 1 ball lagrange $isa \
+        says 'No space left on device; compiled for this run alone' is 'test -z "$(others "$disk/cache")"'
     mount -o remount,size=1m "$disk"
     cp "$(object lagrange-$isa)" "$disk/cache"
     mount -o remount,ro "$disk"
-    STANCE_CACHE=$disk/cache expect "an object on a disk that can only be read" 0 "$job" ball lagrange $isa
-    says "... is taken" 'kept, the same bits'
-    STANCE_CACHE=$disk/cache compiles "another one" 1 rod capturing $isa
-    says "... is not kept" 'Read-only file system; compiled for this run alone'
+    STANCE_CACHE=$disk/cache expect "an object on a disk that can only be read" 0 "$job" ball lagrange $isa \
+        says 'kept, the same bits'
+    STANCE_CACHE=$disk/cache compiles "another one" 1 rod capturing $isa \
+        says 'Read-only file system; compiled for this run alone'
     umount "$disk"
 else
     skip "a full disk" "no tmpfs can be mounted"
 fi
 rm -rf "$STANCE_CACHE"
-expect "files that may not be larger than 8 kB" 0 bash -c "trap '' XFSZ; ulimit -f 8; '$job' ball lagrange $isa | cat"
-says "... is said" "nothing can be compiled in $TMPDIR (TMPDIR): File too large; kernels that are built in compute instead"
+expect "files that may not be larger than 8 kB" 0 bash -c "trap '' XFSZ; ulimit -f 8; '$job' ball lagrange $isa | cat" \
+    says "nothing can be compiled in $TMPDIR (TMPDIR): File too large; kernels that are built in compute instead"
 is "... and nothing kept" test -z "$(others "$STANCE_CACHE")"
-TMPDIR=/nowhere expect "a directory for temporary files that is not there" 0 "$job" ball lagrange $isa
-says "... is said" 'nothing can be compiled in /nowhere (TMPDIR): No such file or directory; kernels that are built in compute instead'
+TMPDIR=/nowhere expect "a directory for temporary files that is not there" 0 "$job" ball lagrange $isa \
+    says 'nothing can be compiled in /nowhere (TMPDIR): No such file or directory; kernels that are built in compute instead'
 
 # ---- compilers ------------------------------------------------------------------------------------
 refused() { # name, what is said, what the job is started with
-    expect "$1: the kernel that is built in computes" 0 env "${@:3}" "$job" ball lagrange $isa
-    says "... with the right bits" 'built in, the same bits'
-    says "... and that is said" "$2.*kernels that are built in compute instead, more slowly"
-    is "... and nothing kept" test -z "$(others "$STANCE_CACHE")"
+    expect "$1: the kernel that is built in computes" 0 env "${@:3}" "$job" ball lagrange $isa \
+        says 'built in, the same bits' "$2.*kernels that are built in compute instead, more slowly" \
+            is 'test -z "$(others "$STANCE_CACHE")"'
 }
 compiler fusing 'exec cc "$@" -ffp-contract=fast'
-CC=./fusing expect "a compiler that fuses: the kernel that is built in computes" 0 "$job" ball lagrange $isa
-says "... with the right bits" 'built in, the same bits'
-says "... and that is said" 'computes another [a-z_]* in check [0-9]*: refused.*kernels that are built in compute instead, more slowly'
+CC=./fusing expect "a compiler that fuses: the kernel that is built in computes" 0 "$job" ball lagrange $isa \
+    says 'built in, the same bits' \
+        'computes another [a-z_]* in check [0-9]*: refused.*kernels that are built in compute instead, more slowly'
 is "... and remembered, nothing else" test "$(others "$STANCE_CACHE")" = "$(ls "$STANCE_CACHE/lagrange-$isa"-*.refused)"
-CC=./fusing expect "... so that the next job does not compile" 0 "$job" ball lagrange $isa
-says "... but says what to do" 'refused.*(known from before; stance build tries again); kernels that are built in compute'
+CC=./fusing expect "... so that the next job does not compile" 0 "$job" ball lagrange $isa \
+    says 'refused.*(known from before; stance build tries again); kernels that are built in compute'
 is "... and not that it compiles" test -z "$(grep compiling log)"
 compiles "... nor does another compiler mind" 0 ball lagrange $isa
 rm -rf "$STANCE_CACHE"
@@ -212,25 +190,25 @@ compiler other 'while [ "$1" != -o ]; do shift; done; echo text >"$2"'
 refused "a compiler that makes no object" 'a compiled kernel cannot be loaded' CC=./other
 refused "a compiler that is not there" "the compiler CC='/nowhere/cc' does not run" CC=/nowhere/cc
 refused "no compiler" 'there is no compiler here' PATH="$scratch"
-CC=/nowhere/cc expect "no compiler, and no kernel built in" 2 "$job" ball lagrange $isa alone
-says "... says what to do" '`stance build` where there is one, and copy '"$STANCE_CACHE/lagrange-$isa-"
+CC=/nowhere/cc expect "no compiler, and no kernel built in" 2 "$job" ball lagrange $isa alone \
+    says '`stance build` where there is one, and copy '"$STANCE_CACHE/lagrange-$isa-"
 if command -v clang >/dev/null; then
     CC=clang compiles "clang" 0 ball lagrange "$fastest"
 else
     skip "clang" "not installed"
 fi
 CC="cc -DUNUSED" compiles "CC may have options" 0 ball lagrange $isa
-CC=/nowhere/cc expect "an object serves where there is no compiler, whoever compiled it" 0 "$job" ball lagrange $isa alone
-says "... with the right bits" 'kept, the same bits'
+CC=/nowhere/cc expect "an object serves where there is no compiler, whoever compiled it" 0 "$job" ball lagrange $isa \
+    alone says 'kept, the same bits'
 
 # ---- the command ----------------------------------------------------------------------------------
-expect "stance build of a scene that the program carries" 0 "$stance" build "$shipped/ball_bounce.yaml" --method lagrange --isa scalar
-says "... compiles it" '^lagrange *scalar *compiled'
+expect "stance build of a scene that the program carries" 0 "$stance" build "$shipped/ball_bounce.yaml" --method \
+    lagrange --isa scalar says '^lagrange *scalar *compiled'
 expect "... of no scenario" 3 "$stance" build nothing.yaml
-expect "... for no method" 2 "$stance" build "$shipped/ball_bounce.yaml" --method lagrang
-says "... says so" "stance build: --method takes one of .*lagrange"
-expect "... for no instruction set" 2 "$stance" build "$shipped/ball_bounce.yaml" --isa=avx
-says "... says so" "stance build: --isa takes one of .*scalar"
+expect "... for no method" 2 "$stance" build "$shipped/ball_bounce.yaml" --method lagrang \
+    says "stance build: --method takes one of .*lagrange"
+expect "... for no instruction set" 2 "$stance" build "$shipped/ball_bounce.yaml" --isa=avx \
+    says "stance build: --isa takes one of .*scalar"
 
 pole=$shipped/mechanisms/cart_pole.yaml few=(--set 'sweep.grid[0].count=2' --set 'sweep.grid[1].count=2')
 rm -rf "$STANCE_CACHE"
@@ -242,12 +220,10 @@ isas() { "$python" -c 'import h5py, sys; print(*(h5py.File(f).attrs["instruction
 is "... each file names what computed" test "$(isas built_in.h5 kept.h5)" = "$fastest $fastest"
 is "... the same bits, beside cases at the other stop, too" cmp <("$stance" table built_in.h5) <("$stance" table kept.h5)
 
-CC=./failing expect "... whose compiler fails exits 3" 3 "$stance" build "$pole" --isa scalar --method implicit
-says "... and says why" 'failing does not compile implicit for scalar'
-says "... and what computes" "implicit *$fastest *none: the one built in computes"
-STANCE_CACHE=/sys/stance expect "... whose object cannot be kept exits 3" 3 "$stance" build "$pole"
-says "... and says so" 'for this run alone'
-says "... and what computes" 'midpoint .* compiled, but not kept'
+CC=./failing expect "... whose compiler fails exits 3" 3 "$stance" build "$pole" --isa scalar --method implicit \
+    says 'failing does not compile implicit for scalar' "implicit *$fastest *none: the one built in computes"
+STANCE_CACHE=/sys/stance expect "... whose object cannot be kept exits 3" 3 "$stance" build "$pole" \
+    says 'for this run alone' 'midpoint .* compiled, but not kept'
 
 # ---- in the middle of a run -----------------------------------------------------------------------
 # A compiler that waits until rows are in the file, which kernels that are built in have computed.
@@ -277,9 +253,8 @@ comes "of two ranks" waiting mpirun -n 2
 is "... the same bits" "$stance" compare all.h5 comes.h5
 later() { # name, what is said, what the run is started with ...: none comes
     rm -rf "$STANCE_CACHE"
-    expect "$1" 0 env "${@:3}" "$stance" run --quiet --force -o comes.h5 "$pole" "${many[@]}"
-    says "... is said" "$2.*kernels that are built in compute on, more slowly"
-    is "... the same bits" "$stance" compare all.h5 comes.h5
+    expect "$1" 0 env "${@:3}" "$stance" run --quiet --force -o comes.h5 "$pole" "${many[@]}" \
+        says "$2.*kernels that are built in compute on, more slowly" is "$stance" compare all.h5 comes.h5
 }
 later "a compiler that fails while kernels that are built in compute" 'failing does not compile' CC=./failing
 # (Made before, so that it comes while there still are cases, however busy the machine is.)
@@ -322,10 +297,6 @@ touch -d '20 days ago' "$STANCE_CACHE/larger-scalar-0.so"
 touch -d '30 days ago' "$STANCE_CACHE/large-scalar-0.so"
 touch -d '40 days ago' "$STANCE_CACHE/0.part"
 touch -d '50 days ago' "$STANCE_CACHE/notes.txt"
-expect "an old one" 0 "$job" ball lagrange $isa
-says "... is taken" 'kept, the same bits'
-compiles "another one" 0 ball capturing $isa
-is "... removes, beyond 256 MiB, what nobody used for longest, of its own" \
-    test "$(cd "$STANCE_CACHE" && echo *)" = "$(cd "$STANCE_CACHE" && echo capturing-* lagrange-* larger-scalar-0.so notes.txt)"
-
-echo "1..$count"
+expect "an old one" 0 "$job" ball lagrange $isa says 'kept, the same bits'
+compiles "another one" 0 ball capturing $isa \
+    is 'test "$(cd "$STANCE_CACHE" && echo *)" = "$(cd "$STANCE_CACHE" && echo capturing-* lagrange-* larger-scalar-0.so notes.txt)"'

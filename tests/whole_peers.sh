@@ -1,9 +1,8 @@
 #!/usr/bin/env bash
 # Other simulators on the charts of error against cost (bench_peers): our own engine in a peer's place gets the
 # errors that it has without; what a peer may do wrong is said in one line; MuJoCo in short, where it is
-# installed. Speaks TAP.
+# installed.
 # long
-set -u
 . "$(dirname "$0")/scratch.sh"
 programs=$(cd "$tests/.." && cd "${BUILD:-build}/tests" && pwd)
 
@@ -20,8 +19,7 @@ ask=("$programs/bench_peers")
 
 # ---- our own engine as a peer ----------------------------------------------------------------------
 expect "a peer that is our own engine" 0 "${ask[@]}" drop.yaml basin_one_foot.yaml --peer "$programs/peer_self" -o self --json
-"$python" - <<'END' >told 2>&1
-import json
+holds "... has the errors and the labels that it has without" <<'END'
 drop, basin = json.loads("{" + open("log").read().split("{", 1)[1])["studies"]
 def rows(study, step):
     return [r for r in study["rows"] if r["method"] in ("midpoint", "self") and r["step"] == step]
@@ -36,12 +34,9 @@ assert {m["method"] for m in peer["best"]["methods"]} == {"midpoint", "capturing
 ours, theirs = rows(basin, 0.01)
 assert ours["cells_unlike"] == theirs["cells_unlike"] and theirs["cases"] == 169
 END
-result $? "... has the errors and the labels that it has without"
-expect "fewer starts, as text and picture" 0 "${ask[@]}" basin_one_foot.yaml --reuse --peer "$programs/peer_self" --peer-starts 50 -o self
-says "... counts them" "self  *midpoint  *1.0e-02 .* of 36 "
-says "... and says what is cheaper" "self, at its best .midpoint, 0.01 s.: [a-z0-9]* of 36 cells unlike"
-[ -s self/basin_one_foot.svg ]
-result $? "... draws both"
+expect "fewer starts, as text and picture" 0 "${ask[@]}" basin_one_foot.yaml --reuse --peer "$programs/peer_self" \
+    --peer-starts 50 -o self says "self  *midpoint  *1.0e-02 .* of 36 " \
+    "self, at its best .midpoint, 0.01 s.: [a-z0-9]* of 36 cells unlike" is [ -s self/basin_one_foot.svg ]
 
 # ---- what peers do wrong ---------------------------------------------------------------------------
 fake() { # NAME COMMANDS
@@ -49,11 +44,9 @@ fake() { # NAME COMMANDS
 }
 wrong() { # WHAT EXPECTED COMMANDS OPTIONS ...: it has ten minutes to say it, unless there is a --peer-effort
     fake peer "$3"
-    expect "$1" 3 "${ask[@]}" drop.yaml --reuse --peer ./peer "${@:4}" -o self
-    says "... says so" "$2"
+    expect "$1" 3 "${ask[@]}" drop.yaml --reuse --peer ./peer "${@:4}" -o self says "$2"
     lines=$(grep -c 'bench_peers: drop: ' log)
-    [ "$lines" = 1 ] && [ "$(wc -l <log)" = 1 ]
-    result $? "... in one line"
+    is "... in one line" '[ "$lines" = 1 ] && [ "$(wc -l <log)" = 1 ]'
 }
 wrong "a line that is none" "line 2 is not understood: hello" 'echo peer fake; echo hello; cat >/dev/null'
 wrong "no name" "line 1 is not understood: setting" 'echo setting 0.001 0 x'
@@ -67,29 +60,23 @@ wrong "one that is silent" "has said nothing for 1 s" 'exec sleep 1000' --peer-e
 wrong "cases that are missing" "2 of 2 cases are missing" "\"$programs/peer_self\" | grep -v '^case'"
 wrong "states that are missing" "has 120 of 121 states" "\"$programs/peer_self\" | grep -v '^state 1 120 '"
 wrong "no time" ".midpoint.: no time" "\"$programs/peer_self\" | grep -v '^time'"
-expect "one that is not there" 3 "${ask[@]}" drop.yaml --reuse --peer ./nowhere -o self
-says "... says so" "exit code 127"
+expect "one that is not there" 3 "${ask[@]}" drop.yaml --reuse --peer ./nowhere -o self says "exit code 127"
 expect "a number that is none" 2 "${ask[@]}" drop.yaml --peer ./peer --peer-starts many
 fake peer 'cat >/dev/null; echo peer fake; echo cannot no feet; echo end'
-expect "one that cannot is no mistake" 0 "${ask[@]}" drop.yaml --reuse --peer ./peer -o self
-says "... it says why" "fake cannot: no feet"
+expect "one that cannot is no mistake" 0 "${ask[@]}" drop.yaml --reuse --peer ./peer -o self says "fake cannot: no feet"
 
 # ---- those that are installed ----------------------------------------------------------------------
 for peer in mujoco siconos; do
     if [ -x "$programs/peer_$peer" ]; then
         expect "$peer computes the drop" 0 "${ask[@]}" drop.yaml --reuse --peer "$programs/peer_$peer" -o self --json
-        "$python" - <<'END' >told 2>&1
-import json
+        holds "... the same robot, and lands with it" <<'END'
 study = json.loads("{" + open("log").read().split("{", 1)[1])["studies"][0]
 assert study["peers"][0]["acceleration_difference"] < 1e-9
 assert study["peers"][0]["best"]["error"] < 0.1, study["peers"]
 END
-        result $? "... the same robot, and lands with it"
     else
         skip "$peer computes the drop" "it is not installed"
     fi
 done
-expect "what the product had" 2 "$stance" bench accuracy drop.yaml --peer ./peer
-says "... is told where it is" 'other simulators are asked by `make bench-peers` in the source tree'
-echo "1..$count"
-exit $((failed > 0))
+expect "what the product had" 2 "$stance" bench accuracy drop.yaml --peer ./peer \
+    says 'other simulators are asked by `make bench-peers` in the source tree'

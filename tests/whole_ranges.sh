@@ -1,10 +1,8 @@
 #!/usr/bin/env bash
 # `stance ranges`: what it proposes holds the domain, for scenarios with axes and for those without; where there
-# is no domain it says why. Speaks TAP.
+# is no domain it says why.
 # about: runner/run analysis/basin
 # shellcheck disable=SC2016,SC2034
-set -u
-# shellcheck source=tests/scratch.sh
 . "$(dirname "$0")/scratch.sh"
 map=$shipped/basin_one_foot.yaml
 
@@ -36,9 +34,8 @@ pasted() { # name, scenario
     sed '/^sweep:/,/^seed:/d' "$2" | cat - "$1.txt" >"$1.yaml"
     expect "... are a sweep" 0 "$stance" run --quiet -o "$1.h5" "$1.yaml"
     "$stance" basin --json "$1.h5" >"$1.json"
-    "$python" - "$1" <<'PY'
-import h5py, json, sys, numpy
-row = json.load(open(sys.argv[1] + ".json"))["rows"][0]
+    holds "... that holds the domain, the equilibrium and about that share" - "$1" <<'PY'
+row = said(sys.argv[1] + ".json")["rows"][0]
 assert row["bounded"] and not row["cut"] and row["connected"] > 0, row
 f = h5py.File(sys.argv[1] + ".h5")
 axes = [k for k in f if k.startswith("initial.offset.")]
@@ -48,23 +45,19 @@ for k in axes:
 share = float(open(sys.argv[1] + ".txt").read().split("domain: about ")[1].split(" %")[0])
 assert abs(share - 100 * row["share"]) < 4, (share, row["share"])
 PY
-    result $? "... that holds the domain, the equilibrium and about that share"
 }
 pasted one_foot "$map"
 sed '/^sweep:/,$d' "$shipped/mechanisms/cart_pole.yaml" >cart.yaml
 pasted newcomer cart.yaml
 # One that is too thin for a map of all of it.
-expect "a thin domain" 0 "$stance" ranges own.yaml
-says "... is told" "with too few points to show it"
+expect "a thin domain" 0 "$stance" ranges own.yaml says "with too few points to show it"
 "$stance" ranges own.yaml 2>ignored | cat own.yaml - >thin.yaml
 expect "... and shown about the equilibrium" 0 "$stance" run --quiet -o thin.h5 thin.yaml
-"$stance" basin --json thin.h5 | "$python" -c 'import json, sys; assert json.load(sys.stdin)["rows"][0]["share"] > 0.05'
-result $? "... a part of it"
+expect "... a part of it" 0 "$stance" basin --json thin.h5 holds 'assert said()["rows"][0]["share"] > 0.05'
 
 "$stance" ranges --json "$map" >one.json
-"$python" - <<'PY'
-import json
-r = json.load(open("one.json"))
+holds "JSON: where the domain ends along an axis, in ranges that meet the equilibrium" <<'PY'
+r = said("one.json")
 theta = r["axes"][0]
 assert theta["paths"] == ["initial.offset.theta"] and not r["chosen"] and r["not_lost"] == 0
 # along it alone: the README's extent
@@ -76,15 +69,14 @@ for k in "whole", "close":
     assert abs(zero - round(zero)) < 1e-9, (k, zero)
 assert theta["whole"]["from"][0] < theta["reach"][0] and theta["reach"][1] < theta["whole"]["to"][0]
 PY
-result $? "JSON: where the domain ends along an axis, in ranges that meet the equilibrium"
 
-expect "a sample's axes" 0 "$stance" ranges "$shipped/sampled.yaml"
-says "... are lines of a sample, several paths together" '^      - {paths: \[initial.offset.q1, initial.offset.q2\], from: \[-[0-9.]*, [0-9.]*\], to: '
-expect "other axes" 0 "$stance" ranges "$shipped/sample_time_sweep.yaml"
-says "... are looked at" "At 1 of 3 points of the other axes the equilibrium itself is not stabilised"
+expect "a sample's axes" 0 "$stance" ranges "$shipped/sampled.yaml" \
+    says '^      - {paths: \[initial.offset.q1, initial.offset.q2\], from: \[-[0-9.]*, [0-9.]*\], to: '
+expect "other axes" 0 "$stance" ranges "$shipped/sample_time_sweep.yaml" \
+    says "At 1 of 3 points of the other axes the equilibrium itself is not stabilised"
 if long_tests; then
-    expect "another outcome, about a state" 0 "$stance" ranges "$shipped/mechanisms/compass_gait.yaml" --of undecided
-    says "... walks on" "path: initial.state.vleg1, from: -1.9"
+    expect "another outcome, about a state" 0 "$stance" ranges "$shipped/mechanisms/compass_gait.yaml" --of undecided \
+        says "path: initial.state.vleg1, from: -1.9"
 fi
 
 # ---- axes along a line of several paths ---------------------------------------------------------
@@ -96,20 +88,17 @@ sweep:
     - {path: initial.offset.q1, from: -0.3, to: 0.3, count: 33}
 YAML
 expect "an oblique axis" 0 "$stance" run --quiet -o line.h5 line.yaml
-expect "... is told in the summary" 0 "$stance" summary line.h5
-says "... with the other path" "initial.offset.theta  -1.5 ... 1.5 rad, 65 values.*; with initial.offset.vtheta"
-expect "... and by basin" 0 "$stance" basin line.h5
-says "... whose distances are along it" "distances in units of 1 rad of initial.offset.theta with initial.offset.vtheta"
-expect "a start by the other path" 0 "$stance" replay line.h5 --near vtheta=2.6,q1=0 -o line.svg
-says "... is the point of the line" "initial.offset.theta = -0.75 rad"
-expect "its picture" 0 "$stance" plot line.h5 --picture map
-grep -q "with vtheta" line-map.svg
-result $? "... names both"
+expect "... is told in the summary" 0 "$stance" summary line.h5 \
+    says "initial.offset.theta  -1.5 ... 1.5 rad, 65 values.*; with initial.offset.vtheta"
+expect "... and by basin" 0 "$stance" basin line.h5 \
+    says "distances in units of 1 rad of initial.offset.theta with initial.offset.vtheta"
+expect "a start by the other path" 0 "$stance" replay line.h5 --near vtheta=2.6,q1=0 -o line.svg \
+    says "initial.offset.theta = -0.75 rad"
+expect "its picture" 0 "$stance" plot line.h5 --picture map is grep -q "with vtheta" line-map.svg
 "$stance" basin --json line.h5 >line.json
 # The same cases one by one.
 expect "the same points as a list" 0 "$stance" run --quiet -o list.h5 line.yaml --set "sweep.grid[0]={paths: [initial.offset.theta, initial.offset.vtheta], values: $("$python" -c 'print([[-1.5 + i / 64 * 3.0, 5.2 + i / 64 * -10.4] for i in range(64)] + [[1.5, -5.2]])')}"
-"$python" - <<'PY'
-import h5py, json, numpy
+holds "... are the same cases, and the domain is whole" <<'PY'
 a, b = h5py.File("line.h5"), h5py.File("list.h5")
 for k in a:
     if isinstance(a[k], h5py.Dataset) and a[k].dtype.kind == "f" and k != "seconds":
@@ -117,68 +106,61 @@ for k in a:
 assert (a["outcome"][...] == b["outcome"][...]).all() and a["outcome"].shape == (65, 33)
 rate = a["initial.offset.vtheta"]
 assert rate.shape == (65,) and numpy.allclose(rate[...], -5.2 / 1.5 * a["initial.offset.theta"][...])
-row = json.load(open("line.json"))["rows"][0]
+row = said("line.json")["rows"][0]
 assert row["bounded"] and row["connected"] > 0.1 and row["nearest_at"]["initial.offset.theta"] == 0, row
 PY
-result $? "... are the same cases, and the domain is whole"
-expect "ranges of it" 0 "$stance" ranges line.yaml
-says "... are along the same line" '^    - {paths: \[initial.offset.theta, initial.offset.vtheta\], from: \[-1.[0-9]*, 5.[0-9]*\], to: \[1.'
-expect "a line beside the equilibrium" 0 "$stance" check line.yaml --set 'sweep.grid[0].from=[-1.5, 0]'
-says "... is told" "the line of initial.offset.theta misses the equilibrium: it has initial.offset.vtheta = -2.6 where that is 0"
-expect "a first path that stays" 2 "$stance" check line.yaml --set 'sweep.grid[0].from=[1.5, 0]'
-says "... is told" "from and to are equal in the first path, whose values name the points"
+expect "ranges of it" 0 "$stance" ranges line.yaml \
+    says '^    - {paths: \[initial.offset.theta, initial.offset.vtheta\], from: \[-1.[0-9]*, 5.[0-9]*\], to: \[1.'
+expect "a line beside the equilibrium" 0 "$stance" check line.yaml --set 'sweep.grid[0].from=[-1.5, 0]' \
+    says "the line of initial.offset.theta misses the equilibrium: it has initial.offset.vtheta = -2.6 where that is 0"
+expect "a first path that stays" 2 "$stance" check line.yaml --set 'sweep.grid[0].from=[1.5, 0]' \
+    says "from and to are equal in the first path, whose values name the points"
 expect "a logarithmic line" 0 "$stance" check line.yaml --set 'sweep.grid[0]={paths: [ground.friction, controller.torque_limit], from: [0.1, 5], to: [1, 20], count: 5, spacing: log}'
-expect "... of numbers below 0" 2 "$stance" check line.yaml --set 'sweep.grid[0].spacing=log'
-says "... is told" "spacing log needs from and to above 0"
+expect "... of numbers below 0" 2 "$stance" check line.yaml --set 'sweep.grid[0].spacing=log' \
+    says "spacing log needs from and to above 0"
 
 # ---- what cuts the domain -----------------------------------------------------------------------
-expect "a rail that ends" 0 "$stance" ranges "$shipped/mechanisms/cart_pole.yaml"
-says "... cuts the domain" "^# These ranges cut the domain: about"
+expect "a rail that ends" 0 "$stance" ranges "$shipped/mechanisms/cart_pole.yaml" \
+    says "^# These ranges cut the domain: about"
 for side in -1 1; do says "... at $side.97 m" "^#   cut at initial.offset.cart = $side.9[0-9]* m: where starts cease to exist"; done
-! grep -q "hold the domain" log
-result $? "... which the ranges do not hold"
+is "... which the ranges do not hold" ! grep -q "hold the domain" log
 expect "a rail without ends" 0 "$stance" ranges "$shipped/mechanisms/cart_pole.yaml" --set 'robot.bodies.cart.limits=[none, none]'
 says "... is followed so far" "^#   cut at initial.offset.cart = [0-9.]* m: rays were followed no further"
-! grep -q "hold the domain" log
-result $? "... and no further"
-"$stance" ranges --json "$map" | "$python" -c 'import json, sys; assert [a["cut"] for a in json.load(sys.stdin)["axes"]] == [[False, False]] * 2'
-result $? "JSON: what is held"
+is "... and no further" ! grep -q "hold the domain" log
+expect "JSON: what is held" 0 "$stance" ranges --json "$map" \
+    holds 'assert [a["cut"] for a in said()["axes"]] == [[False, False]] * 2'
 
 # ---- samples ------------------------------------------------------------------------------------
 for sample in topple sampled; do
-    expect "a sample, $sample" 0 "$stance" ranges "$shipped/$sample.yaml"
-    says "... with its method" "^    method: "
+    expect "a sample, $sample" 0 "$stance" ranges "$shipped/$sample.yaml" says "^    method: "
     [ "$sample" != topple ] || says "... with the scale along its rays" "^    - {path: initial.offset.scale, from: 0, to: 1, count: 257}"
     "$stance" ranges "$shipped/$sample.yaml" >lines 2>ignored
     sed '/^sweep:/,/^[a-rt-z]/{/^[a-rt-z]/!d}' "$shipped/$sample.yaml" | cat - lines >pasted.yaml
     expect "... that is whole" 0 "$stance" check pasted.yaml
 done
 
-expect "nothing that stands" 2 "$stance" ranges "$shipped/ball_bounce.yaml"
-says "... is said" "initial.state itself ends as rested, so no domain of stabilised starts is about it"
-expect "settle off" 2 "$stance" ranges "$shipped/drop.yaml"
-says "... is said" 'stop.settle is "off": set it'
-expect "a loop that does not hold" 2 "$stance" ranges "$map" --set controller.sample_time=0.3
-says "... is said" "the equilibrium itself ends as fell, so no domain of stabilised starts is about it"
-expect "no equilibrium" 2 "$stance" ranges own.yaml --set robot.actuators.hip.limit=1
-says "... is said, with its place" "own.yaml:[0-9]*:[0-9]*: no equilibrium"
-[ "$(wc -l <log)" = 1 ]
-result $? "... in a line"
+expect "nothing that stands" 2 "$stance" ranges "$shipped/ball_bounce.yaml" \
+    says "initial.state itself ends as rested, so no domain of stabilised starts is about it"
+expect "settle off" 2 "$stance" ranges "$shipped/drop.yaml" says 'stop.settle is "off": set it'
+expect "a loop that does not hold" 2 "$stance" ranges "$map" --set controller.sample_time=0.3 \
+    says "the equilibrium itself ends as fell, so no domain of stabilised starts is about it"
+expect "no equilibrium" 2 "$stance" ranges own.yaml --set robot.actuators.hip.limit=1 \
+    says "own.yaml:[0-9]*:[0-9]*: no equilibrium" lines 1
 if long_tests; then
-    expect "a start in the ground" 2 "$stance" ranges "$shipped/mechanisms/hopper.yaml"
-    says "... is said" "initial.state itself is no start: sole_heel would start 0.5 m inside the ground"
+    expect "a start in the ground" 2 "$stance" ranges "$shipped/mechanisms/hopper.yaml" \
+        says "initial.state itself is no start: sole_heel would start 0.5 m inside the ground"
 fi
 expect "an unknown outcome" 2 "$stance" ranges "$map" --of fel
 expect "no file" 3 "$stance" ranges none.yaml
 # ---- how long it takes ----------------------------------------------------------------------------
 for limited in "ranges $map" "design $map" "build $map" "basin one_foot.h5" "sensitivity one_foot.h5"; do
-    expect "$limited without time" 4 "$stance" $limited --time-limit 0
-    says "... says so" "^stance ${limited%% *}: stopped after 0, its time limit"
+    expect "$limited without time" 4 "$stance" $limited --time-limit 0 \
+        says "^stance ${limited%% *}: stopped after 0, its time limit"
 done
-expect "a time that is none" 2 "$stance" ranges "$map" --time-limit soon
-says "... is told" "--time-limit takes a duration such as 90s, 55m or 1h30m, not 'soon'"
+expect "a time that is none" 2 "$stance" ranges "$map" --time-limit soon \
+    says "--time-limit takes a duration such as 90s, 55m or 1h30m, not 'soon'"
 # Who waits at a terminal is told how far it is, and for how long it goes on.
-"$python" - "$map" <<'PY'
+holds "ranges of what takes long say how far they are" - "$map" <<'PY'
 import os, pty, re, subprocess, sys
 ours, theirs = pty.openpty()
 command = [os.environ["STANCE"], "ranges", sys.argv[1], "--set", "method.step=2e-6", "--set", "controller.sample_time=0.01"]
@@ -190,6 +172,3 @@ with subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=theirs) as ran:
         said += os.read(ours, 4000).decode()
     ran.terminate()
 PY
-result $? "ranges of what takes long say how far they are"
-
-echo "1..$count"

@@ -2,9 +2,7 @@
 # What a week on a cluster brings: crashes, signals to any rank, files that vanish, disks that fill,
 # answers that rot, scenarios that change on the way. Each ends with one clear line, the right exit
 # code, and every finished case in the file.
-# Speaks TAP.
 # about: runner/run analysis/summary
-set -u
 . "$(dirname "$0")/scratch.sh"
 chmod 755 "$scratch"
 # Under a sanitizer too it is the program that says where it crashed.
@@ -21,13 +19,8 @@ fi
 # Minutes of work on any machine, of which a file holds the first cases soon.
 {
     balance 0.001 0.1
-    cat <<END
-stop: {time: 8, settle: off}
-sweep:
-  grid:
-    - {path: initial.offset.theta, from: -0.12, to: 0.06, count: 600}
-    - {path: initial.offset.vtheta, from: -0.6, to: 0.6, count: 600}
-END
+    echo 'stop: {time: 8, settle: off}'
+    grid 600 600
 } >long.yaml
 # A second or less.
 sed 's/0\.001/0.01/g; s/count: 600/count: 60/; s/stop: .*/stop: {time: 3}/' long.yaml >short.yaml
@@ -37,33 +30,6 @@ cat >>refined.yaml <<END
 record: {every: 0.1, cases: [0, 1003]}
 END
 
-job='' ranks=()
-# A job of N ranks (0: no launcher) that has stored some cases.
-begin() { # N, file, arguments
-    local n=$1 file=$2
-    shift 2
-    if ((n > 0)); then
-        mpirun -n "$n" "$stance" run "$@" -o "$file" --quiet >out 2>log </dev/null &
-    else
-        "$stance" run "$@" -o "$file" --quiet >out 2>log </dev/null &
-    fi
-    job=$!
-    await "$job" computing "$file"
-    ranks=("$job")
-    ((n > 0)) && mapfile -t ranks < <(pgrep -P $job -x "$(basename "$stance")")
-    ((${#ranks[@]} > 0)) || ranks=("$job")
-}
-# The job ends by itself with this code.
-ends() { # name, code
-    local status
-    await - gone "$job"
-    kill -9 "$job" 2>/dev/null && echo "it hung" >>log
-    wait $job 2>/dev/null
-    status=$?
-    ((status == $2)) || echo "exit code $status, expected $2" >>log
-    result $((status != $2)) "$1"
-}
-
 # ---- a rank that crashes -----------------------------------------------------------------------
 for crash in "${crashes[@]}"; do
     IFS=: read -r signal code n <<<"$crash"
@@ -71,22 +37,19 @@ for crash in "${crashes[@]}"; do
     rm -f crash.h5
     begin "$n" crash.h5 long.yaml
     kill -"$signal" "${ranks[-1]}"
-    ends "$with ends the job" "$code"
-    says "... names rank, host and cases" \
-        "^stance run: rank $((n ? n - 1 : 0)) on $(hostname) crashed (SIG$signal), cases [0-9]*, .* in hand; "
-    tool "... what is marked done is whole" whole crash.h5
+    ends "$with ends the job" "$code" tool whole crash.h5 \
+        says "^stance run: rank $((n ? n - 1 : 0)) on $(hostname) crashed (SIG$signal), cases [0-9]*, .* in hand; "
 done 2>/dev/null
-expect "status tells that the job is dead" 0 "$stance" status crash.h5
-says "... since when, and where it was" "not running (the last sign of life was .* ago, on $(hostname))"
+expect "status tells that the job is dead" 0 "$stance" status crash.h5 \
+    says "not running (the last sign of life was .* ago, on $(hostname))"
 
 # ---- signals to one rank -----------------------------------------------------------------------
 for signal in "${signals[@]}"; do
     rm -f signal.h5
     begin 3 signal.h5 long.yaml
     kill -$signal "${ranks[1]}"
-    ends "SIG$signal to one rank of three stops all of them" 4
-    says "... says how to go on" '^stance run: stopped at [0-9]* of 360000 cases; go on with: mpirun -n 3 '
-    tool "... what is marked done is whole" whole signal.h5
+    ends "SIG$signal to one rank of three stops all of them" 4 tool whole signal.h5 \
+        says '^stance run: stopped at [0-9]* of 360000 cases; go on with: mpirun -n 3 '
 done
 # What mpirun does on SIGTERM is its own: code 1, and SIGKILL after a grace, usually of a second.
 for grace in 1 10 100; do
@@ -96,74 +59,62 @@ for grace in 1 10 100; do
     await - gone "$job"
     grep -q '^stance run: stopped at' log && break
 done
-ends "SIGTERM to mpirun" 1
-says "... and the ranks end by themselves before that" '^stance run: stopped at'
-tool "... what is marked done is whole" whole signal.h5
+ends "SIGTERM to mpirun" 1 says '^stance run: stopped at' tool whole signal.h5 # ranks end by themselves before
 
 # The line that goes on can be pasted into a shell.
 odd="it's \$odd;.h5"
 expect "a time limit" 4 mpirun -n 2 "$stance" run short.yaml -o "$odd" --time-limit 0.01s \
     --set 'stop={time: 2.5, settle: "off"}' --set "title=\"a 'b' c\""
 line=$(sed -n 's/^.*; go on with: //p' log | sed 's/--time-limit 0.01s//')
-expect "... and the line that it prints" 0 bash -c "$line"
-says "... which ends it" ': 3600 cases: '
+expect "... and the line that it prints" 0 bash -c "$line" says ': 3600 cases: '
 # Before the file there is the design, of some milliseconds on an idle machine.
 for limit in 0.01s 0.1s 1s 10s; do
     "$stance" run refined.yaml -o limited.h5 --time-limit $limit >log 2>&1
     code=$?
     [ -e limited.h5 ] && break
 done
-((code == 4))
-result $? "a time limit while a map is refined"
+is "a time limit while a map is refined" '((code == 4))'
 says "... says how to go on" '; go on with: .* run refined.yaml -o limited.h5 .*--resume$'
-expect "status of a map that is half refined" 0 "$stance" status limited.h5
-says "... counts no case as pending that may be inferred" 'others to be simulated or inferred'
-expect "... nor as JSON" 0 "$stance" status limited.h5 --json
-says "... where the number is unknown" '"pending": null'
+expect "status of a map that is half refined" 0 "$stance" status limited.h5 says 'others to be simulated or inferred'
+expect "... nor as JSON" 0 "$stance" status limited.h5 --json says '"pending": null'
 sed 's/count: 60/count: 2000/; s/initial.offset.theta, from: -0.12, to: 0.06/robot.trunk_mass, from: 1.6, to: 2/' \
     short.yaml >designs.yaml
-expect "a time limit while designs are computed" 4 mpirun -n 2 "$stance" run designs.yaml \
-    -o designs.h5 --time-limit 0.05s
-says "... says how to go on" 'nothing is stored; go on with: mpirun -n 2 .*designs.yaml .*--resume$'
+expect "a time limit while designs are computed" 4 mpirun -n 2 "$stance" run designs.yaml -o designs.h5 \
+    --time-limit 0.05s says 'nothing is stored; go on with: mpirun -n 2 .*designs.yaml .*--resume$'
 sed 's/count: 2000/count: 2000000/' designs.yaml >many.yaml
 mpirun -n 3 "$stance" run many.yaml -o many.h5 --quiet >out 2>log </dev/null &
 job=$!
 designing() { "$stance" status many.h5 2>&1 | grep -q 'not there yet: a run is computing designs'; }
 await "$job" designing
 kill -USR1 "$(pgrep -P $job -x "$(basename "$stance")" | tail -n 1)"
-ends "a signal to one rank while designs are computed" 4
-says "... says how to go on" 'nothing is stored; go on with: mpirun -n 3 .*many.yaml .*--resume$'
-[ -z "$(ls designs.h5* many.h5* 2>/dev/null)" ]
-result $? "... and leaves no file"
+ends "a signal to one rank while designs are computed" 4 is '[ -z "$(ls designs.h5* many.h5* 2>/dev/null)" ]' \
+    says 'nothing is stored; go on with: mpirun -n 3 .*many.yaml .*--resume$'
 
 # ---- seen from outside -------------------------------------------------------------------------
 rm -f seen.h5
 begin 2 seen.h5 long.yaml
 rated() { "$stance" status seen.h5 --json 2>&1 | tee log | grep -q '"rate": [1-9]'; }
 await "$job" rated
-"$python" -c 'import json; d = json.load(open("log"))
+holds "status of a job that runs: ranks alive, rates, time left" 'd = said()
 assert d["running"] and d["ranks"] == d["ranks_alive"] == 2 and d["doing"] == "computing", d
 assert d["rate"] > 0 and d["mean_rate"] > 0 and d["seconds_left"] > 1 and d["last_sign"] < 60, d
-assert d["done"] + d["failed"] + d["pending"] == d["cases"] == 360000, d' >>log 2>&1
-result $? "status of a job that runs: ranks alive, rates, time left"
+assert d["done"] + d["failed"] + d["pending"] == d["cases"] == 360000, d'
 # A job on another machine, whose lock is not seen here: its note is.
 cp seen.h5 there.h5
 sed "s/\"host\":\"[^\"]*\"/\"host\":\"elsewhere\"/; s/\"time\":[0-9.]*/\"time\":$(date +%s)/" seen.h5.lock >there.h5.lock
-expect "status of a job on another machine" 0 "$stance" status there.h5
-says "... goes by its sign of life" '; running on 2 ranks of elsewhere'
+expect "status of a job on another machine" 0 "$stance" status there.h5 says '; running on 2 ranks of elsewhere'
 sed -i 's/"time":[0-9.]*/"time":1000000000/' there.h5.lock
-expect "... and by its silence" 0 "$stance" status there.h5
-says "... when it was last heard of" 'not running (the last sign of life was .* ago, on elsewhere)'
+expect "... and by its silence" 0 "$stance" status there.h5 \
+    says 'not running (the last sign of life was .* ago, on elsewhere)'
 # The lock's file is removed: it is taken anew, and the job goes on.
 rm seen.h5.lock
 await "$job" test -e seen.h5.lock
-expect "a lock that was removed is there again" 3 "$stance" run long.yaml -o seen.h5 --resume
-says "... and holds" 'another process is writing it'
+expect "a lock that was removed is there again" 3 "$stance" run long.yaml -o seen.h5 --resume \
+    says 'another process is writing it'
 ln -s seen.h5 link.h5
-expect "... also against who comes through a link" 3 "$stance" run long.yaml -o link.h5 --resume
-says "... says so" 'seen.h5: another process is writing it'
-expect "status through the link" 0 "$stance" status link.h5
-says "... sees the job" '^link.h5: .*; running on 2 ranks'
+expect "... also against who comes through a link" 3 "$stance" run long.yaml -o link.h5 --resume \
+    says 'seen.h5: another process is writing it'
+expect "status through the link" 0 "$stance" status link.h5 says '^link.h5: .*; running on 2 ranks'
 kill -USR1 "$job"
 cp log said
 ends "... and the job runs on" 4
@@ -174,8 +125,8 @@ for loss in "${losses[@]}"; do
     rm -rf folder moved && mkdir folder
     begin "$n" folder/gone.h5 long.yaml
     $what
-    ends "$what ($n ranks)" 3
-    says "... says so once" '^stance run: folder/gone.h5: was removed, moved or replaced while it was written'
+    ends "$what ($n ranks)" 3 \
+        says '^stance run: folder/gone.h5: was removed, moved or replaced while it was written'
     for left in folder/moved.h5 moved/gone.h5; do
         [ -e $left ] && tool "... and what is done is there" whole $left
     done
@@ -191,8 +142,7 @@ if mount -t tmpfs -o size=8m tmpfs "$disk" 2>/dev/null; then
     job=$!
     await "$job" test -e disk/fits.h5
     dd if=/dev/zero of=disk/other bs=4k >/dev/null 2>&1
-    ends "a disk that fills once the job has begun" 0
-    tool "... does not matter" same fits.h5 disk/fits.h5
+    ends "a disk that fills once the job has begun" 0 tool same fits.h5 disk/fits.h5
     umount "$disk"
 else
     skip "a disk that fills once the job has begun" "cannot mount"
@@ -203,9 +153,8 @@ if mkfs.ext2 -q image 2>/dev/null && mount -o loop image "$disk" 2>/dev/null; th
     for n in "${fills[@]}"; do
         begin $n disk/full.h5 long.yaml
         dd if=/dev/zero of=disk/other bs=64k >/dev/null 2>&1
-        ends "a disk that cannot reserve fills ($n ranks)" 3
-        says "... says so once" '^stance run: disk/full.h5: cannot write'
-        tool "... what is marked done is whole" whole disk/full.h5
+        ends "a disk that cannot reserve fills ($n ranks)" 3 says '^stance run: disk/full.h5: cannot write' \
+            tool whole disk/full.h5
         rm -f disk/full.h5* disk/other
     done
     umount "$disk"
@@ -220,10 +169,10 @@ if "${another[@]}" ls "$stance" "$scratch" >/dev/null 2>&1; then
     for launch in "" "mpirun -n 2"; do
         # shellcheck disable=SC2086
         {
-            expect "no permission for the directory ($launch)" 3 "${another[@]}" $launch "$stance" run short.yaml -o closed/no.h5
-            says "... says so once" '^stance run: closed/no.h5: .*\(Permission denied\|not permitted\)'
-            expect "no permission for the file ($launch)" 3 "${another[@]}" $launch "$stance" run short.yaml -o open/theirs.h5 --resume
-            says "... says so once" '^stance run: open/theirs.h5: .*Permission denied'
+            expect "no permission for the directory ($launch)" 3 "${another[@]}" $launch "$stance" run short.yaml \
+                -o closed/no.h5 says '^stance run: closed/no.h5: .*\(Permission denied\|not permitted\)'
+            expect "no permission for the file ($launch)" 3 "${another[@]}" $launch "$stance" run short.yaml \
+                -o open/theirs.h5 --resume says '^stance run: open/theirs.h5: .*Permission denied'
         }
     done
 else
@@ -231,9 +180,8 @@ else
 fi
 for options in "" --force --resume; do
     # shellcheck disable=SC2086
-    expect "output to /dev/full $options" 3 "$stance" run short.yaml -o /dev/full $options
-    [ "$(grep -c '^stance run: /dev/full' log)" = 1 ] && [ -c /dev/full ] && [ ! -e /dev/full.lock ]
-    result $? "... says so once, and leaves it"
+    expect "output to /dev/full $options" 3 "$stance" run short.yaml -o /dev/full $options \
+        says '^stance run: /dev/full' is [ -c /dev/full ] is [ ! -e /dev/full.lock ]
 done
 
 # ---- answers that rot --------------------------------------------------------------------------
@@ -242,14 +190,12 @@ expect "a sweep" 0 "$stance" run short.yaml -o good.h5 --quiet
 inferred=$("$python" -c 'import h5py; f = h5py.File("map.h5")
 print((f["evidence"][...] == 2).ravel().nonzero()[0][7])')
 rot() { # file, cases
-    local file=$1 case
-    shift
-    for case in "$@"; do "$python" "$tests/results_tools.py" damage "$file" "$case"; done
+    for case in "${@:2}"; do "$python" "$tests/results_tools.py" damage "$1" "$case"; done
 }
 cp good.h5 rot.h5 && rot rot.h5 3599 5 17
-expect "summary of a file with rotten answers" 0 "$stance" summary rot.h5
-says "... tells which it leaves out" 'warning: rot.h5: 3 cases do not verify and count as pending, the first is 5;'
-says "... and does" 'Outcomes of the 3597 cases done'
+expect "summary of a file with rotten answers" 0 "$stance" summary rot.h5 \
+    says 'warning: rot.h5: 3 cases do not verify and count as pending, the first is 5;' \
+        'Outcomes of the 3597 cases done'
 expect "... and compare refuses it" 3 "$stance" compare good.h5 rot.h5
 cp map.h5 map-rot.h5 && rot map-rot.h5 0 "$inferred"
 "$python" "$tests/results_tools.py" flip map-rot.h5 trajectory/velocity map-rot2.h5
@@ -257,21 +203,20 @@ for launch in "" "mpirun -n 3"; do
     with=${launch:+ ($launch)}
     cp rot.h5 mended.h5
     # shellcheck disable=SC2086
-    expect "rotten answers$with" 0 $launch "$stance" run short.yaml -o mended.h5 --resume
-    says "... are reported" 'warning: mended.h5: 3 cases marked done did not verify and are computed again: 5, 17, 3599$'
+    expect "rotten answers$with" 0 $launch "$stance" run short.yaml -o mended.h5 --resume \
+        says 'warning: mended.h5: 3 cases marked done did not verify and are computed again: 5, 17, 3599$'
     tool "... and mended" same good.h5 mended.h5
     cp map-rot2.h5 mended.h5
     # shellcheck disable=SC2086
-    expect "rotten answers of a refined map$with" 0 $launch "$stance" run refined.yaml -o mended.h5 --resume
-    says "... are reported: simulated, inferred and recorded ones" \
-        "warning: mended.h5: 3 cases marked done did not verify and are computed again: 0, $inferred, 1003$"
-    tool "... and mended" same map.h5 mended.h5
+    expect "rotten answers of a refined map$with" 0 $launch "$stance" run refined.yaml -o mended.h5 --resume \
+        says "warning: mended.h5: 3 cases marked done did not verify and are computed again: 0, $inferred, 1003$" \
+            tool same map.h5 mended.h5
 done
 "$python" "$tests/results_tools.py" flip good.h5 status status.h5
 "$python" "$tests/results_tools.py" flip fits.h5 trajectory/position rot.h5 2>/dev/null
 case=$(($(wc -l <fits.yaml) > 0 ? 1012 : 0))
-expect "a rotten trajectory is not drawn" 3 "$stance" plot rot.h5 --case $case -o pictures
-says "... says why" 'damaged: a trajectory is not as its checksum says'
+expect "a rotten trajectory is not drawn" 3 "$stance" plot rot.h5 --case $case -o pictures \
+    says 'damaged: a trajectory is not as its checksum says'
 
 # ---- another scenario --------------------------------------------------------------------------
 other=(--set controller.torque_limit=9 --set seed=5)
@@ -280,23 +225,18 @@ cp good.h5 changed.h5 # half done
 with h5py.File("changed.h5", "r+") as f:
     status = f["status"][...]; status[30:] = 0; f["status"][...] = status'
 cp changed.h5 before.h5
-expect "another scenario is refused" 2 mpirun -n 2 "$stance" run short.yaml "${other[@]}" -o changed.h5 --resume
-says "... in one line" 'changed.h5 was made from another scenario (--force-scenario .*); 2 values '
-says "... that shows what was and what is" '^  controller.torque_limit: 10, now 9$'
-says "... where there was nothing, too" '^  seed: none, now 5$'
-cmp -s changed.h5 before.h5
-result $? "... and leaves the file as it is"
+expect "another scenario is refused" 2 mpirun -n 2 "$stance" run short.yaml "${other[@]}" -o changed.h5 --resume \
+    says 'changed.h5 was made from another scenario (--force-scenario .*); 2 values ' \
+        '^  controller.torque_limit: 10, now 9$' '^  seed: none, now 5$' is cmp -s changed.h5 before.h5
 many=(title=x seed=9 stop.time=2 ground.friction=0.7 ground.restitution=0.1 robot.foot_mass=1 robot.hip_mass=2
     robot.trunk_mass=2 robot.leg_length=0.5 controller.torque_limit=3 'controller.poles=[-4,-4,-5,-5,-6,-6]')
-expect "so are many differences" 2 "$stance" run short.yaml "${many[@]/#/--set=}" -o changed.h5 --resume
-[ "$(wc -l <log)" = 14 ] && grep -q '^  \.\.\.$' log
-result $? "... of which the first ones are shown"
+expect "so are many differences" 2 "$stance" run short.yaml "${many[@]/#/--set=}" -o changed.h5 --resume lines 14 \
+    tells '^  \.\.\.$' # of which the first ones are shown
 expect "--force-scenario needs --resume" 2 "$stance" run short.yaml -o changed.h5 --force-scenario
 for change in 'sweep.grid[0].count=61' 'record={answers: [outcome]}' 'controller.poles=[-3,-3,-4,-4,-5,-5]' \
     robot.trunk_mass=2 'record={every: 0.5, cases: [1]}' 'sweep.refine={start: 4}'; do
-    expect "what does not fit is refused: $change" 2 "$stance" run short.yaml --set "$change" \
-        -o changed.h5 --resume --force-scenario
-    says "... in one line" '^stance run: changed.h5: --force-scenario cannot change '
+    expect "what does not fit is refused: $change" 2 "$stance" run short.yaml --set "$change" -o changed.h5 --resume \
+        --force-scenario says '^stance run: changed.h5: --force-scenario cannot change '
 done
 cat >drawn.yaml <<END
 stance: 1
@@ -316,12 +256,10 @@ expect "a sample and a logarithmic axis" 0 "$stance" run drawn.yaml -o drawn.h5 
 cp drawn.h5 drawn-before.h5
 # Their values are in the file: nobody must take these for the new scenario's own.
 for change in seed=2 'sweep.sample.vary[0].to=0.5' sweep.sample.method=sobol 'sweep.grid[0].from=0.01'; do
-    expect "what does not fit is refused: $change" 2 "$stance" run drawn.yaml --set "$change" \
-        -o drawn.h5 --resume --force-scenario
-    says "... in one line" '^stance run: drawn.h5: --force-scenario cannot change '
+    expect "what does not fit is refused: $change" 2 "$stance" run drawn.yaml --set "$change" -o drawn.h5 --resume \
+        --force-scenario says '^stance run: drawn.h5: --force-scenario cannot change '
 done
-cmp -s drawn.h5 drawn-before.h5
-result $? "... and the file stays"
+is "... and the file stays" cmp -s drawn.h5 drawn-before.h5
 # One case of many has a design that changes.
 cat >words.yaml <<END
 stance: 1
@@ -339,11 +277,10 @@ sweep:
     vary: [{path: controller.design, values: [$(printf 'place, %.0s' {1..19}) lqr]}]
 END
 expect "many designs" 0 "$stance" run words.yaml -o words.h5 --quiet
-expect "a change in a few of them is refused" 2 "$stance" run words.yaml -o words.h5 --resume \
-    --force-scenario --set 'controller.weights.torques=[9, 9]'
-says "... in one line" '^stance run: words.h5: --force-scenario cannot change what its controller designs depend on'
-cmp -s changed.h5 before.h5
-result $? "... and the file stays"
+expect "a change in a few of them is refused" 2 "$stance" run words.yaml -o words.h5 --resume --force-scenario \
+    --set 'controller.weights.torques=[9, 9]' \
+    says '^stance run: words.h5: --force-scenario cannot change what its controller designs depend on'
+is "... and the file stays" cmp -s changed.h5 before.h5
 "$python" "$tests/results_tools.py" damage changed.h5 4
 # Killed on the way, again and again: it is the one file or the other.
 tried=0 changed=0
@@ -371,13 +308,12 @@ echo mine >killed.h5.next
 "$stance" run short.yaml -o killed.h5 --resume --quiet >log 2>&1 && [ "$(cat killed.h5.next)" = mine ]
 result $? "... but what is no successor is left alone"
 rm -f killed.h5*
-expect "another scenario, forced" 0 mpirun -n 2 "$stance" run short.yaml "${other[@]}" -o changed.h5 \
-    --resume --force-scenario
-says "... says what stays" 'goes on with another scenario; 1799 of its 3600 cases are done and stay as they are, 1 did not verify'
+expect "another scenario, forced" 0 mpirun -n 2 "$stance" run short.yaml "${other[@]}" -o changed.h5 --resume \
+    --force-scenario \
+    says 'goes on with another scenario; 1799 of its 3600 cases are done and stay as they are, 1 did not verify'
 tool "... every case is whole" whole changed.h5 3600
 expect "the new scenario alone" 0 "$stance" run short.yaml "${other[@]}" -o new.h5 --quiet
-"$python" - >log 2>&1 <<'END'
-import h5py, numpy
+holds "... cases of either are those of a run of its own, and both texts are kept" <<'END'
 old, new, both = (h5py.File(name) for name in ("good.h5", "new.h5", "changed.h5"))
 number = both["scenario_number"][...]
 expected = numpy.repeat([0, 1], 1800).reshape(60, 60)
@@ -391,24 +327,18 @@ assert both["history/date"][0] == old.attrs["date"]
 assert both.attrs["scenario"] == new.attrs["scenario"]
 assert (both["design/gain"][...] == old["design/gain"][...]).all()
 END
-result $? "... cases of either are those of a run of its own, and both texts are kept"
-expect "summary tells" 0 "$stance" summary changed.h5
-says "... that there were two" 'Made from 2 scenarios'
+expect "summary tells" 0 "$stance" summary changed.h5 says 'Made from 2 scenarios'
 expect "the newest one is resumed" 0 "$stance" run short.yaml "${other[@]}" -o changed.h5 --resume
 expect "the first one is not" 2 "$stance" run short.yaml -o changed.h5 --resume
 "$python" "$tests/results_tools.py" flip changed.h5 scenario_number flipped.h5
-expect "a wrong number of a scenario is seen" 0 "$stance" summary flipped.h5
-says "... by the checksum of its case" '1 case does not verify'
+expect "a wrong number of a scenario is seen" 0 "$stance" summary flipped.h5 says '1 case does not verify'
 "$python" "$tests/results_tools.py" flip changed.h5 history/scenario flipped.h5
-[ -z "$(ls ./*.next ./*.part 2>/dev/null)" ]
-result $? "nothing is left behind"
+is "nothing is left behind" [ -z "$(ls ./*.next ./*.part 2>/dev/null)" ]
 
 # ---- a share of the campaigns ------------------------------------------------------------------
 share() { # name, program, arguments
-    local name=$1
-    shift
-    "$python" "$@" >log 2>&1
-    result $? "$name"
+    "$python" "${@:2}" >log 2>&1
+    result $? "$1"
     grep '^ok\|^not ok' log | sed 's/^\(not \)\?ok/#/'
 }
 if long_tests; then
@@ -419,4 +349,3 @@ else
     share "a few kills" "$tests/campaign_kills.py" --kills 3 "${few[@]}"
     share "some damage" "$tests/campaign_damage.py" --truncations 2 --flips 6 "${few[@]}"
 fi
-echo "1..$count"

@@ -1,10 +1,8 @@
 #!/usr/bin/env bash
 # What is known from outside (scenarios/truth): the list against independent programs, every method against
-# the list (truths.py); that a wrong number shows; what is said of a list that is wrong. Speaks TAP.
+# the list (truths.py); that a wrong number shows; what is said of a list that is wrong.
 # about: analysis/bench
-set -u
 bench=$(cd "$(dirname "$0")/../${BUILD:-build}/tests" && pwd)/bench_truths
-# shellcheck source=tests/scratch.sh
 . "$(dirname "$0")/scratch.sh"
 export STANCE_CACHE=$scratch/cache
 ln -s "$shipped" scenarios
@@ -28,36 +26,24 @@ END
 }
 row 's/0.2608/0.2618/'
 expect "a number that is wrong" 0 "$bench" list.yaml --json --csv list.csv --method capturing --method midpoint
-mv log one.json
-"$python" -c "
-import csv, json, sys
-rows = json.load(open(sys.argv[1]))
-assert [r['method'] for r in rows] == ['capturing', 'midpoint']
-assert all(abs(r['error'] - 1e-3) < 1e-10 and r['microseconds_per_second'] > 0 for r in rows), rows
-assert [float(r['error']) for r in csv.DictReader(open('list.csv'))] == [r['error'] for r in rows]" one.json >log 2>&1
-result $? "... shows, in JSON and CSV"
+holds "... shows, in JSON and CSV" 'rows = said()
+assert [r["method"] for r in rows] == ["capturing", "midpoint"]
+assert all(abs(r["error"] - 1e-3) < 1e-10 and r["microseconds_per_second"] > 0 for r in rows), rows
+assert [float(r["error"]) for r in table("list.csv")] == [r["error"] for r in rows]'
 row
 mkdir folder && sed 's|scenarios/truth/||' list.yaml >folder/truths.yaml && cp scenarios/truth/projectile.yaml folder
-expect "its table and its picture, of a folder" 0 "$bench" folder -o pictures --format png
-says "... the table" "^ball thrown .* Galilei$"
-[ -s pictures/truth.png ]
-result $? "... the picture"
+expect "its table and its picture, of a folder" 0 "$bench" folder -o pictures --format png \
+    says "^ball thrown .* Galilei$" is [ -s pictures/truth.png ]
 row 's/read: z/trace: [x, z]/; s/0.2608/2/'
-expect "a derivative" 0 "$bench" list.yaml --json --method midpoint
-mv log one.json
-"$python" -c "
-import json, sys
-assert json.load(open(sys.argv[1]))[0]['error'] < 1e-9" one.json >log 2>&1
-result $? "... of a flight: 1 for each coordinate"
+expect "a derivative of a flight: 1 for each coordinate" 0 "$bench" list.yaml --json --method midpoint \
+    holds 'assert said()[0]["error"] < 1e-9'
 row 's/read: z/read: max_penetration\n    border: stop.time\n    between: [0.5, 1]/'
-expect "a border that is not there" 0 "$bench" list.yaml
-says "... says so" "ball thrown .* none"
+expect "a border that is not there" 0 "$bench" list.yaml says "ball thrown .* none"
 
 # ---- lists that are wrong ----------------------------------------------------------------------------
 wrong() { # name, what is said, sed
     row "$3"
-    expect "$1" 2 "$bench" list.yaml
-    says "... says so" "$2"
+    expect "$1" 2 "$bench" list.yaml says "$2"
 }
 wrong "an unknown key" "^list.yaml:4:5: unknown key 'reads'" 's/read:/reads:/'
 wrong "no number" "^list.yaml:5:12: a number is needed" 's/0.2608/high/'
@@ -70,13 +56,9 @@ wrong "a bar below 0" "^list.yaml:2:.*bar is 0 (exact) or more" 's/bar: .*/bar: 
 { cat scenarios/truth/projectile.yaml && echo 'sweep: {grid: [{path: initial.state.z, values: [1, 2]}]}'; } >sweep.yaml
 wrong "a sweep" "sweep.yaml has a sweep" 's|scenarios/truth/projectile|sweep|'
 echo 'truths: []' >list.yaml
-expect "an empty list" 2 "$bench" list.yaml
-says "... says so" "no truth is in the list"
+expect "an empty list" 2 "$bench" list.yaml says "no truth is in the list"
 expect "no list" 3 "$bench" nowhere.yaml
-expect "a method that does not exist" 2 "$bench" --method euler
-says "... says so" "unknown method 'euler'"
+expect "a method that does not exist" 2 "$bench" --method euler says "unknown method 'euler'"
 expect "no number of times" 2 "$bench" --finer 0.001
-expect "what the product had" 2 "$stance" bench truth
-says "... is told where it is" 'truths are computed by `make truths` in the source tree'
-echo "1..$count"
+expect "what the product had" 2 "$stance" bench truth says 'truths are computed by `make truths` in the source tree'
 exit $((failed > 0 || truths > 0))
