@@ -74,8 +74,9 @@ static int write_page(const struct request *request, const struct results *r)
         return EXIT_IO;
     }
     if (!whole_file_begin(&w, request->out)) {
+        failed(w.name, "write");
         fclose(rest);
-        return failed(w.name, "write");
+        return EXIT_IO;
     }
     const char *const script = data + strlen(PAGE_DATA);
     fwrite(template, 1, (size_t)(data - template), w.out);
