@@ -343,10 +343,6 @@ $(BUILD)/tests/bench_%: tests/bench_%.c $(product)
 	$(call QUIET,cc,$@)$(CC) $(KERNEL_CFLAGS) $(ALLFLAGS) $(BENCH_FLAGS) $(PROGRAM_CFLAGS) -MMD -MP -MF $@.d -o $@ $< \
 	    $(test_objects) $(product) $(test_ldflags) $(LDFLAGS) $(LIBS)
 
-# Their pictures' scripts are embedded.
-$(BUILD)/tests/bench_truths: tests/plot_truths.gp
-$(BUILD)/tests/bench_peers: tests/plot_peers.gp
-
 # Large jobs on a simulated clock.
 $(BUILD)/tests/simulate.o: tests/simulate.c $(BUILD)/flags
 	@mkdir -p $(@D)

@@ -18,8 +18,6 @@
 
 #include <inttypes.h>
 
-GNUPLOT_SCRIPT(plot_peers_gp, "tests/plot_peers.gp");
-
 enum { PEERS = 4 };
 static const double budget = 0.3; /* s per method and step */
 
@@ -404,6 +402,8 @@ struct series {
     const stance_method *method;
     const struct peer *peer;
     bool usual;
+    const char *hue;
+    int mark;
 };
 
 static bool belongs(const struct line *line, const struct series *s)
@@ -412,52 +412,33 @@ static bool belongs(const struct line *line, const struct series *s)
            line->usual == s->usual;
 }
 
-/* Cost, value, whether that is more than none, cases given up. No cell unlike is drawn as one. */
-static void put_point(struct gnuplot *g, const struct line *line, int panel)
-{
-    const struct accuracy_row *const row = &line->row;
-    const double compared = (double)row->compared;
-    const double value = a.labels     ? (double)row->differ / compared
-                         : panel == 0 ? row->position
-                                      : row->velocity;
-    const bool none = a.labels && row->compared > 0 && row->differ == 0;
-    GNUPLOT_ROW(g, cost_of(line),
-                none                        ? 1 / compared
-                : compared > 0 && value > 0 ? value
-                                            : NAN,
-                !none, (double)row->failed);
-}
-
 /* Points of a series, and what its line goes through: all of them, of a peer's many settings their
  * front by cost. */
-static void put_series(struct gnuplot *g, const struct series *s, size_t m, int panel)
+static void put_series(struct gnuplot *g, const struct series *s, enum accuracy_shown shown)
 {
-    gnuplot_block(g, "errors%zu_%d", m, panel + 1);
+    const bool many = s->peer && !s->usual;
+    double last = 0;
+    gnuplot_series(g, "using 1:2 with lines lc rgb %s lw %g dt %d", s->hue, s->peer ? 2.2 : 1.6,
+                   s->usual ? 3 : 1);
+    for (size_t k = 0; k < count; k++) {
+        const struct line *next = belongs(&lines[k], s) && !many ? &lines[k] : NULL;
+        for (size_t j = 0; many && j < count; j++)
+            if (belongs(&lines[j], s) && lines[j].front && cost_of(&lines[j]) > last &&
+                (!next || cost_of(&lines[j]) < cost_of(next)))
+                next = &lines[j];
+        if (many)
+            last = next ? cost_of(next) : INFINITY;
+        if (next)
+            accuracy_point(g, &next->row, shown);
+    }
+    accuracy_points(g, s->hue, s->mark, many ? 0.5 : 0.9);
     for (size_t k = 0; k < count; k++)
         if (belongs(&lines[k], s))
-            put_point(g, &lines[k], panel);
-    GNUPLOT_ROW(g, NAN, NAN, 1, 0);
-    gnuplot_block(g, "line%zu_%d", m, panel + 1);
-    double last = 0;
-    for (size_t k = 0; k < count; k++) {
-        const struct line *next = belongs(&lines[k], s) ? &lines[k] : NULL;
-        if (s->peer && !s->usual) {
-            next = NULL;
-            for (size_t j = 0; j < count; j++)
-                if (belongs(&lines[j], s) && lines[j].front && cost_of(&lines[j]) > last &&
-                    (!next || cost_of(&lines[j]) < cost_of(next)))
-                    next = &lines[j];
-            last = next ? cost_of(next) : INFINITY;
-        }
-        if (next)
-            put_point(g, next, panel);
-    }
-    GNUPLOT_ROW(g, NAN, NAN, 1, 0);
+            accuracy_point(g, &lines[k].row, shown);
 }
 
-static void put_legend(struct gnuplot *g, const struct series *s, size_t m)
+static void put_legend(struct gnuplot *g, const struct series *s)
 {
-    char text[PEER_NAME + PEER_REASON];
     uint64_t failed = 0, all = 0;
     size_t settings = 0;
     for (size_t k = 0; k < count; k++) {
@@ -466,80 +447,54 @@ static void put_legend(struct gnuplot *g, const struct series *s, size_t m)
             settings++;
         }
     }
-    snprintf(text, sizeof text, "%s%s", s->peer ? s->peer->name : s->method->name,
-             s->usual ? ", defaults" : "");
-    gnuplot_text(g, text, "series_name[%zu]", m);
+    gnuplot_legend(g, s->hue, 0, 0, s->peer ? s->peer->name : s->method->name,
+                   s->usual ? "defaults" : "");
     if (s->peer && s->peer->cannot[0])
-        snprintf(text, sizeof text, "cannot: %.40s", s->peer->cannot);
-    else
-        snprintf(text, sizeof text, "%zu %s%s", settings, s->peer ? "settings" : "rows",
-                 s->peer && !s->usual ? "; the line joins the best" : "");
+        gnuplot_about(g, "cannot: %.40s", s->peer->cannot);
+    else if (s->peer)
+        gnuplot_about(g, "%zu settings%s", settings, s->usual ? "" : "; the line joins the best");
     for (size_t k = 0; k < a.orders; k++)
-        if (!s->peer && a.order[k].method == s->method && !isnan(a.order[k].position))
-            snprintf(text, sizeof text, "order %.2f of %s %.0e ... %.0e", a.order[k].position,
-                     a.order[k].by_tolerance ? "tolerance" : "step", a.order[k].from,
-                     a.order[k].to);
-    gnuplot_text(g, text, "about[%zu]", 2 * m - 1);
-    snprintf(text, sizeof text, "gave up in %" PRIu64 " of %" PRIu64 " cases", failed, all);
-    gnuplot_text(g, failed > 0 ? text : "", "about[%zu]", 2 * m);
+        if (a.order[k].method == s->method && !isnan(a.order[k].position))
+            gnuplot_about(g, "order %.2f of %s %.0e ... %.0e", a.order[k].position,
+                          a.order[k].by_tolerance ? "tolerance" : "step", a.order[k].from,
+                          a.order[k].to);
+    if (failed > 0)
+        gnuplot_about(g, "gave up in %" PRIu64 " of %" PRIu64 " cases", failed, all);
 }
 
 static bool draw(const struct plot *plot)
 {
-    enum { MOST = ACCURACY_METHODS + 2 * PEERS };
-    struct series series[MOST];
-    size_t style[MOST], n = 0;
+    struct accuracy_ranges ranges = accuracy_ranges();
+    struct series series[ACCURACY_METHODS + 2 * PEERS];
+    size_t n = 0;
     struct gnuplot g;
     for (size_t m = 0; stance_methods()[m]; m++)
         for (size_t k = 0; k < a.rows; k++)
             if (lines[k].row.method == stance_methods()[m] && k != a.truth) {
-                style[n] = m % 5 + 1; /* as in the charts of `stance bench accuracy` */
-                series[n++] = (struct series){.method = stance_methods()[m]};
+                /* As in the charts of `stance bench accuracy`. */
+                series[n++] = (struct series){.method = stance_methods()[m],
+                                              .hue = gnuplot_hue(m % 5),
+                                              .mark = gnuplot_mark(m % 5)};
                 break;
             }
-    for (size_t p = 0; p < 2 * asked; p++) {
-        style[n] = 6 + p / 2 % 2;
-        series[n++] = (struct series){.peer = &peers[p / 2], .usual = p % 2};
-    }
-    if (!gnuplot_begin(&g, plot, "", plot_peers_gp))
+    for (size_t p = 0; p < 2 * asked; p++)
+        series[n++] = (struct series){.peer = &peers[p / 2],
+                                      .usual = p % 2,
+                                      .hue = gnuplot_hue(5 + p / 2 % 2),
+                                      .mark = gnuplot_mark(5)};
+    for (size_t k = 0; k < count; k++)
+        if (k != a.truth)
+            accuracy_widen(&ranges, &lines[k].row);
+    if (!accuracy_picture(&a, &g, plot))
         return false;
-    gnuplot_say(&g,
-                "Error against cost. Reference: %s, tolerance %g. A cross marks points where cases "
-                "were given up%s",
-                a.row[a.truth].method->name, a.row[a.truth].tolerance,
-                a.labels ? "; open symbols: none unlike, drawn where one cell is."
-                         : ". Errors of exactly zero are not drawn.");
-    gnuplot_set(&g, "panels = %d; labels = %d; series = %zu", a.labels ? 1 : 2, a.labels, n);
-    gnuplot_set(&g,
-                "array series_name[%zu]\narray style[%zu]\narray peer[%zu]\narray about[%zu]\n"
-                "array error_low[2]\narray error_high[2]",
-                n, n, n, 2 * n);
-    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {0};
-    for (size_t k = 0; k < count; k++) {
-        const struct accuracy_row *const row = &lines[k].row;
-        const double share = fmax((double)row->differ, 1) / (double)row->compared;
-        const double shown[] = {a.labels ? share : row->position, row->velocity,
-                                cost_of(&lines[k])};
-        for (size_t i = 0; i < 3 && k != a.truth && row->compared > 0; i++) {
-            low[i] = shown[i] > 0 ? fmin(low[i], shown[i]) : low[i];
-            high[i] = fmax(high[i], shown[i]);
-        }
+    for (int p = 0; p < (a.labels ? 1 : 2); p++) {
+        const enum accuracy_shown shown = a.labels ? ACCURACY_LABELS : (enum accuracy_shown)p;
+        accuracy_panel(&g, &ranges, shown);
+        for (size_t m = 0; m < n; m++)
+            put_series(&g, &series[m], shown);
     }
-    for (int i = 0; i < 3; i++) { /* of nothing any range will do */
-        const char *const name = i < 2 ? "error_%s[%d]" : "cost_%s";
-        gnuplot_number(&g, low[i] <= high[i] ? low[i] : 0.2, name, "low", i + 1);
-        gnuplot_number(&g, low[i] <= high[i] ? high[i] : 6, name, "high", i + 1);
-    }
-    for (size_t m = 1; m <= n; m++) {
-        const struct series *const s = &series[m - 1];
-        put_legend(&g, s, m);
-        gnuplot_set(&g, "style[%zu] = %zu; peer[%zu] = %d", m, style[m - 1], m,
-                    !s->peer   ? 0
-                    : s->usual ? 2
-                               : 1);
-        for (int p = 0; p < (a.labels ? 1 : 2); p++)
-            put_series(&g, s, m, p);
-    }
+    for (size_t m = 0; m < n; m++)
+        put_legend(&g, &series[m]);
     return gnuplot_end(&g);
 }
 

@@ -33,8 +33,6 @@
 #include <string.h>
 #include <sys/stat.h>
 
-GNUPLOT_SCRIPT(plot_truths_gp, "tests/plot_truths.gp");
-
 enum { TEXTS = 12, METHODS = 16 };
 
 struct texts {
@@ -431,31 +429,46 @@ static bool report(bool json, const char *csv)
 /* Errors, a line of the picture for each truth. */
 static bool draw(struct look *look, stance_message *message)
 {
-    static const double least = 1e-16, most = 1e2; /* others are drawn there */
+    static const double least = 1e-16, most = 1e2, nowhere = 500; /* others are drawn there */
+    const struct plot_range all = {-16.4, 3};
     const struct plot plot = {.title = "Held against what is known from outside",
                               .directory = look->directory,
                               .stem = "truth",
                               .look = look,
                               .message = message};
     struct gnuplot g;
-    if (!gnuplot_directory(look->directory) || !gnuplot_begin(&g, &plot, "", plot_truths_gp))
+    if (!gnuplot_directory(look->directory) || !gnuplot_begin(&g, &plot, "", NULL))
         return false;
     gnuplot_say(&g, "Error of each method; grey: within the error bar of what is known. A cross at "
                     "the right end: no number");
-    gnuplot_set(&g, "rows = %zu; methods = %zu\narray name[%zu]", rows, methods, rows);
-    gnuplot_block(&g, "bars");
+    gnuplot_axis(&g, 'x', PLOT_LOG, all, "error, in the unit of what is read", "");
+    gnuplot_axis(&g, 'y', PLOT_LIST, (struct plot_range){0.5 - (double)rows, 0.5}, "", "");
+    gnuplot_set(&g, "chart_width = 560; y_words = %zu; array y_word[%zu]; array y_at[%zu]", rows,
+                rows, rows);
+    for (size_t i = 0; i < rows; i++) {
+        gnuplot_tic(&g, truths[i].name, "y_word[%zu]", i + 1);
+        gnuplot_set(&g, "y_at[%zu] = -%zu", i + 1, i);
+    }
+    gnuplot_panel(&g, fmax(17 * (double)rows + 12, 110), "");
+    gnuplot_series(&g,
+                   "using (%g):2:(%g):1:($2 - 0.5):($2 + 0.5) with boxxy fs solid noborder lc rgb "
+                   "0xdedede",
+                   all.low, all.low);
     for (size_t i = 0; i < rows; i++)
-        GNUPLOT_ROW(&g, truths[i].bar > 0 ? truths[i].bar : NAN, (double)(i + 1));
-    for (size_t i = 0; i < rows; i++)
-        gnuplot_text(&g, truths[i].name, "name[%zu]", i + 1);
+        GNUPLOT_ROW(&g, truths[i].bar > 0 ? log10(truths[i].bar) : NAN, -(double)i);
     for (size_t m = 0; m < methods; m++) {
         static const int markers[] = {7, 5, 9, 11, 13, 15, 2};
-        gnuplot_legend(&g, gnuplot_hue(m), 0, markers[m % 7], method[m]->name, "");
-        gnuplot_block(&g, "errors%zu", m + 1);
+        const char *const hue = gnuplot_hue(m);
+        gnuplot_legend(&g, hue, 0, markers[m % 7], method[m]->name, "");
+        gnuplot_series(&g,
+                       "using 1:2 with points lc rgb %s pt %d ps 0.8 notitle, '' using 3:2 with "
+                       "points lc rgb %s pt 2 ps 0.7 lw 1.4",
+                       hue, markers[m % 7], hue);
         for (size_t i = 0; i < rows; i++) {
             const double error = fabs(reached[i * methods + m].value - truths[i].value);
-            GNUPLOT_ROW(&g, isnan(error) ? NAN : fmin(fmax(error, least), most), (double)(i + 1),
-                        isnan(error));
+            GNUPLOT_ROW(&g, isnan(error) ? NAN : log10(fmin(fmax(error, least), most)),
+                        0.1 * (0.5 * ((double)methods - 1) - (double)m) - (double)i,
+                        isnan(error) ? log10(nowhere) : NAN);
         }
     }
     return gnuplot_end(&g);
