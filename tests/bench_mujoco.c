@@ -260,8 +260,7 @@ static void compare(const struct engines *e, const char *regime, const stance_ca
         const struct bench_spread ns = bench_spread(theirs[s], ROUNDS);
         report(row, "time per step", "ns", ns);
         const double rate = 1 / cases[0].step;
-        report(row, "time per simulated second", "ns",
-               (struct bench_spread){rate * ns.median, rate * ns.lowest, rate * ns.highest});
+        report(row, "time per simulated second", "ns", bench_scaled(ns, rate));
         fprintf(stderr, "%-8s  %s %.0f ns a step (%.0f ... %.0f)\n", regime, setting_name[s],
                 ns.median, ns.lowest, ns.highest);
     }

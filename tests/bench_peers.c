@@ -402,7 +402,8 @@ struct series {
     const stance_method *method;
     const struct peer *peer;
     bool usual;
-    size_t style; /* colour and mark */
+    const char *hue;
+    int mark;
 };
 
 static bool belongs(const struct line *line, const struct series *s)
@@ -411,60 +412,33 @@ static bool belongs(const struct line *line, const struct series *s)
            line->usual == s->usual;
 }
 
-/* Logarithms of cost and value, whether that is more than none, cases given up. No cell unlike is
- * drawn as one. */
-static void put_point(struct gnuplot *g, const struct line *line, int panel)
+/* Points of a series, and what its line goes through: all of them, of a peer's many settings their
+ * front by cost. */
+static void put_series(struct gnuplot *g, const struct series *s, enum accuracy_shown shown)
 {
-    const struct accuracy_row *const row = &line->row;
-    const double compared = (double)row->compared;
-    const double value = a.labels     ? (double)row->differ / compared
-                         : panel == 0 ? row->position
-                                      : row->velocity;
-    const bool none = a.labels && row->compared > 0 && row->differ == 0;
-    GNUPLOT_ROW(g, log10(cost_of(line)),
-                log10(none                        ? 1 / compared
-                      : compared > 0 && value > 0 ? value
-                                                  : NAN),
-                !none, (double)row->failed);
-}
-
-/* What the line of a series goes through, all of its points, of a peer's many settings their front
- * by cost; and the points. */
-static void put_series(struct gnuplot *g, const struct series *s, int panel)
-{
-    const char *const hue = gnuplot_hue(s->style);
-    const bool all = s->peer && !s->usual; /* of them */
-    gnuplot_series(g, "using 1:2 with lines lc rgb %s lw %g dt %d", hue, s->peer ? 2.2 : 1.6,
-                   s->usual ? 3 : 1);
+    const bool many = s->peer && !s->usual;
     double last = 0;
+    gnuplot_series(g, "using 1:2 with lines lc rgb %s lw %g dt %d", s->hue, s->peer ? 2.2 : 1.6,
+                   s->usual ? 3 : 1);
     for (size_t k = 0; k < count; k++) {
-        const struct line *next = belongs(&lines[k], s) ? &lines[k] : NULL;
-        if (all) {
-            next = NULL;
-            for (size_t j = 0; j < count; j++)
-                if (belongs(&lines[j], s) && lines[j].front && cost_of(&lines[j]) > last &&
-                    (!next || cost_of(&lines[j]) < cost_of(next)))
-                    next = &lines[j];
+        const struct line *next = belongs(&lines[k], s) && !many ? &lines[k] : NULL;
+        for (size_t j = 0; many && j < count; j++)
+            if (belongs(&lines[j], s) && lines[j].front && cost_of(&lines[j]) > last &&
+                (!next || cost_of(&lines[j]) < cost_of(next)))
+                next = &lines[j];
+        if (many)
             last = next ? cost_of(next) : INFINITY;
-        }
         if (next)
-            put_point(g, next, panel);
+            accuracy_point(g, &next->row, shown);
     }
-    gnuplot_series(g,
-                   "using 1:($3 > 0 ? NaN : $2) with points lc rgb %1$s pt %2$d ps %4$g notitle, "
-                   "'' using 1:($3 > 0 ? $2 : NaN) with points lc rgb %1$s pt %3$d ps %5$g "
-                   "notitle, '' using 1:($4 > 0 ? $2 : NaN) with points lc rgb '#b00000' pt 2 ps "
-                   "1.6 lw 1.6",
-                   hue, gnuplot_mark(s->style) - 1, gnuplot_mark(s->style), all ? 0.7 : 1.0,
-                   all ? 0.5 : 0.9);
+    accuracy_points(g, s->hue, s->mark, many ? 0.5 : 0.9);
     for (size_t k = 0; k < count; k++)
         if (belongs(&lines[k], s))
-            put_point(g, &lines[k], panel);
+            accuracy_point(g, &lines[k].row, shown);
 }
 
 static void put_legend(struct gnuplot *g, const struct series *s)
 {
-    char text[PEER_NAME + PEER_REASON];
     uint64_t failed = 0, all = 0;
     size_t settings = 0;
     for (size_t k = 0; k < count; k++) {
@@ -473,73 +447,51 @@ static void put_legend(struct gnuplot *g, const struct series *s)
             settings++;
         }
     }
-    snprintf(text, sizeof text, "%s%s", s->peer ? s->peer->name : s->method->name,
-             s->usual ? ", defaults" : "");
-    gnuplot_legend(g, gnuplot_hue(s->style), 0, 0, text, "");
+    gnuplot_legend(g, s->hue, 0, 0, s->peer ? s->peer->name : s->method->name,
+                   s->usual ? "defaults" : "");
     if (s->peer && s->peer->cannot[0])
-        snprintf(text, sizeof text, "cannot: %.40s", s->peer->cannot);
-    else
-        snprintf(text, sizeof text, "%zu %s%s", settings, s->peer ? "settings" : "rows",
-                 s->peer && !s->usual ? "; the line joins the best" : "");
+        gnuplot_about(g, "cannot: %.40s", s->peer->cannot);
+    else if (s->peer)
+        gnuplot_about(g, "%zu settings%s", settings, s->usual ? "" : "; the line joins the best");
     for (size_t k = 0; k < a.orders; k++)
-        if (!s->peer && a.order[k].method == s->method && !isnan(a.order[k].position))
-            snprintf(text, sizeof text, "order %.2f of %s %.0e ... %.0e", a.order[k].position,
-                     a.order[k].by_tolerance ? "tolerance" : "step", a.order[k].from,
-                     a.order[k].to);
-    gnuplot_about(g, "%s", text);
+        if (a.order[k].method == s->method && !isnan(a.order[k].position))
+            gnuplot_about(g, "order %.2f of %s %.0e ... %.0e", a.order[k].position,
+                          a.order[k].by_tolerance ? "tolerance" : "step", a.order[k].from,
+                          a.order[k].to);
     if (failed > 0)
         gnuplot_about(g, "gave up in %" PRIu64 " of %" PRIu64 " cases", failed, all);
 }
 
 static bool draw(const struct plot *plot)
 {
-    enum { MOST = ACCURACY_METHODS + 2 * PEERS };
-    struct series series[MOST];
+    struct accuracy_ranges ranges = accuracy_ranges();
+    struct series series[ACCURACY_METHODS + 2 * PEERS];
     size_t n = 0;
     struct gnuplot g;
     for (size_t m = 0; stance_methods()[m]; m++)
         for (size_t k = 0; k < a.rows; k++)
             if (lines[k].row.method == stance_methods()[m] && k != a.truth) {
-                series[n++] = /* styles as in the charts of `stance bench accuracy` */
-                    (struct series){.method = stance_methods()[m], .style = m % 5};
+                /* As in the charts of `stance bench accuracy`. */
+                series[n++] = (struct series){.method = stance_methods()[m],
+                                              .hue = gnuplot_hue(m % 5),
+                                              .mark = gnuplot_mark(m % 5)};
                 break;
             }
     for (size_t p = 0; p < 2 * asked; p++)
-        series[n++] =
-            (struct series){.peer = &peers[p / 2], .usual = p % 2, .style = 5 + p / 2 % 2};
-    if (!gnuplot_begin(&g, plot, ""))
+        series[n++] = (struct series){.peer = &peers[p / 2],
+                                      .usual = p % 2,
+                                      .hue = gnuplot_hue(5 + p / 2 % 2),
+                                      .mark = gnuplot_mark(5)};
+    for (size_t k = 0; k < count; k++)
+        if (k != a.truth)
+            accuracy_widen(&ranges, &lines[k].row);
+    if (!accuracy_picture(&a, &g, plot))
         return false;
-    gnuplot_say(&g,
-                "Error against cost. Reference: %s, tolerance %g. A cross marks points where cases "
-                "were given up%s",
-                a.row[a.truth].method->name, a.row[a.truth].tolerance,
-                a.labels ? "; open symbols: none unlike, drawn where one cell is."
-                         : ". Errors of exactly zero are not drawn.");
-    struct plot_range range[3] = {PLOT_NOTHING, PLOT_NOTHING, PLOT_NOTHING};
-    for (size_t k = 0; k < count; k++) {
-        const struct accuracy_row *const row = &lines[k].row;
-        const double share = fmax((double)row->differ, 1) / (double)row->compared;
-        const double shown[] = {a.labels ? share : row->position, row->velocity,
-                                cost_of(&lines[k])};
-        for (size_t i = 0; i < 3 && k != a.truth && row->compared > 0; i++)
-            plot_widen(&range[i], log10(shown[i]));
-    }
-    for (int i = 0; i < 3; i++) /* of nothing any range will do */
-        range[i] = range[i].low <= range[i].high
-                       ? (struct plot_range){range[i].low - 0.22, range[i].high + 0.23}
-                       : (struct plot_range){-0.9, 1};
-    gnuplot_set(&g, "columns = 2; chart_width = 400");
-    gnuplot_axis(&g, 'x', PLOT_LOG, range[2], "cost: microseconds of one core per simulated second",
-                 "");
     for (int p = 0; p < (a.labels ? 1 : 2); p++) {
-        gnuplot_panel(&g, 380, "");
-        gnuplot_axis(&g, 'y', PLOT_LOG, range[p],
-                     a.labels ? "share of cells unlike the reference"
-                     : p == 0 ? "largest error of a coordinate (m, rad)"
-                              : "mean over time of the velocity error (m/s, rad/s)",
-                     "");
+        const enum accuracy_shown shown = a.labels ? ACCURACY_LABELS : (enum accuracy_shown)p;
+        accuracy_panel(&g, &ranges, shown);
         for (size_t m = 0; m < n; m++)
-            put_series(&g, &series[m], p);
+            put_series(&g, &series[m], shown);
     }
     for (size_t m = 0; m < n; m++)
         put_legend(&g, &series[m]);

@@ -73,7 +73,7 @@ struct peer_setting {
     uint8_t *kind; /* [count] as of a results file */
     size_t *rows;  /* [count] instants told */
     double *state; /* [count][instants][2 coordinates] */
-    struct measure_cost cost;
+    struct bench_spread cost;
 };
 
 struct peer {
@@ -347,9 +347,10 @@ static void peer_take_case(const char *line)
 
 static void peer_take_time(const char *line)
 {
-    struct measure_cost *const cost = &peer_present()->cost;
-    if (sscanf(line, "time %lf %lf %lf %d", &cost->median, &cost->low, &cost->high,
-               &cost->repetitions) != 4 ||
+    struct bench_spread *const cost = &peer_present()->cost;
+    int repetitions;
+    if (sscanf(line, "time %lf %lf %lf %d", &cost->median, &cost->lowest, &cost->highest,
+               &repetitions) != 4 ||
         !(cost->median > 0) || !isfinite(cost->median))
         peer_damaged(line);
     talk.timed = true;

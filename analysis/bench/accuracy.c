@@ -75,7 +75,6 @@ static bool read_answers(struct accuracy *a, const struct results *r, stance_mes
         {"signorini_residual", offsetof(struct accuracy_row, signorini), false},
         {"coulomb_residual", offsetof(struct accuracy_row, coulomb), false},
         {"dissipation_residual", offsetof(struct accuracy_row, dissipation), false},
-        {"max_penetration", offsetof(struct accuracy_row, penetration), false},
         {"energy_gain", offsetof(struct accuracy_row, energy_gain), false},
         {"events", offsetof(struct accuracy_row, events), true},
         {"evaluations", offsetof(struct accuracy_row, evaluations), true},

@@ -17,18 +17,18 @@
 /* One method, step and tolerance. */
 struct accuracy_row {
     const stance_method *method;
-    double step, tolerance; /* s; as used, NAN where the method does not control its error */
-    uint64_t cases, failed; /* failed: of these cases, numerically */
-    int failure;            /* enum stance_failure of the first of them */
-    uint64_t compared;      /* cases compared with the truth */
-    double position;        /* m, rad: largest difference at any recorded instant */
-    double velocity;        /* m/s, rad/s: mean over time of the largest difference (L1) */
-    uint64_t differ;        /* outcomes unlike the truth's ... */
-    uint64_t inside;        /* ... in cells whose neighbours all have the truth's own outcome */
-    struct measure_cost cost;
-    double time; /* s, simulated in all cases together */
-    double signorini, coulomb, dissipation, penetration, energy_gain; /* largest of the cases */
-    double events, evaluations;                                       /* per simulated second */
+    double step, tolerance;   /* s; as used, NAN where the method does not control its error */
+    uint64_t cases, failed;   /* failed: of these cases, numerically */
+    int failure;              /* enum stance_failure of the first of them */
+    uint64_t compared;        /* cases compared with the truth */
+    double position;          /* m, rad: largest difference at any recorded instant */
+    double velocity;          /* m/s, rad/s: mean over time of the largest difference (L1) */
+    uint64_t differ;          /* outcomes unlike the truth's ... */
+    uint64_t inside;          /* ... in cells whose neighbours all have the truth's own outcome */
+    struct bench_spread cost; /* microseconds of one core per simulated second */
+    double time;              /* s, simulated in all cases together */
+    double signorini, coulomb, dissipation, energy_gain; /* largest of the cases */
+    double events, evaluations;                          /* per simulated second */
 };
 
 /* Order of convergence of a method: slope of log error over log step (or tolerance). */
@@ -73,5 +73,20 @@ void accuracy_errors(struct table *t, const struct accuracy_row *row, bool refer
 
 /* STEM: error against cost, a line for each method. */
 bool accuracy_plot(const struct accuracy *a, const struct plot *plot);
+/* Its parts, for the lines of others than methods. Begins it; ranges, widened to all rows that are
+ * drawn; the panels, with what they show. */
+enum accuracy_shown { ACCURACY_POSITION, ACCURACY_VELOCITY, ACCURACY_LABELS, ACCURACY_SHOWN };
+struct accuracy_ranges {
+    struct plot_range cost, value[ACCURACY_SHOWN];
+};
+bool accuracy_picture(const struct accuracy *a, struct gnuplot *g, const struct plot *plot);
+struct accuracy_ranges accuracy_ranges(void);
+void accuracy_widen(struct accuracy_ranges *ranges, const struct accuracy_row *row);
+void accuracy_panel(struct gnuplot *g, const struct accuracy_ranges *ranges,
+                    enum accuracy_shown shown);
+/* A point of a series in these styles: open where no cell is unlike, a cross where cases were given
+ * up. */
+void accuracy_point(struct gnuplot *g, const struct accuracy_row *row, enum accuracy_shown shown);
+void accuracy_points(struct gnuplot *g, const char *hue, int mark, double size);
 
 #endif

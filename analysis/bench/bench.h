@@ -23,6 +23,10 @@ struct bench_spread {
 };
 /* Sorts values[n], n > 0. */
 struct bench_spread bench_spread(double *values, int n);
+static inline struct bench_spread bench_scaled(struct bench_spread by, double scale)
+{
+    return (struct bench_spread){scale * by.median, scale * by.lowest, scale * by.highest};
+}
 
 /* A line of the table of results. Texts without commas and quotes; empty or 0: does not apply. */
 struct bench_row {

@@ -45,8 +45,8 @@ static void add_row(struct table *t, const struct accuracy *a, size_t k)
         {{.name = "reference"}, as_truth(k == a->truth)}, {{.name = "cases"}, as_whole(row->cases)},
         {{.name = "failed"}, as_whole(row->failed)},
         {{"microseconds_per_second", "us per s", "%.3g", .width = 10}, as_number(row->cost.median)},
-        {{.name = "microseconds_low"}, as_number(row->cost.low)},
-        {{.name = "microseconds_high"}, as_number(row->cost.high)},
+        {{.name = "microseconds_low"}, as_number(row->cost.lowest)},
+        {{.name = "microseconds_high"}, as_number(row->cost.highest)},
         {{"evaluations_per_second", "evals/s", "%.0f", .width = 9}, as_number(row->evaluations)},
         {{.name = "events_per_second"}, as_number(row->events)});
     accuracy_errors(t, row, k == a->truth, a->labels);

@@ -60,10 +60,8 @@ static void take_spread(struct measurement *m, const stance_result *results, int
     }
     m->iterations = iterations / m->steps;
     const struct bench_spread time = bench_spread(m->time, repeats);
-    const double step = 1e9 / m->steps, second = 1e9 / m->simulated;
-    m->ns = (struct bench_spread){step * time.median, step * time.lowest, step * time.highest};
-    m->per_second =
-        (struct bench_spread){second * time.median, second * time.lowest, second * time.highest};
+    m->ns = bench_scaled(time, 1e9 / m->steps);
+    m->per_second = bench_scaled(time, 1e9 / m->simulated);
 }
 
 static void add_row(struct table *t, const char *scene, const char *regime,

@@ -54,16 +54,12 @@ static json_t *row_facts(const struct failure *f, size_t k)
     for (int side = 0; sides && side < 2; side++)
         TABLE_APPEND(sides, {"failed", as_whole(row->bad[side])}, {"of", as_whole(row->side[side])},
                      {"stand", as_whole(row->stands[side])});
+#define LARGEST(NAME, name, bound) {#name, as_number(row->largest[FAILURE_##NAME])},
     return TABLE_OBJECT({"method", as_text(row->method->name)},
                         {".name", as_text(failure_row_name(row, name))},
                         {"tolerance", as_number(row->tolerance)}, {"cases", as_tree(shares)},
-                        {"failed", as_tree(reasons)}, {"energy_gain", as_number(row->energy_gain)},
-                        {"energy_share", as_number(row->energy_share)},
-                        {"max_penetration", as_number(row->penetration)},
-                        {"signorini_residual", as_number(row->signorini)},
-                        {"coulomb_residual", as_number(row->coulomb)},
-                        {"dissipation_residual", as_number(row->dissipation)},
-                        {"map", as_tree(map)}, {".sides", as_tree(sides)});
+                        {"failed", as_tree(reasons)}, FAILURE_LARGEST(LARGEST){"map", as_tree(map)},
+                        {".sides", as_tree(sides)});
 }
 
 static json_t *theory_facts(const struct failure *f, const struct results *r)

@@ -28,7 +28,7 @@ static int run(int argc, char **argv)
         fprintf(stderr, "stance bench plot: %s\n", message.text);
         return EXIT_IO;
     }
-    const char *slash = strrchr(file, '/'), *name = slash ? slash + 1 : file;
+    const char *const name = basename(file);
     char stem[128], own[1024];
     snprintf(stem, sizeof stem, "%.*s", (int)strcspn(name, "."), name);
     const struct plot plot = {.title = "Speed of the stepping kernels",

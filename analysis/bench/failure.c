@@ -18,29 +18,30 @@ const struct failure_style failure_styles[FAILURE_VERDICT_COUNT] = {
 /* Energies below this count as this much, J. */
 static const double least_energy = 1e-3;
 
-/* The answers that verdicts rest on, each [cases], and final states [cases][2 n]. */
-enum { GAIN, PENETRATION, SIGNORINI, COULOMB, DISSIPATION, END_TIME, ANSWERS };
+/* What verdicts rest on, each [cases], of which the share is the failure's own; and final states
+ * [cases][2 n]. */
+enum { END_TIME = FAILURE_MEASURES, ANSWERS };
 struct answers {
     double *of[ANSWERS], *final;
     size_t coordinates;
 };
+#define NAME(NAME, name, bound) #name,
+#define BOUND(NAME, name, bound) bound,
+static const char *const names[ANSWERS] = {FAILURE_LARGEST(NAME) "end_time"};
+static const double bounds[FAILURE_MEASURES] = {FAILURE_LARGEST(BOUND)};
 
 /* ---- reading ------------------------------------------------------------------------------ */
 
 static bool answers_read(struct answers *x, const struct results *r, const stance_scene *scene,
                          stance_message *message)
 {
-    static const char *const name[ANSWERS] = {[GAIN] = "energy_gain",
-                                              [PENETRATION] = "max_penetration",
-                                              [SIGNORINI] = "signorini_residual",
-                                              [COULOMB] = "coulomb_residual",
-                                              [DISSIPATION] = "dissipation_residual",
-                                              [END_TIME] = "end_time"};
     for (int i = 0; i < ANSWERS; i++) {
-        if (!results_answer(r, name[i], &x->of[i], message))
+        if (i == FAILURE_SHARE)
+            continue;
+        if (!results_answer(r, names[i], &x->of[i], message))
             return false;
         if (!x->of[i])
-            return complain(message, "%s was not recorded", name[i]);
+            return complain(message, "%s was not recorded", names[i]);
     }
     x->coordinates = (size_t)scene->coordinates;
     const size_t size = (size_t)r->cases * 2 * x->coordinates;
@@ -177,11 +178,9 @@ static enum failure_verdict judge(const struct failure *f, const struct results 
                    ? FAILURE_RAN_AWAY
                    : FAILURE_GAVE_UP;
     }
-    if (!(f->share[i] <= FAILURE_ENERGY))
-        return FAILURE_RAN_AWAY;
-    if (!(x->of[PENETRATION][i] <= FAILURE_PENETRATION && x->of[SIGNORINI][i] <= FAILURE_RESIDUAL &&
-          x->of[COULOMB][i] <= FAILURE_RESIDUAL && x->of[DISSIPATION][i] <= FAILURE_RESIDUAL))
-        return FAILURE_BROKE_LAW;
+    for (int a = 0; a < FAILURE_MEASURES; a++)
+        if (bounds[a] > 0 && !(x->of[a][i] <= bounds[a]))
+            return a == FAILURE_SHARE ? FAILURE_RAN_AWAY : FAILURE_BROKE_LAW;
     if (f->truth[cell] < 0)
         return FAILURE_UNJUDGED;
     const uint64_t truth = (uint64_t)f->truth[cell] * f->cells + true_cell(f, r, cell);
@@ -213,12 +212,8 @@ static void judge_row(struct failure *f, const struct results *r, const struct a
             row->reason[reason < STANCE_FAILURE_COUNT ? reason : 0]++;
             continue;
         }
-        row->energy_gain = fmax(x->of[GAIN][i], row->energy_gain);
-        row->energy_share = fmax(f->share[i], row->energy_share);
-        row->penetration = fmax(x->of[PENETRATION][i], row->penetration);
-        row->signorini = fmax(x->of[SIGNORINI][i], row->signorini);
-        row->coulomb = fmax(x->of[COULOMB][i], row->coulomb);
-        row->dissipation = fmax(x->of[DISSIPATION][i], row->dissipation);
+        for (int a = 0; a < FAILURE_MEASURES; a++)
+            row->largest[a] = fmax(x->of[a][i], row->largest[a]);
     }
 }
 
@@ -230,11 +225,13 @@ static bool judge_all(struct failure *f, const struct scenario *s, const struct 
         answers_read(&x, r, s->scene, message) && start_energies(s, r->cases, f->share, message);
     if (good) {
         for (uint64_t i = 0; i < r->cases; i++)
-            f->share[i] = is_done(r, i) ? x.of[GAIN][i] / f->share[i] : NAN;
+            f->share[i] = is_done(r, i) ? x.of[FAILURE_GAIN][i] / f->share[i] : NAN;
+        x.of[FAILURE_SHARE] = f->share;
         find_truth(f, r);
         for (size_t k = 0; k < f->rows; k++)
             judge_row(f, r, &x, k);
     }
+    x.of[FAILURE_SHARE] = NULL;
     for (int i = 0; i < ANSWERS; i++)
         free(x.of[i]);
     free(x.final);

@@ -35,11 +35,24 @@ struct failure_style {
 };
 extern const struct failure_style failure_styles[FAILURE_VERDICT_COUNT];
 
-/* Bounds of the verdicts. */
-#define FAILURE_PENETRATION 1e-6 /* m */
-#define FAILURE_RESIDUAL 1e-6    /* m/s, and of the friction coefficient */
-#define FAILURE_POSITION 1e-2    /* m, rad: largest error of a coordinate at the end */
-#define FAILURE_ENERGY 1.0       /* of the energy at the start, see failure_row.energy_share */
+/* What verdicts rest on, and their bounds, 0: none: answers, m, m/s or of the friction coefficient,
+ * and the energy gained as a share of that at the start, kinetic and potential above z = 0, but at
+ * least 1 mJ. */
+#define FAILURE_LARGEST(X)                                                                         \
+    X(GAIN, energy_gain, 0)                                                                        \
+    X(SHARE, energy_share, 1.0)                                                                    \
+    X(PENETRATION, max_penetration, 1e-6)                                                          \
+    X(SIGNORINI, signorini_residual, 1e-6)                                                         \
+    X(COULOMB, coulomb_residual, 1e-6)                                                             \
+    X(DISSIPATION, dissipation_residual, 1e-6)
+
+enum {
+#define FAILURE_MEASURE(NAME, name, bound) FAILURE_##NAME,
+    FAILURE_LARGEST(FAILURE_MEASURE)
+#undef FAILURE_MEASURE
+        FAILURE_MEASURES
+};
+#define FAILURE_POSITION 1e-2 /* m, rad: largest error of a coordinate at the end */
 
 /* One method (and tolerance): a map. */
 struct failure_row {
@@ -47,10 +60,7 @@ struct failure_row {
     double tolerance; /* as used, NAN where the method does not control its error */
     uint64_t count[FAILURE_VERDICT_COUNT];
     uint64_t reason[STANCE_FAILURE_COUNT]; /* of the cases that failed */
-    /* Largest of the cases that are done; the share is of the energy at the start, kinetic and
-     * potential above z = 0, but at least 1 mJ. */
-    double energy_gain, energy_share;
-    double penetration, signorini, coulomb, dissipation;
+    double largest[FAILURE_MEASURES];      /* of the cases that are done */
     /* On both sides of the theory's line: cases, of these gave up or ran away, came to stand. */
     uint64_t side[2], bad[2], stands[2];
 };

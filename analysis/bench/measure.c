@@ -1,8 +1,6 @@
 /* measure.c - repeats a group of cases and takes the median of its times. */
 #include "measure.h"
 
-#include "bench.h"
-
 #include "runner/base/message.h"
 #include "runner/base/units.h"
 #include "runner/plan/instruction_set.h"
@@ -38,7 +36,7 @@ static double run_once(const stance_kernel *kernel, const stance_case *cases,
 }
 
 static void repeat(const stance_kernel *kernel, const stance_case *cases, stance_result *results,
-                   size_t n, double budget, struct measure_cost *cost)
+                   size_t n, double budget, struct bench_spread *cost)
 {
     double time[MOST_REPETITIONS], spent = 0, simulated = 0;
     int k = 0;
@@ -52,21 +50,18 @@ static void repeat(const stance_kernel *kernel, const stance_case *cases, stance
     }
     for (size_t i = 0; i < n; i++)
         simulated += results[i].end_time;
-    const struct bench_spread spread = bench_spread(time, k);
-    const double scale = 1e6 / simulated;
-    *cost = (struct measure_cost){spread.median * scale, spread.lowest * scale,
-                                  spread.highest * scale, k};
+    *cost = bench_scaled(bench_spread(time, k), 1e6 / simulated);
 }
 
 bool measure_rows(const struct plan *plan, uint64_t first, size_t count, double budget,
-                  struct measure_cost *cost, stance_message *message)
+                  struct bench_spread *cost, stance_message *message)
 {
     stance_case *cases = calloc(count, sizeof *cases);
     stance_result *results = calloc(count, sizeof *results);
     size_t n = 0;
     int method = 0;
 
-    *cost = (struct measure_cost){NAN, NAN, NAN, 0};
+    *cost = (struct bench_spread){NAN, NAN, NAN};
     const bool good = (cases && results) || no_memory(message);
     for (size_t i = 0; good && i < count; i++)
         n += plan_resolve(plan, first + i, &cases[n], &method);

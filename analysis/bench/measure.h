@@ -3,18 +3,15 @@
 #ifndef STANCE_BENCH_MEASURE_H
 #define STANCE_BENCH_MEASURE_H
 
-#include "runner/plan/plan.h"
+#include "bench.h"
 
-/* Microseconds of one core per simulated second of one case. */
-struct measure_cost {
-    double median, low, high; /* over the repetitions; NAN where nothing was simulated */
-    int repetitions;
-};
+#include "runner/plan/plan.h"
 
 /* Runs the `count` rows from `first` on, all of one method, for about `budget` seconds and at
  * least three times - once when that takes more than twenty times the budget - whole lanes at a
- * time as in a sweep. Needs the designs. false: no memory. */
+ * time as in a sweep: microseconds of one core per simulated second of one
+ * case, NAN where nothing was simulated. Needs the designs. false: no memory. */
 bool measure_rows(const struct plan *plan, uint64_t first, size_t count, double budget,
-                  struct measure_cost *cost, stance_message *message);
+                  struct bench_spread *cost, stance_message *message);
 
 #endif

@@ -47,7 +47,7 @@ static void put_maps(struct maps *maps, const void *values, const char *colours)
     for (size_t k = 0; k < f->rows; k++) {
         gnuplot_panel(g, 240, failure_row_name(&f->row[k], text));
         if (!colours) {
-            snprintf(text, sizeof text, "%.2g", f->row[k].energy_share);
+            snprintf(text, sizeof text, "%.2g", f->row[k].largest[FAILURE_SHARE]);
             gnuplot_text(g, text, "panel_right[panels]");
         }
         cells.first = k * f->cells;

@@ -12,40 +12,30 @@
 
 enum { MOST_BYTES = 1 << 24 };
 
-/* Why the file cannot be read into memory; NULL: it can, and has *size bytes. */
-static const char *refuse(const char *path, size_t *size)
-{
-    struct stat information;
-    if (stat(path, &information) != 0)
-        return strerror(errno);
-    if (!S_ISREG(information.st_mode))
-        return S_ISDIR(information.st_mode) ? strerror(EISDIR) : "not a file";
-    *size = (size_t)information.st_size;
-    return information.st_size > MOST_BYTES
-               ? "larger than 16 MiB, the most a table of benchmarks may take"
-               : NULL;
-}
-
+/* All of a file, which is a text; freed by the caller. */
 static char *read_text(const char *path, stance_message *message)
 {
-    size_t size = 0;
-    const char *wrong = refuse(path, &size);
-    FILE *file = wrong ? NULL : fopen(path, "rb");
-    char *text = file ? malloc(size + 1) : NULL;
-
-    if (text && fread(text, 1, size, file) == size) {
-        text[size] = '\0';
-    } else {
-        complain(message, "%.150s: %s", path,
-                 wrong   ? wrong
-                 : !file ? strerror(errno)
-                         : "cannot be read");
-        free(text);
-        text = NULL;
-    }
+    struct stat is;
+    char *text = NULL;
+    size_t room = 0;
+    const char *wrong = stat(path, &is) != 0      ? strerror(errno)
+                        : S_ISDIR(is.st_mode)     ? strerror(EISDIR)
+                        : !S_ISREG(is.st_mode)    ? "not a file"
+                        : is.st_size > MOST_BYTES ? "larger than 16 MiB, the most a table of "
+                                                    "benchmarks may take"
+                                                  : NULL;
+    FILE *const file = wrong ? NULL : fopen(path, "rb");
+    if (!wrong && !file)
+        wrong = strerror(errno);
+    else if (file && getdelim(&text, &room, '\0', file) < 0)
+        wrong = "cannot be read, or empty";
     if (file)
         fclose(file);
-    return text;
+    if (!wrong)
+        return text;
+    complain(message, "%.150s: %s", path, wrong);
+    free(text);
+    return NULL;
 }
 
 /* Cuts a line at its commas; false when there are not BENCH_COLUMN_COUNT fields. */

@@ -5,8 +5,8 @@
 #include "runner/plan/instruction_set.h"
 #include "runner/run/run.h"
 
-#include <dirent.h>
 #include <errno.h>
+#include <glob.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -14,7 +14,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-enum { MAX_STUDIES = 64, STEM = 256, FILE_NAME = 1024 };
+enum { STEM = 256, FILE_NAME = 1024 };
 
 /* ---- their scenarios ---------------------------------------------------------------------- */
 
@@ -39,52 +39,22 @@ double study_tolerance(const stance_method *method, const struct scenario_values
 
 /* ---- where they are ----------------------------------------------------------------------- */
 
-static bool ends_in_yaml(const char *name)
-{
-    const size_t n = strlen(name);
-    return n > 5 && strcmp(name + n - 5, ".yaml") == 0;
-}
-
-static int by_name(const void *a, const void *b)
-{
-    return strcmp(*(char *const *)a, *(char *const *)b);
-}
-
-/* Paths of the scenarios of a directory, sorted; freed by the caller. */
-static size_t list_studies(const char *directory, char *path[MAX_STUDIES])
-{
-    size_t count = 0;
-    DIR *open = opendir(directory);
-    struct dirent *entry;
-    while (open && (entry = readdir(open)) && count < MAX_STUDIES) {
-        if (ends_in_yaml(entry->d_name)) {
-            const size_t size = strlen(directory) + strlen(entry->d_name) + 2;
-            if ((path[count] = malloc(size)))
-                snprintf(path[count++], size, "%s/%s", directory, entry->d_name);
-        }
-    }
-    if (open)
-        closedir(open);
-    qsort(path, count, sizeof *path, by_name);
-    return count;
-}
-
-/* Those below the working directory, or beside the program. */
-static size_t find_studies(const char *kind, char *path[MAX_STUDIES])
+/* Those below the working directory, or beside the program; freed by the caller. */
+static void find_studies(const char *kind, glob_t *found)
 {
     static const char *const bases[] = {"", "../", "../share/stance/"};
-    char program[900] = "", directory[1024];
+    char program[900] = "", pattern[1024];
     const ssize_t n = readlink("/proc/self/exe", program, sizeof program - 1);
     char *slash = n > 0 ? strrchr(program, '/') : NULL;
-    size_t count = 0;
     if (slash)
         slash[1] = '\0';
-    for (size_t k = 0; count == 0 && k < sizeof bases / sizeof *bases; k++) {
-        snprintf(directory, sizeof directory, "%s%sscenarios/%s", k > 0 && slash ? program : "",
+    *found = (glob_t){.gl_pathc = 0};
+    for (size_t k = 0; found->gl_pathc == 0 && k < sizeof bases / sizeof *bases; k++) {
+        globfree(found);
+        snprintf(pattern, sizeof pattern, "%s%sscenarios/%s/*.yaml", k > 0 && slash ? program : "",
                  bases[k], kind);
-        count = list_studies(directory, path);
+        glob(pattern, 0, NULL, found);
     }
-    return count;
 }
 
 /* ---- one after the other ------------------------------------------------------------------ */
@@ -125,8 +95,10 @@ static int check_study(const struct request *request, const char *scenario, cons
 /* What its files are called. */
 static void name_study(const char *scenario, char stem[STEM])
 {
-    const char *slash = strrchr(scenario, '/'), *base = slash ? slash + 1 : scenario;
-    snprintf(stem, STEM, "%.*s", (int)(strlen(base) - (ends_in_yaml(base) ? 5 : 0)), base);
+    snprintf(stem, STEM, "%s", basename(scenario));
+    char *const dot = strrchr(stem, '.');
+    if (dot && dot > stem && strcmp(dot, ".yaml") == 0)
+        *dot = '\0';
 }
 
 static void name_file(const struct request *request, const char *stem, char file[FILE_NAME])
@@ -224,7 +196,8 @@ int studies_run(const struct command *command, const struct study_kind *kind, in
 {
     struct studies asked = {.json = false};
     struct look *const look = &asked.look;
-    char *found[MAX_STUDIES], fallback[64];
+    char fallback[64];
+    glob_t found;
     look_begin(look);
     const int begun = command_begin(command, argc, argv, &asked);
     if (begun != COMMAND_GOES_ON)
@@ -241,17 +214,16 @@ int studies_run(const struct command *command, const struct study_kind *kind, in
     if (asked.scenarios.count > 0)
         return end(&request, all_studies(&request, (char *const *)asked.scenarios.text,
                                          asked.scenarios.count));
-    const size_t count = find_studies(kind->name, found);
-    if (count == 0) {
+    find_studies(kind->name, &found);
+    int code = EXIT_IO;
+    if (found.gl_pathc > 0)
+        code = end(&request, all_studies(&request, found.gl_pathv, found.gl_pathc));
+    else
         fprintf(stderr,
                 "stance %s: no scenarios/%s here nor beside the program; name the scenarios\n",
                 command->name, kind->name);
-        return EXIT_IO;
-    }
-    const int code = all_studies(&request, found, count);
-    for (size_t i = 0; i < count; i++)
-        free(found[i]);
-    return end(&request, code);
+    globfree(&found);
+    return code;
 }
 
 const struct option studies_options[] = {

@@ -50,6 +50,19 @@ stance_error stance_eigenvalues(int n, const double *A, double *re, double *im)
     return STANCE_OK;
 }
 
+stance_error stance_is_stable(int n, const double *A, bool sampled, bool *stable,
+                              double complex *lasts)
+{
+    double re[STANCE_LOOP_MOST], im[STANCE_LOOP_MOST];
+    const stance_error error = stance_eigenvalues(n, A, re, im);
+    *stable = true;
+    for (int i = 0; error == STANCE_OK && *stable && i < n; i++) {
+        *stable = sampled ? hypot(re[i], im[i]) < 1 : re[i] < 0;
+        *lasts = CMPLX(re[i], im[i]);
+    }
+    return error;
+}
+
 stance_error stance_check_plant(const stance_plant *plant, stance_message *message)
 {
     const int n = plant->states, m = plant->inputs;
@@ -132,8 +145,9 @@ stance_error stance_input_range(int n, int m, const double *B, double *U, double
     return STANCE_OK;
 }
 
-stance_error stance_hautus(const stance_plant *plant, enum mode_filter filter, double complex *mode,
-                           bool *reached)
+stance_error stance_check_modes(const stance_plant *plant, enum mode_filter filter,
+                                stance_error code, const char *before, const char *after,
+                                stance_message *message)
 {
     enum { N = STANCE_PLANT_MOST };
     const int n = plant->states;
@@ -143,26 +157,28 @@ stance_error stance_hautus(const stance_plant *plant, enum mode_filter filter, d
     double complex matrix[N * (2 * N + 1)];
     const double norm = matrix_norm(n * n, plant->A);
     int rank = 0;
-    *reached = true;
+    char text[64];
     stance_error error = stance_eigenvalues(n, plant->A, re, im);
     if (error == STANCE_OK)
         error = stance_input_range(n, plant->inputs, plant->B, U, NULL, &rank);
-    for (int k = 0; error == STANCE_OK && *reached && k < n; k++) {
+    for (int k = 0; error == STANCE_OK && k < n; k++) {
         if (!passes(filter, norm, re[k], im[k]))
             continue;
         /* Has (A - s I, U) full rank? The range of B stands in for B, at the size of A: the unit of
          * the inputs does not matter. */
-        *mode = CMPLX(re[k], im[k]);
+        const double complex mode = CMPLX(re[k], im[k]);
         for (int i = 0; i < n; i++) {
             for (int j = 0; j < n; j++)
-                matrix[j * n + i] = plant->A[i * n + j] - (i == j ? *mode : 0);
+                matrix[j * n + i] = plant->A[i * n + j] - (i == j ? mode : 0);
             for (int j = 0; j < rank; j++)
                 matrix[(n + j) * n + i] = norm * U[j * n + i];
         }
         if (LAPACKE_zgesvd(LAPACK_COL_MAJOR, 'N', 'N', n, n + rank, matrix, n, sv, NULL, 1, NULL, 1,
                            unused) != 0)
             error = STANCE_NUMERICAL;
-        *reached = sv[n - 1] > HAUTUS_TOLERANCE * sv[0];
+        else if (!(sv[n - 1] > HAUTUS_TOLERANCE * sv[0]))
+            error = stance_refuse(message, code, "%s the mode with eigenvalue %s%s", before,
+                                  stance_complex_text(mode, text), after);
     }
     return error;
 }

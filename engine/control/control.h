@@ -49,10 +49,16 @@ stance_error stance_place_schur(const placement *wanted, double *K, stance_messa
  * modulus >= 1. */
 enum mode_filter { EVERY_MODE, GROWING_MODES, EXPANDING_MODES };
 
-/* Hautus: (A - s I, B) has full rank for every eigenvalue s of A that passes the filter. *reached
- * is false where one has not, and *mode that eigenvalue. */
-stance_error stance_hautus(const stance_plant *plant, enum mode_filter filter,
-                           double _Complex *mode, bool *reached);
+/* Hautus: (A - s I, B) has full rank for every eigenvalue s of A that passes the filter, else the
+ * error `code`: "BEFORE the mode with eigenvalue sAFTER". */
+stance_error stance_check_modes(const stance_plant *plant, enum mode_filter filter,
+                                stance_error code, const char *before, const char *after,
+                                stance_message *message);
+
+/* Whether x' = A x, or (sampled) x+ = A x, comes to rest; else *lasts is an eigenvalue that keeps
+ * it from that. */
+stance_error stance_is_stable(int n, const double *A, bool sampled, bool *stable,
+                              double _Complex *lasts);
 
 /* B[n][m] = U S V^T: its rank, U[n][n] by columns, the first `rank` of which span its range and,
  * unless NULL, V S^-1, [m][rank]. */

@@ -36,22 +36,6 @@ stance_error stance_solve_lyapunov(int n, const double *F, bool discrete, const 
     return info == 0 && matrix_finite(nn, X) ? STANCE_OK : STANCE_NUMERICAL;
 }
 
-static stance_error check_stable(int n, const double *loop, bool sampled, stance_message *message)
-{
-    double re[STANCE_PLANT_MOST], im[STANCE_PLANT_MOST];
-    const stance_error error = stance_eigenvalues(n, loop, re, im);
-    for (int i = 0; error == STANCE_OK && i < n; i++) {
-        if (sampled ? hypot(re[i], im[i]) >= 1 : re[i] >= 0) {
-            char text[64];
-            return stance_refuse(message, STANCE_BAD_ARGUMENT,
-                                 "there is no Lyapunov function: the loop has the eigenvalue %s "
-                                 "and is not stable",
-                                 stance_complex_text(CMPLX(re[i], im[i]), text));
-        }
-    }
-    return error;
-}
-
 stance_error stance_lyapunov(int n, const double *loop, bool sampled, const double *weight,
                              double *P, stance_message *message)
 {
@@ -64,9 +48,17 @@ stance_error stance_lyapunov(int n, const double *loop, bool sampled, const doub
         if (!isfinite(weight[i]) || weight[i] <= 0)
             return stance_refuse(message, STANCE_BAD_ARGUMENT,
                                  "weight %d of a Lyapunov function must be finite and positive", i);
-    stance_error error = check_stable(n, loop, sampled, message);
+    bool stable;
+    double complex lasts;
+    char text[64];
+    stance_error error = stance_is_stable(n, loop, sampled, &stable, &lasts);
     if (error != STANCE_OK)
         return error;
+    if (!stable)
+        return stance_refuse(message, STANCE_BAD_ARGUMENT,
+                             "there is no Lyapunov function: the loop has the eigenvalue %s and is "
+                             "not stable",
+                             stance_complex_text(lasts, text));
     memset(P, 0, nn * sizeof *P);
     for (int i = 0; i < n; i++)
         P[i * n + i] = -weight[i];

@@ -186,9 +186,7 @@ static bool normalise(int n, double *y)
 static bool complement(problem *p, int j, int count, double *y)
 {
     const int n = p->n;
-    for (int i = 0; i < n; i++)
-        for (int k = 0; k < n; k++)
-            p->factor[i * n + k] = p->X[k * n + i]; /* X^T */
+    matrix_transpose(n, n, p->X, p->factor);
     memset(y, 0, (size_t)(count * n) * sizeof *y);
     for (int c = 0; c < count; c++)
         y[c * n + j + c] = 1;
@@ -201,9 +199,7 @@ static bool complement(problem *p, int j, int count, double *y)
     if (!normalise(n, z))
         return false;
     for (int again = 0; again < 2; again++) {
-        double along = 0;
-        for (int i = 0; i < n; i++)
-            along += y[i] * z[i];
+        const double along = matrix_dot(n, y, z);
         for (int i = 0; i < n; i++)
             z[i] -= along * y[i];
     }
@@ -403,9 +399,9 @@ static bool gains(problem *p, double *K, double *norm)
 {
     const int n = p->n, r = p->r;
     double *M = p->rhs, *XT = p->factor, *U0M = p->real;
+    matrix_transpose(n, n, p->X, XT);
     for (int i = 0; i < n; i++) {
         for (int j = 0; j < n; j++) {
-            XT[i * n + j] = p->X[j * n + i];
             const double a = creal(p->pole[j]), b = cimag(p->pole[j]);
             const double *column = p->X + j * n;
             M[i * n + j] = b == 0  ? a * column[i]
@@ -416,13 +412,9 @@ static bool gains(problem *p, double *K, double *norm)
     /* X^T M^T = (X Lambda)^T: column i of the solution is row i of M. */
     if (LAPACKE_dgesv(LAPACK_COL_MAJOR, n, n, XT, n, p->pivot, M, n) != 0)
         return false;
-    for (int k = 0; k < r; k++) {
-        for (int j = 0; j < n; j++) {
-            U0M[k * n + j] = 0;
-            for (int i = 0; i < n; i++)
-                U0M[k * n + j] += p->range[k * n + i] * (p->A[i * n + j] - M[i * n + j]);
-        }
-    }
+    for (int i = 0; i < n * n; i++)
+        M[i] = p->A[i] - M[i];
+    matrix_multiply(r, n, n, p->range, M, U0M);
     matrix_multiply(p->m, r, n, p->pseudo, U0M, K);
     *norm = matrix_norm(p->m * n, K);
     return isfinite(*norm);

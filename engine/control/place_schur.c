@@ -46,17 +46,6 @@ static bool sort_schur(int n, double *a, double *Z, double *re, double *im)
     return true;
 }
 
-/* C[n][m] = T' B, of T by columns. */
-static void turn_by(int n, int m, const double *T, const double *B, double *C)
-{
-    for (int j = 0; j < m; j++)
-        for (int i = 0; i < n; i++) {
-            C[j * n + i] = 0;
-            for (int k = 0; k < n; k++)
-                C[j * n + i] += T[i * n + k] * B[k * m + j];
-        }
-}
-
 /* K from paired poles. */
 static stance_error assign(const stance_plant *plant, const double complex *pole, double *K,
                            stance_message *message)
@@ -69,19 +58,18 @@ static stance_error assign(const stance_plant *plant, const double complex *pole
     matrix_transpose(n, n, plant->A, a);
     if (!sort_schur(n, a, turn, re, im))
         return STANCE_NUMERICAL;
-    turn_by(n, m, turn, plant->B, b);
+    matrix_multiply(n, n, m, turn, plant->B, f); /* of `turn` by columns the transpose */
+    matrix_transpose(n, m, f, b);
     for (int i = 0; i < n; i++) {
         re[i] = creal(pole[i]);
         im[i] = cimag(pole[i]);
     }
     sb01bd_("C", &n, &m, &n, &none_stays, a, &n, b, &n, re, im, &stay, &assigned, &unreached, f, &m,
             z, &n, &tolerance, dwork, &work, &warnings, &info, 1);
-    for (int j = 0; j < m; j++)
-        for (int i = 0; i < n; i++) {
-            K[j * n + i] = 0;
-            for (int k = 0; k < n; k++)
-                K[j * n + i] -= f[k * m + j] * turn[k * n + i];
-        }
+    matrix_transpose(n, m, f, b);
+    for (int i = 0; i < n * m; i++)
+        b[i] = -b[i];
+    matrix_multiply(m, n, n, b, turn, K);
     if (info != 0 || !matrix_finite((size_t)n * (size_t)m, K))
         return STANCE_NUMERICAL;
     return assigned == n

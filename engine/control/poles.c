@@ -11,16 +11,8 @@ bool stance_same_pole(double complex a, double complex b)
 
 stance_error stance_check_controllable(const stance_plant *plant, stance_message *message)
 {
-    double complex mode = 0;
-    bool reached = true;
-    char text[64];
-    const stance_error error = stance_hautus(plant, EVERY_MODE, &mode, &reached);
-    if (error != STANCE_OK || reached)
-        return error;
-    return stance_refuse(message, STANCE_UNCONTROLLABLE,
-                         "the pair (A, B) is not controllable: no input reaches the mode with "
-                         "eigenvalue %s",
-                         stance_complex_text(mode, text));
+    return stance_check_modes(plant, EVERY_MODE, STANCE_UNCONTROLLABLE,
+                              "the pair (A, B) is not controllable: no input reaches", "", message);
 }
 
 stance_error stance_pair_poles(int n, const stance_poles *poles, double complex *pole,

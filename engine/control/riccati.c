@@ -100,13 +100,10 @@ static stance_error feedback(const regulator *g, double *K)
 
 static stance_error is_stable(const regulator *g, const double *K, bool *stable)
 {
-    double loop[N * N] = {0}, re[N], im[N];
+    double loop[N * N] = {0};
+    double complex ignored;
     matrix_close(g->n, g->m, g->A, g->B, K, loop);
-    const stance_error error = stance_eigenvalues(g->n, loop, re, im);
-    *stable = true;
-    for (int i = 0; error == STANCE_OK && i < g->n; i++)
-        *stable = *stable && (g->discrete ? hypot(re[i], im[i]) < 1 : re[i] < 0);
-    return error;
+    return stance_is_stable(g->n, loop, g->discrete, stable, &ignored);
 }
 
 /* One step of Newton's method: X of the loop under K. */
@@ -129,27 +126,16 @@ static stance_error refine(regulator *g, const double *K)
     return stance_solve_lyapunov(n, F, g->discrete, C, g->X);
 }
 
-static stance_error check_stabilisable(const regulator *g, stance_message *message)
-{
-    double complex mode = 0;
-    bool reached = true;
-    char text[64];
-    const stance_plant plant = {g->n, g->m, g->A, g->B};
-    const stance_error error =
-        stance_hautus(&plant, g->discrete ? EXPANDING_MODES : GROWING_MODES, &mode, &reached);
-    if (error != STANCE_OK || reached)
-        return error;
-    return stance_refuse(message, STANCE_UNCONTROLLABLE,
-                         "the %s is not stabilisable: no input reaches the mode with eigenvalue %s",
-                         g->discrete ? "sampled system" : "system",
-                         stance_complex_text(mode, text));
-}
-
 /* The whole, for the model and weights in g. */
 static stance_error regulate(regulator *g, double *K, stance_message *message)
 {
     bool stable = false;
-    stance_error error = check_stabilisable(g, message);
+    stance_error error =
+        stance_check_modes(&(stance_plant){g->n, g->m, g->A, g->B},
+                           g->discrete ? EXPANDING_MODES : GROWING_MODES, STANCE_UNCONTROLLABLE,
+                           g->discrete ? "the sampled system is not stabilisable: no input reaches"
+                                       : "the system is not stabilisable: no input reaches",
+                           "", message);
     if (error != STANCE_OK)
         return error;
     error = solve_riccati(g);
@@ -175,20 +161,12 @@ static stance_error check_seen(const stance_plant *plant, const double *states,
 {
     const int n = plant->states;
     double transposed[N * N], root[N * N] = {0};
-    double complex mode = 0;
-    bool seen = true;
-    char text[64];
     matrix_transpose(n, n, plant->A, transposed);
     for (int i = 0; i < n; i++)
         root[i * n + i] = sqrt(states[i]);
-    const stance_error error =
-        stance_hautus(&(stance_plant){n, n, transposed, root}, GROWING_MODES, &mode, &seen);
-    return error != STANCE_OK || seen
-               ? error
-               : stance_refuse(message, STANCE_BAD_ARGUMENT,
-                               "the weights of the states do not see the mode with eigenvalue %s, "
-                               "which does not decay by itself",
-                               stance_complex_text(mode, text));
+    return stance_check_modes(&(stance_plant){n, n, transposed, root}, GROWING_MODES,
+                              STANCE_BAD_ARGUMENT, "the weights of the states do not see",
+                              ", which does not decay by itself", message);
 }
 
 static stance_error check_weights(const stance_plant *plant, const double *states,

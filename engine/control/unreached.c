@@ -36,16 +36,13 @@ struct balanced {
     double re[N], im[N];       /* eigenvalues */
 };
 
-/* C[n][p] = A[n][m] B[m][p] or (flip) A[m][n]' B[m][p]. */
+/* C[n][p] = A[n][m] B[m][p], or (flip) A[m][n]' B[m][p]. */
 static void multiply(bool flip, int n, int m, int p, const double *A, const double *B, double *C)
 {
-    for (int j = 0; j < p; j++)
-        for (int i = 0; i < n; i++) {
-            double sum = 0;
-            for (int k = 0; k < m; k++)
-                sum += (flip ? A[i * m + k] : A[k * n + i]) * B[j * m + k];
-            C[j * n + i] = sum;
-        }
+    if (!flip)
+        matrix_multiply(p, m, n, B, A, C);
+    for (int i = 0; flip && i < n * p; i++)
+        C[i] = matrix_dot(m, A + i % n * m, B + i / n * m);
 }
 
 /* Orthonormal V[k][*left] of what M[rows][k] maps to 0, singular values up to `zero` counting as

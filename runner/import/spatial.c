@@ -49,9 +49,8 @@ void spatial_say(const struct spatial_model *model, spatial_message *message, in
 
 void spatial_begin(struct spatial_model *model, const char *path, const char *format)
 {
-    const char *const slash = strrchr(path, '/');
     *model = (struct spatial_model){.format = format, .path = path};
-    spatial_name(model->file, slash ? slash + 1 : path);
+    spatial_name(model->file, basename(path));
 }
 
 void spatial_add_alien(struct spatial_model *model, const char *what, const char *name, int line,
