@@ -7,8 +7,16 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "engine/mechanism.h"
 #include "engine/stance.h"
 #include "run_cases.h"
+
+/* A scene of a test's own, which goes when its block ends. */
+#define SCENE FREED(scene_gone) stance_scene
+static inline void scene_gone(stance_scene *const *scene)
+{
+    stance_scene_free(*scene);
+}
 
 /* Uniform in [low, high) from splitmix64: the same everywhere. */
 static inline double uniform(uint64_t *state, double low, double high)

@@ -46,4 +46,22 @@ static inline bool dense_solve(int n, double a[DENSE_ROWS][DENSE_ROWS + 1], doub
     return true;
 }
 
+/* Of a[n][n], whose rows are `stride` apart; so are those of the inverse. */
+static inline bool dense_inverse(int n, int stride, const double *a, double *inverse)
+{
+    for (int column = 0; column < n; column++) {
+        double system[DENSE_ROWS][DENSE_ROWS + 1], x[DENSE_ROWS];
+        for (int i = 0; i < n; i++) {
+            for (int j = 0; j < n; j++)
+                system[i][j] = a[i * stride + j];
+            system[i][n] = i == column;
+        }
+        if (!dense_solve(n, system, x))
+            return false;
+        for (int i = 0; i < n; i++)
+            inverse[i * stride + column] = x[i];
+    }
+    return true;
+}
+
 #endif

@@ -37,6 +37,15 @@ static inline void matrix_of(const json_t *record, const char *key, int rows, in
     }
 }
 
+/* Six complex numbers of a record. */
+static inline void poles_of(const json_t *record, const char *key, double re[6], double im[6])
+{
+    double pairs[12];
+    matrix_of(record, key, 6, 2, pairs);
+    for (int i = 0; i < 6; i++)
+        re[i] = pairs[2 * i], im[i] = pairs[2 * i + 1];
+}
+
 static inline void assert_matrix(int count, const double *x, const double *wanted, double relative,
                                  const char *what)
 {

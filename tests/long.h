@@ -2,12 +2,6 @@
 #ifndef STANCE_TESTS_LONG_H
 #define STANCE_TESTS_LONG_H
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 #include <stdbool.h>
 #include <stdlib.h>
 

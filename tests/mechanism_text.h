@@ -20,6 +20,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cases.h"
+
 #include "engine/mechanism.h"
 
 struct words {

@@ -23,6 +23,13 @@ struct robot {
     stance_case c;
 };
 
+/* A robot whose scene goes when its block ends. */
+#define ROBOT FREED(robot_gone) struct robot
+static inline void robot_gone(struct robot *r)
+{
+    stance_scene_free(r->scene);
+}
+
 /* Put together in pieces: pushes have no line in a text. */
 static inline struct robot robot_of(const char *text, double slope)
 {

@@ -6,6 +6,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "cases.h"
+
 #include "engine/mechanism.h"
 #include "engine/tree.h"
 

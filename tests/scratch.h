@@ -4,8 +4,8 @@
 #define STANCE_TESTS_SCRATCH_H
 
 #include "long.h"
+#include "tests.h"
 
-#include <stdio.h>
 #include <sys/stat.h>
 #include <unistd.h>
 

@@ -3,19 +3,10 @@
 #ifndef STANCE_TESTS_SUPPORT_H
 #define STANCE_TESTS_SUPPORT_H
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 #include <jansson.h>
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "cases.h"
+#include "tests.h"
 
 #include "engine/control/design.h"
 
@@ -55,6 +46,19 @@ static inline stance_case case_of_scene(const char *name, double step, double ti
     c.tolerance = 1e-9;
     c.robot[STANCE_ROBOT_FALL_HEIGHT] = -1e9;
     return c;
+}
+
+/* A servo of one coordinate that acts on, without limits of its own. */
+static inline stance_servo servo_of(int coordinate, double setpoint, double ramp, double kp,
+                                    double kd)
+{
+    return (stance_servo){.coordinate = coordinate,
+                          .setpoint = setpoint,
+                          .ramp = ramp,
+                          .duration = INFINITY,
+                          .kp = kp,
+                          .kd = kd,
+                          .integral_limit = INFINITY};
 }
 
 /* Of a case of any scene: the biped's where it names none. */
@@ -169,6 +173,14 @@ static inline void trajectory_free(stance_trajectory *t)
     free(t->torque);
     free(t->force);
     free(t->gap);
+}
+
+/* A trajectory, and a JSON tree, that go when their block ends. */
+#define TRAJECTORY FREED(trajectory_free) stance_trajectory
+#define JSON FREED(json_gone) json_t
+static inline void json_gone(json_t *const *tree)
+{
+    json_decref(*tree);
 }
 
 static inline double number_in(const json_t *object, const char *key)

@@ -2,7 +2,6 @@
  * integration in small steps; the loop with all of it against the eigenvalues of its linear theory;
  * how noise makes it wander; limits by joint; convergence; what is said to rest. */
 #include "support.h"
-#include "tests.h"
 
 enum { STEPS = 400, EVERY = 4 };
 
@@ -24,12 +23,11 @@ static stance_case shaken_case(void)
 /* Torques of all steps: [step][actuator]. */
 static void torques_of(const char *method, stance_case c, double (*torque)[2])
 {
-    stance_trajectory t = trajectory_new(STEPS + 1, c.step);
+    TRAJECTORY t = trajectory_new(STEPS + 1, c.step);
     c.trajectory = &t;
     run_done(method, &c);
     for (int k = 0; k < STEPS; k++) /* a row holds those of the step that ends there */
         memcpy(torque[k], t.torque + 2 * (k + 1), sizeof *torque);
-    trajectory_free(&t);
 }
 
 /* The mean over a step of what follows `command` at time constant and rate, in many small steps. */
@@ -60,7 +58,7 @@ TEST(torques_follow)
     torques_of("midpoint", shaken_case(), commanded);
     assert_true(commanded[0][0] != commanded[EVERY][0] &&
                 commanded[0][0] == commanded[EVERY - 1][0]);
-    for (size_t k = 0; k < sizeof of / sizeof *of; k++)
+    for (size_t k = 0; k < COUNT(of); k++)
         for (int m = 0; m < 3; m++) {
             static const char *const methods[] = {"midpoint", "capturing", "event-driven"};
             stance_case c = shaken_case();
@@ -107,7 +105,7 @@ static struct plant plant_of(const stance_case *c)
     struct plant p = {.n = 6};
     double A[36], B[12], K[12];
     get_gain(c, K);
-    assert_int_equal(biped()->linearise(biped(), c->robot, &equilibrium, A, B), STANCE_OK);
+    OK(biped()->linearise(biped(), c->robot, &equilibrium, A, B));
     if (c->lag > 0) {
         p.n = 8;
         stance_lagged(PLANT(6, 2, A, B), K, c->lag, p.A, p.B, p.K);
@@ -125,15 +123,13 @@ TEST(late_loops_are_lost_where_theory_says)
         int delay;
         double lag;
     } of[] = {{0, 0.02}, {2, 0}, {2, 0.01}, {5, 0.005}, {16, 0.001}};
-    for (size_t k = 0; k < sizeof of / sizeof *of; k++) {
+    for (size_t k = 0; k < COUNT(of); k++) {
         double size[2], T;
         int outcome[2];
         stance_case c = balance_case(1e-6, 0);
         c.delay = of[k].delay, c.lag = of[k].lag;
         const struct plant p = plant_of(&c);
-        assert_int_equal(
-            stance_critical_sample_time(PLANT(p.n, 2, p.A, p.B), SAMPLING(p.K, 0, c.delay), 1, &T),
-            STANCE_OK);
+        OK(stance_critical_sample_time(PLANT(p.n, 2, p.A, p.B), SAMPLING(p.K, 0, c.delay), 1, &T));
         for (int side = 0; side < 2; side++) {
             c.sample_every = 16;
             c.step = T * (side ? 1.03 : 0.97) / (double)c.sample_every;
@@ -160,7 +156,7 @@ TEST(noise_wanders_as_theory_says)
         double lag, angle, rate, torque;
     } of[] = {
         {0, 0, 1e-5, 0, 0}, {0, 0, 0, 1e-4, 0}, {0, 0, 0, 0, 1e-3}, {2, 0.01, 1e-5, 1e-4, 1e-3}};
-    for (size_t k = 0; k < sizeof of / sizeof *of; k++) {
+    for (size_t k = 0; k < COUNT(of); k++) {
         stance_case c = balance_case(0, 0);
         c.delay = of[k].delay, c.lag = of[k].lag;
         c.angle_noise = of[k].angle, c.rate_noise = of[k].rate, c.noise = of[k].torque;
@@ -171,11 +167,9 @@ TEST(noise_wanders_as_theory_says)
         const struct plant p = plant_of(&c);
         for (int i = 0; i < 6; i++)
             measured[i] = (i < 3 ? c.angle_noise * c.angle_noise : c.rate_noise * c.rate_noise) / 3;
-        assert_int_equal(stance_sampled_wander(PLANT(p.n, 2, p.A, p.B),
-                                               SAMPLING(p.K, T, (int)c.delay), measured,
-                                               c.noise * c.noise / 3, rms),
-                         STANCE_OK);
-        stance_trajectory t = trajectory_new(ROWS, T);
+        OK(stance_sampled_wander(PLANT(p.n, 2, p.A, p.B), SAMPLING(p.K, T, (int)c.delay), measured,
+                                 c.noise * c.noise / 3, rms));
+        TRAJECTORY t = trajectory_new(ROWS, T);
         c.trajectory = &t;
         run_done("midpoint", &c);
         for (int64_t row = 1000; row < ROWS; row++)
@@ -191,7 +185,6 @@ TEST(noise_wanders_as_theory_says)
             assert_true(ratio > 0.93 && ratio < 1.07);
         }
         print_message("\n");
-        trajectory_free(&t);
     }
 }
 

@@ -2,7 +2,6 @@
  * that make_sample_results.py makes from formulas. */
 #include "scratch.h"
 #include "support.h"
-#include "tests.h"
 
 #include "analysis/draw/gnuplot.h"
 #include "analysis/draw/plot.h"
@@ -113,6 +112,7 @@ static void assert_near(double found, double wanted, double tolerance)
         fail_msg("%.17g is not %.17g +- %g", found, wanted, tolerance);
 }
 
+#define RESULTS FREED(results_close) struct results
 static void open_sample(struct results *r, const char *name)
 {
     stance_message message = {""};
@@ -134,7 +134,7 @@ TEST(test_wilson)
     static const uint64_t counts[][2] = {{1, 10}, {5, 10}, {9, 10}, {30, 1000}, {65535, 65536}};
     static const double z = 1.959963984540054;
     double end[2];
-    for (size_t i = 0; i < sizeof counts / sizeof counts[0]; i++) {
+    for (size_t i = 0; i < COUNT(counts); i++) {
         double n = (double)counts[i][1], share = (double)counts[i][0] / n;
         statistics_wilson_of(z, share, n, &end[0], &end[1]);
         assert_true(0 < end[0] && end[0] < share && share < end[1] && end[1] < 1);
@@ -203,10 +203,10 @@ TEST(test_reading)
 
 TEST(test_pending_and_failed)
 {
-    struct results r;
+    RESULTS r;
     struct statistics_counts counts;
     stance_message message;
-    double *end;
+    OWN double *end;
     open_sample(&r, "partial");
     statistics_count(&r, -1, 0, &counts);
     assert_int_equal(counts.kind[RESULTS_PENDING], 18);
@@ -217,16 +217,14 @@ TEST(test_pending_and_failed)
     for (uint64_t i = 0; i < r.cases; i++) /* rubbish and failures never count as numbers */
         assert_int_equal(isnan(end[i]),
                          r.kind[i] == RESULTS_PENDING || r.kind[i] == RESULTS_FAILED);
-    free(end);
-    results_close(&r);
 }
 
 TEST(test_trajectory)
 {
-    struct results r;
+    RESULTS r;
     struct results_trajectory t;
     stance_message message;
-    uint64_t *list;
+    OWN uint64_t *list;
     size_t count;
     open_sample(&r, "only");
     assert_true(r.single);
@@ -234,7 +232,6 @@ TEST(test_trajectory)
     assert_true(results_recorded(&r, &list, &count, &message));
     assert_int_equal(count, 1);
     assert_int_equal(list[0], 17);
-    free(list);
     assert_true(results_trajectory(&r, 0, 17, &t, &message));
     assert_int_equal(t.rows, 81); /* 0.8 s in steps of 0.01 s, both ends; then NAN */
     assert_string_equal(t.coordinate[2], "theta");
@@ -243,7 +240,6 @@ TEST(test_trajectory)
         assert_near(t.position[k * 5 + 2], -0.41 + 0.1 * exp(-t.time[k]), 1e-14);
     results_trajectory_free(&t);
     assert_false(results_trajectory(&r, 5, 17, &t, &message));
-    results_close(&r);
 }
 
 /* Six digits, and more only where neighbours are nearer than that; letters whole or '?'. */
@@ -272,7 +268,7 @@ TEST(test_extents)
 {
     const size_t origin[SCENARIO_MAX_AXES] = {0};
     struct statistics_extent extent;
-    struct results r;
+    RESULTS r;
     open_sample(&r, "basin");
     assert_true(statistics_extent(&r, 0, origin, &extent) && extent.any);
     assert_near(extent.low, -0.05, 0.5 * 0.005 + 1e-12);
@@ -309,7 +305,6 @@ TEST(test_extents)
 
     open_sample(&r, "line"); /* not an axis of offsets */
     assert_false(statistics_extent(&r, 0, origin, &extent));
-    results_close(&r);
 }
 
 static json_t *summary_of(const char *name)
@@ -334,7 +329,7 @@ static double number_at(const json_t *root, const char *a, const char *b, const 
 TEST(test_parameter)
 {
     static const double scales[] = {100, 3, 2, 1, 1};
-    json_t *const root = summary_of("friction");
+    JSON *root = summary_of("friction");
     const json_t *const parameters = json_object_get(root, "parameters"),
                         *const parameter = json_array_get(parameters, 0),
                         *const values = json_object_get(parameter, "values");
@@ -357,7 +352,6 @@ TEST(test_parameter)
     const json_t *const third = json_array_get(values, 2);
     assert_true(number_at(parameter, "steepest", "from", NULL) ==
                 number_at(third, "value", NULL, NULL));
-    json_decref(root);
 }
 
 /* ---- the commands ------------------------------------------------------------------------- */
@@ -381,7 +375,7 @@ TEST(test_summary_json)
 {
     static const char *const names[] = {"friction", "line",   "methods", "one",  "nothing",
                                         "sparse",   "single", "bare",    "title"};
-    json_t *root = summary_of("basin");
+    JSON *root = summary_of("basin");
     assert_true(number_at(root, "cases", "total", NULL) == 1271);
     double stabilised = number_at(root, "outcomes", "stabilised", "count");
     assert_true(number_at(root, "outcomes", "stabilised", "share") == stabilised / 1271);
@@ -401,13 +395,12 @@ TEST(test_summary_json)
     assert_true(json_is_true(json_object_get(extent, "low_unknown")));
     assert_string_equal(json_string_value(json_object_get(extent, "outcome")), "pending");
     json_decref(root);
-    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++)
+    for (size_t i = 0; i < COUNT(names); i++)
         json_decref(summary_of(names[i]));
     root = summary_of("only");
     assert_true(number_at(root, "case", "index", NULL) == 17);
     assert_near(number_at(root, "case", "final_state", "theta"), -0.41, 0);
     assert_true(json_is_null(json_object_get(json_object_get(root, "case"), "settle_time")));
-    json_decref(root);
 }
 
 /* Without a controller the share is that of cases at rest, and what the scene lacks is not told. */
@@ -419,7 +412,7 @@ TEST(test_summary_of_a_plain_scene)
          "\nLargest residuals: Signorini 4e-12 m/s, energy gained 3e-09 J\n",
          "2.7 evaluations per step", "events, changes of contact mode: 14, in 3 of the cases");
     assert_string_equal(errors, "");
-    json_t *root = summary_of("ball");
+    JSON *root = summary_of("ball");
     assert_true(number_at(root, "failures", "initial", NULL) == 1);
     assert_true(number_at(root, "cost", "events", NULL) == 14);
     assert_true(number_at(root, "cost", "events_cases", NULL) == 3);
@@ -430,7 +423,6 @@ TEST(test_summary_of_a_plain_scene)
     const json_t *first = json_array_get(json_object_get(parameter, "values"), 0);
     assert_true(number_at(first, "rested", NULL, NULL) == 1);
     assert_true(number_at(first, "share", NULL, NULL) == 1);
-    json_decref(root);
     /* Files of before know nothing of residuals and events. */
     SAYS(summary, EXIT_DONE, "basin", NULL, NULL, "!residual", "!events");
 }
@@ -452,14 +444,13 @@ TEST(test_compare)
     SAYS(summary, EXIT_DONE, "bytes", NULL, NULL, "An ?ellipse\n");
     assert_true(strncmp(output, "An ?ellipse\n", 12) == 0);
     SAYS(compare, EXIT_CASES_FAILED, "basin", sample("changed"), "--json", "differences");
-    json_t *root = json_loads(output, 0, NULL);
+    JSON *root = json_loads(output, 0, NULL);
     assert_non_null(root);
     assert_true(json_is_false(json_object_get(root, "identical")));
     /* The first is the checksum of that case. */
     const json_t *difference = json_array_get(json_object_get(root, "differences"), 1);
     assert_string_equal(json_string_value(json_object_get(difference, "name")), "end_time");
     assert_true(number_at(difference, "differing", NULL, NULL) == 1);
-    json_decref(root);
 }
 
 /* ---- bad files ---------------------------------------------------------------------------- */
@@ -516,8 +507,7 @@ TEST(test_damaged_files)
     char *bytes, *copy, path[400];
     size_t size = load(sample("partial"), &bytes);
     uint64_t random = 1;
-    copy = malloc(size);
-    assert_non_null(copy);
+    copy = room(size);
     snprintf(path, sizeof path, "%s", sample("damaged"));
     for (int k = 0; k < 60; k++) {
         memcpy(copy, bytes, size);
@@ -568,20 +558,20 @@ TEST(test_pictures)
     static const char *const cases[] = {"coordinates", "forces", "torques", "gaps", "strip"};
     char directory[400], name[64];
     snprintf(directory, sizeof directory, "%s/it's a \"place\"", scratch);
-    for (size_t i = 0; i < sizeof maps / sizeof maps[0]; i++) {
+    for (size_t i = 0; i < COUNT(maps); i++) {
         expect_plot(maps[i], directory);
         snprintf(name, sizeof name, "%s-map", maps[i]);
         expect_picture(directory, name);
         snprintf(name, sizeof name, "%s-settle_time", maps[i]);
         expect_picture(directory, name);
     }
-    for (size_t i = 0; i < sizeof curves / sizeof curves[0]; i++) {
+    for (size_t i = 0; i < COUNT(curves); i++) {
         expect_plot(curves[i], directory);
         snprintf(name, sizeof name, "%s-curve", curves[i]);
         expect_picture(directory, name);
     }
     expect_plot("single", directory);
-    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    for (size_t i = 0; i < COUNT(cases); i++) {
         snprintf(name, sizeof name, "single-%s", cases[i]);
         expect_picture(directory, name);
     }
@@ -620,7 +610,7 @@ TEST(test_text)
 TEST(test_cells)
 {
     char path[480], kept[400], *bytes;
-    struct results r;
+    RESULTS r;
     snprintf(kept, sizeof kept, "%s/kept", scratch);
     mkdir(kept, 0700);
     setenv("STANCE_SCRIPTS", kept, 1);
@@ -645,7 +635,6 @@ TEST(test_cells)
                 assert_true(l < 1 ? fabs(time - 1 - l) < 1e-12 : isnan(time));
         }
     free(bytes);
-    results_close(&r);
     /* The map spans the outer edges of the cells. */
     snprintf(path, sizeof path, "%s/basin-map/data.gp", kept);
     load(path, &bytes);

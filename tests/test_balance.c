@@ -3,7 +3,6 @@
  * sample time found by simulation. */
 #include "long.h"
 #include "support.h"
-#include "tests.h"
 
 static void run(const char *method, const stance_case *cases, stance_result *results, size_t n)
 {
@@ -59,8 +58,8 @@ TEST(section_3_2)
 TEST(interval_at_rest)
 {
     enum { N = 721 };
-    stance_case *c = calloc(N, sizeof *c);
-    stance_result *r = calloc(N, sizeof *r);
+    OWN stance_case *c = calloc(N, sizeof *c);
+    OWN stance_result *r = calloc(N, sizeof *r);
     assert_true(c && r);
     const double from = -0.12, step = 0.00025;
     for (int i = 0; i < N; i++)
@@ -77,8 +76,6 @@ TEST(interval_at_rest)
     assert_int_equal(inside, last - first + 1);
     assert_true(fabs(from + step * first + 0.094) < 0.001);
     assert_true(fabs(from + step * last - 0.0185) < 0.0015);
-    free(c);
-    free(r);
 }
 
 static int descending(const void *a, const void *b)
@@ -91,9 +88,9 @@ TEST(friction_used_in_the_domain)
 {
     enum { MOST = 96 };
     const int N = long_tests() ? MOST : MOST / 2;
-    stance_case *c = calloc((size_t)(N * N), sizeof *c);
-    stance_result *r = calloc((size_t)(N * N), sizeof *r);
-    double *used = calloc((size_t)(N * N), sizeof *used);
+    OWN stance_case *c = calloc((size_t)(N * N), sizeof *c);
+    OWN stance_result *r = calloc((size_t)(N * N), sizeof *r);
+    OWN double *used = calloc((size_t)(N * N), sizeof *used);
     assert_true(c && r && used);
     for (int i = 0; i < N; i++)
         for (int j = 0; j < N; j++)
@@ -110,9 +107,6 @@ TEST(friction_used_in_the_domain)
     assert_true(fabs(median - 0.17) < 0.015);
     assert_true(fabs(q90 - 0.34) < 0.015);
     assert_true(fabs(q99 - 0.40) < 0.015);
-    free(c);
-    free(r);
-    free(used);
 }
 
 /* Against the pinned robot with three coordinates, integrated by another program: equal labels
@@ -120,12 +114,12 @@ TEST(friction_used_in_the_domain)
 TEST(domain_against_pinned_robot)
 {
     enum { N = 64 };
-    json_t *root = reference_load("tests/reference/pinned_basin.json");
+    JSON *root = reference_load("tests/reference/pinned_basin.json");
     json_t *rows = json_object_get(root, "labels");
     json_t *gains = json_object_get(root, "gains"), *torques = json_object_get(root, "torques");
     assert_int_equal(json_array_size(rows), N);
-    stance_case *c = calloc(N * N, sizeof *c);
-    stance_result *r = calloc(N * N, sizeof *r);
+    OWN stance_case *c = calloc(N * N, sizeof *c);
+    OWN stance_result *r = calloc(N * N, sizeof *r);
     char(*label)[N + 1] = calloc(N, sizeof *label);
     assert_true(c && r && label);
     for (int i = 0; i < N; i++) {
@@ -164,10 +158,7 @@ TEST(domain_against_pinned_robot)
         assert_int_equal(inside, 0);
         assert_true(differ < N);
     }
-    free(c);
-    free(r);
     free(label);
-    json_decref(root);
 }
 
 /* ---- the critical sample time ---- */
@@ -211,7 +202,7 @@ TEST(critical_sample_time_by_simulation)
                     {"implicit", 5e-3, -0.015, 0.002},
                     {"implicit", 1e-2, -0.029, 0.004},
                     {"midpoint", 5e-3, 0, 0.001}};
-    for (size_t i = 0; i < sizeof expected / sizeof *expected; i++) {
+    for (size_t i = 0; i < COUNT(expected); i++) {
         const double T = simulated_limit(expected[i].method, expected[i].step);
         print_message("# %s, h = %g ms: %.5f s (%+.2f %%)\n", expected[i].method,
                       1e3 * expected[i].step, T, 100 * (T / theory - 1));

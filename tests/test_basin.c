@@ -1,11 +1,8 @@
 /* test_basin.c - basins against sets whose volume, entropy and dimension are known. */
 #include "long.h"
 #include "support.h"
-#include "tests.h"
 
 #include "analysis/basin/basin_map.h"
-
-#include <string.h>
 
 static void assert_near(double found, double wanted, double tolerance)
 {
@@ -55,6 +52,8 @@ static void erase(struct drawn *d)
     free(d->kind);
     free(d->place);
 }
+
+#define DRAWN FREED(erase) struct drawn
 
 static struct basin_exponent exponent_of(const struct basin_map *map)
 {
@@ -138,8 +137,8 @@ TEST(volumes_are_bounded)
                 {2, 100, line, 0},
                 {3, 41, sphere, 4 * M_PI / 3 * 0.35 * 0.35 * 0.35},
                 {2, 10, everything, 1}};
-    for (size_t k = 0; k < sizeof sets / sizeof sets[0]; k++) {
-        struct drawn d = draw(sets[k].axes, sets[k].n, false, sets[k].colour);
+    for (size_t k = 0; k < COUNT(sets); k++) {
+        DRAWN d = draw(sets[k].axes, sets[k].n, false, sets[k].colour);
         struct basin_volume v;
         /* Under the line: integral of (0.503 - 0.4 x) / 0.61, below 1 all the way. */
         const double wanted = sets[k].colour == line ? (0.503 - 0.2) / 0.61 : sets[k].volume;
@@ -149,7 +148,6 @@ TEST(volumes_are_bounded)
         assert_true(v.low <= v.estimate + 1e-12 && v.estimate <= v.high + 1e-12);
         assert_true(fabs(v.estimate - wanted) <= basin_volume_reach(&v, 3) + 1e-12);
         assert_int_equal(v.cells, pow((double)sets[k].n - 1, sets[k].axes) + 0.5);
-        erase(&d);
     }
 }
 
@@ -182,7 +180,10 @@ struct shape {
     int axes;
     bool (*holds)(const double *p, const double *at);
     double (*volume)(const double *p);
+    double slope, spread; /* of what is below a line: about it, evenly */
 };
+static const struct shape *drawn_shape;
+static double drawn_at[5];
 
 static bool along_axis(const double *p, const double *at)
 {
@@ -201,26 +202,11 @@ static double in_box_volume(const double *p)
 {
     return 4 * (0.05 + 0.2 * p[1]) * (0.05 + 0.2 * p[3]);
 }
-/* Below a line through (0.5, 0.3 ... 0.7) with a slope up to 0.55 either way: its mean height. */
-static bool below(const double *p, const double *at, double slope)
+/* Below a line through (0.5, 0.3 ... 0.7): its mean height; in space a prism over it. */
+static bool below(const double *p, const double *at)
 {
+    const double slope = drawn_shape->slope + drawn_shape->spread * (p[1] - 0.5);
     return at[1] < 0.3 + 0.4 * p[0] + slope * (at[0] - 0.5);
-}
-static bool under_any(const double *p, const double *at)
-{
-    return below(p, at, 1.1 * (p[1] - 0.5));
-}
-static bool under_flat(const double *p, const double *at)
-{
-    return below(p, at, 0.02 * (p[1] - 0.5));
-}
-static bool under_half(const double *p, const double *at)
-{
-    return below(p, at, 0.5);
-}
-static bool under_third(const double *p, const double *at)
-{
-    return below(p, at, 1 / 3.0);
 }
 static bool under_diagonal(const double *p, const double *at)
 {
@@ -248,29 +234,20 @@ static double in_ball_volume(const double *p)
 {
     return 4 * M_PI / 3 * pow(0.2 + 0.2 * p[2], 3);
 }
-/* A prism over a slanted edge. */
-static bool in_prism(const double *p, const double *at)
-{
-    return below(p, at, 1.1 * (p[1] - 0.5));
-}
-
 static const struct shape shapes[] = {
-    {"along an axis", 1, along_axis, along_axis_volume},
-    {"along an axis", 2, along_axis, along_axis_volume},
-    {"along an axis", 3, along_axis, along_axis_volume},
-    {"a box", 2, in_box, in_box_volume},
-    {"any slope", 2, under_any, along_axis_volume},
-    {"nearly along", 2, under_flat, along_axis_volume},
-    {"slope 1/2", 2, under_half, along_axis_volume},
-    {"slope 1/3", 2, under_third, along_axis_volume},
-    {"slope 1", 2, under_diagonal, under_diagonal_volume},
-    {"a disc", 2, in_disc, in_disc_volume},
-    {"a ball", 3, in_ball, in_ball_volume},
-    {"a prism", 3, in_prism, along_axis_volume},
+    {"along an axis", 1, along_axis, along_axis_volume, 0, 0},
+    {"along an axis", 2, along_axis, along_axis_volume, 0, 0},
+    {"along an axis", 3, along_axis, along_axis_volume, 0, 0},
+    {"a box", 2, in_box, in_box_volume, 0, 0},
+    {"any slope", 2, below, along_axis_volume, 0, 1.1},
+    {"nearly along", 2, below, along_axis_volume, 0, 0.02},
+    {"slope 1/2", 2, below, along_axis_volume, 1 / 2.0, 0},
+    {"slope 1/3", 2, below, along_axis_volume, 1 / 3.0, 0},
+    {"slope 1", 2, under_diagonal, under_diagonal_volume, 0, 0},
+    {"a disc", 2, in_disc, in_disc_volume, 0, 0},
+    {"a ball", 3, in_ball, in_ball_volume, 0, 0},
+    {"a prism", 3, below, along_axis_volume, 0, 1.1},
 };
-
-static const struct shape *drawn_shape;
-static double drawn_at[5];
 
 static enum results_kind drawn(const double *at)
 {
@@ -282,7 +259,7 @@ static enum results_kind drawn(const double *at)
 TEST(likely_errors_hold)
 {
     const bool patient = long_tests();
-    for (size_t k = 0; k < sizeof shapes / sizeof shapes[0]; k++) {
+    for (size_t k = 0; k < COUNT(shapes); k++) {
         const int tries = (patient ? 2000 : 300) / (shapes[k].axes == 3 ? 3 : 1);
         for (size_t n = 17; n <= (shapes[k].axes == 3 ? 17 : 65); n = 2 * n - 1) {
             uint64_t random = 7;
@@ -293,7 +270,7 @@ TEST(likely_errors_hold)
                 drawn_shape = &shapes[k];
                 for (int i = 0; i < 4; i++)
                     drawn_at[i] = uniform(&random, 0, 1);
-                struct drawn d = draw(shapes[k].axes, n, false, drawn);
+                DRAWN d = draw(shapes[k].axes, n, false, drawn);
                 const double wanted = shapes[k].volume(drawn_at);
                 assert_true(basin_map_volume(&d.map, RESULTS_STABILISED, &v));
                 const double own = basin_volume_reach(&v, 1.959964);
@@ -303,7 +280,6 @@ TEST(likely_errors_hold)
                                    basin_volume_reach(&v, basin_map_deviations(levels[l])) + 1e-9;
                 reach += own * (double)(n - 1) / tries;
                 assert_true(own <= fmax(v.high - v.estimate, v.estimate - v.low) + 1e-12);
-                erase(&d);
             }
             print_message("# %s, %zu places along %d: %.1f %% held, +- %.3f cells\n",
                           shapes[k].name, n, shapes[k].axes, 100 * held / tries, reach);
@@ -359,7 +335,7 @@ TEST(entropy_of_a_half_plane)
 
 TEST(entropy_of_coins_is_log_2)
 {
-    struct drawn d = draw(2, 500, true, coin);
+    DRAWN d = draw(2, 500, true, coin);
     struct basin_entropy e = {0};
     double expected = 0;
     /* Of 25 coins, exactly: a little below log 2. */
@@ -376,7 +352,6 @@ TEST(entropy_of_coins_is_log_2)
     e = (struct basin_entropy){0};
     basin_map_entropy(&d.map, 50, &e);
     assert_near(basin_boundary_entropy(&e), log(2), 0.001);
-    erase(&d);
 }
 
 /* Three colours in every box, and failed cases that belong to none. */
@@ -405,27 +380,25 @@ TEST(smooth_boundaries_have_exponent_1)
         size_t n;
         painter colour;
     } sets[] = {{1, 400, interval}, {2, 256, line}, {2, 256, disc}, {3, 96, sphere}};
-    for (size_t k = 0; k < sizeof sets / sizeof sets[0]; k++) {
-        struct drawn d = draw(sets[k].axes, sets[k].n, true, sets[k].colour);
+    for (size_t k = 0; k < COUNT(sets); k++) {
+        DRAWN d = draw(sets[k].axes, sets[k].n, true, sets[k].colour);
         assert_near(exponent_of(&d.map).alpha, 1, 0.05);
-        erase(&d);
     }
 }
 
 TEST(koch_curve_has_its_exponent)
 {
-    struct drawn d = draw(2, 729, true, koch);
+    DRAWN d = draw(2, 729, true, koch);
     const struct basin_exponent e = exponent_of(&d.map);
     print_message("Koch: alpha %.4f +- %.4f, wanted %.4f\n", e.alpha, e.error, 2 - log(4) / log(3));
     assert_near(e.alpha, 2 - log(4) / log(3), 0.03);
     assert_true(e.error > 0 && e.error < 0.05);
-    erase(&d);
 }
 
 TEST(cantor_stripes_have_their_exponent)
 {
     const double wanted = 1 - log(2) / log(3);
-    struct drawn d = draw(1, 59049, true, cantor);
+    DRAWN d = draw(1, 59049, true, cantor);
     struct basin_exponent e = exponent_of(&d.map);
     print_message("Cantor: alpha %.4f +- %.4f, wanted %.4f\n", e.alpha, e.error, wanted);
     assert_near(e.alpha, wanted, 0.03);
@@ -434,7 +407,6 @@ TEST(cantor_stripes_have_their_exponent)
     e = exponent_of(&d.map);
     print_message("Cantor stripes: alpha %.4f +- %.4f\n", e.alpha, e.error);
     assert_near(e.alpha, wanted, 0.05);
-    erase(&d);
 }
 
 TEST(too_small_or_empty_maps_have_none)
@@ -453,7 +425,7 @@ TEST(too_small_or_empty_maps_have_none)
 
 TEST(boundary_points_lie_on_the_boundary)
 {
-    struct drawn d = draw(2, 101, false, disc);
+    DRAWN d = draw(2, 101, false, disc);
     struct basin_crossing crossing = {.axis = -1};
     int count = 0;
     double farthest = 0; /* from the circle */
@@ -469,7 +441,6 @@ TEST(boundary_points_lie_on_the_boundary)
     /* A line of each row and each column between -0.35 and 0.35 crosses twice. */
     assert_in_range(count, 4 * 69, 4 * 71);
     assert_true(farthest <= 0.005 + 1e-9);
-    erase(&d);
 }
 
 TEST(distances_from_the_equilibrium)
@@ -555,8 +526,8 @@ TEST(the_part_about_the_equilibrium)
     } sets[] = {{1, 201, two_intervals, 0.42, 0.005},
                 {2, 201, disc_and_island, M_PI * 0.21 * 0.21, 0.001},
                 {3, 41, two_balls, 4 * M_PI / 3 * 0.21 * 0.21 * 0.21, 0.001}};
-    for (size_t k = 0; k < sizeof sets / sizeof sets[0]; k++) {
-        struct drawn d = draw(sets[k].axes, sets[k].n, false, sets[k].colour);
+    for (size_t k = 0; k < COUNT(sets); k++) {
+        DRAWN d = draw(sets[k].axes, sets[k].n, false, sets[k].colour);
         const size_t half = sets[k].n / 2, origin[] = {half, half, half}, corner[] = {0, 0, 0};
         const size_t last[] = {sets[k].n - 1, sets[k].n - 1, sets[k].n - 1};
         struct basin_part part;
@@ -587,7 +558,6 @@ TEST(the_part_about_the_equilibrium)
         d.kind[middle] = RESULTS_FELL;
         assert_true(basin_map_part(&d.map, RESULTS_STABILISED, origin, &part));
         assert_true(!part.inside && !part.unknown);
-        erase(&d);
     }
 }
 
@@ -617,13 +587,12 @@ TEST(likely_errors_of_the_part_hold)
             for (int i = 1; i < 4; i++)
                 drawn_at[i] = uniform(&random, 0, 1);
             drawn_at[4] = uniform(&random, 0.2, 0.3);
-            struct drawn d = draw(axes, n, false, ball_and_island);
+            DRAWN d = draw(axes, n, false, ball_and_island);
             const double wanted = unit_ball[axes - 1] * pow(drawn_at[4], axes);
             assert_true(basin_map_part(&d.map, RESULTS_STABILISED, origin, &part));
             const double own = basin_volume_reach(&part.volume, basin_map_deviations(0.95));
             held += fabs(part.volume.estimate - wanted) <= own + 1e-9;
             bounded += part.volume.low <= wanted && wanted <= part.volume.high;
-            erase(&d);
         }
         print_message("# part about the equilibrium, %d axes: %.1f %%, bounds %.1f %%\n", axes,
                       100.0 * held / tries, 100.0 * bounded / tries);

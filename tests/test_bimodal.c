@@ -2,7 +2,6 @@
  * a delay; without a push it is state feedback, to the bit; the same bits in all instruction sets,
  * whatever acts beside it. */
 #include "support.h"
-#include "tests.h"
 
 enum { STEPS = 300, STATES = 6 };
 
@@ -47,7 +46,7 @@ TEST(torques_bend)
     int sides[2] = {0}, cut = 0;
     for (int i = 0; i < 24; i++) {
         stance_case c = bent_case(&seed, i);
-        stance_trajectory t = trajectory_new(STEPS + 1, c.step);
+        TRAJECTORY t = trajectory_new(STEPS + 1, c.step);
         stance_result r;
         c.trajectory = &t;
         c.delay = i % 4 == 3 ? 2 : 0;
@@ -67,7 +66,6 @@ TEST(torques_bend)
                 cut += fabs(got) == c.torque_limit;
             }
         }
-        trajectory_free(&t);
     }
     print_message("# %d torques on the target's side, %d beyond, %d cut\n", sides[0], sides[1],
                   cut);
@@ -111,7 +109,7 @@ TEST(lanes_agree)
             cases[i].switch_axis[k] = 0.1;
         cases[i].tolerance = 1e-6;
     }
-    for (size_t m = 0; m < sizeof methods / sizeof *methods; m++) {
+    for (size_t m = 0; m < COUNT(methods); m++) {
         for (int i = 0; i < N; i++)
             run_cases(kernel_of(methods[m], "scalar"), &cases[i], &first[i], 1);
         for (int rank = 0; stance_isa(rank); rank++) {

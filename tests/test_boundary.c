@@ -1,11 +1,8 @@
 /* test_boundary.c - outlines run between all neighbours that differ, each once, and close to
  * boundaries that are known. */
 #include "support.h"
-#include "tests.h"
 
 #include "analysis/plot/boundary.h"
-
-#include <string.h>
 
 enum { SIDE = 48 };
 
@@ -15,7 +12,7 @@ static stance_message message;
  * many lines there are. */
 static size_t check_sides(const uint8_t *inside, size_t nx, size_t ny, struct boundary *b)
 {
-    uint8_t *met = calloc(2 * nx * ny, 1);
+    OWN uint8_t *met = calloc(2 * nx * ny, 1);
     size_t counted = 0, listed = 0;
     assert_true(boundary_trace(b, inside, nx, ny, &message));
     for (size_t l = 0; l < b->lines; l++) {
@@ -45,7 +42,6 @@ static size_t check_sides(const uint8_t *inside, size_t nx, size_t ny, struct bo
         }
     }
     assert_int_equal(counted, b->points);
-    free(met);
     return b->lines;
 }
 
@@ -103,7 +99,7 @@ static double dot(double x, double y)
 TEST(lines_are_smooth)
 {
     static const double slopes[] = {0, 0.03, 0.13, 0.37, 0.5, 0.83};
-    for (size_t k = 0; k < sizeof slopes / sizeof slopes[0]; k++) {
+    for (size_t k = 0; k < COUNT(slopes); k++) {
         slope = slopes[k];
         const double off = worst(half_plane, 1, false);
         print_message("# slope %g: off by %.3f cells\n", slope, off);

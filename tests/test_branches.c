@@ -2,7 +2,6 @@
  * slides, it leaves again, and each obeys every law. All methods take the same one, whatever the
  * step and the tolerance, count it, and follow the other on demand. */
 #include "support.h"
-#include "tests.h"
 
 static const struct {
     const char *method;
@@ -11,7 +10,7 @@ static const struct {
             {"capturing", 1e-3, 1e-7},     {"capturing", 1e-3, 1e-8}, {"capturing", 1e-3, 1e-9},
             {"capturing", 1e-2, 1e-8},     {"capturing", 1e-2, 1e-7}, {"implicit", 1e-4, 1},
             {"midpoint", 1e-4, 1}};
-enum { WAYS = sizeof ways / sizeof *ways };
+enum { WAYS = COUNT(ways) };
 
 static stance_case landing(int way, bool most)
 {

@@ -3,10 +3,6 @@
  * distribution, ranges as images of all numbers. */
 #include <float.h>
 #include <lapacke.h>
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "cases.h"
 #include "tests.h"
@@ -26,6 +22,12 @@ static int without_bounds(void **state)
     }
     return 0;
 }
+
+static void cma_gone(struct cma *const *s)
+{
+    cma_free(*s);
+}
+#define CMA FREED(cma_gone) struct cma
 
 static struct cma *made_within(const struct cma_start *start)
 {
@@ -138,17 +140,16 @@ TEST(evaluations)
         {"Rosenbrock", rosenbrock, 2, 9, 0, 0.5, 423},
         {"Rosenbrock", rosenbrock, 10, 5, 0, 0.5, 4990},
     };
-    for (size_t t = 0; t < sizeof table / sizeof *table; t++) {
+    for (size_t t = 0; t < COUNT(table); t++) {
         const int n = table[t].n;
         double mean[MOST], sum = 0;
         for (int j = 0; j < n; j++)
             mean[j] = table[t].start * (j % 2 ? 1 : -1);
         for (int seed = 1; seed <= table[t].seeds; seed++) {
-            struct cma *s = made(n, 0, mean, table[t].step, (uint64_t)seed);
+            CMA *s = made(n, 0, mean, table[t].step, (uint64_t)seed);
             while (generation(s, table[t].f) > 1e-9)
                 assert_true(s->generation < 10000);
             sum += (double)(s->generation * (uint64_t)s->lambda);
-            cma_free(s);
         }
         const double share = sum / table[t].seeds / table[t].expected;
         print_message("# %s of %d: %.0f candidates, %.2f of pycma's\n", table[t].name, n,
@@ -244,7 +245,7 @@ TEST(the_equations)
 {
     uint64_t random = 5;
     struct plain s = {.step = 0.3};
-    struct cma *cma = made(N, LAMBDA, s.m, s.step, 1);
+    CMA *cma = made(N, LAMBDA, s.m, s.step, 1);
     for (int j = 0; j < N; j++)
         s.c[j * N + j] = 1;
     for (int g = 0; g < 60; g++) {
@@ -268,7 +269,6 @@ TEST(the_equations)
             assert_true(fabs(cma->covariance[k] - s.c[k]) <
                         1e-10 * sqrt(s.c[k / N * N + k / N] * s.c[k % N * N + k % N]));
     }
-    cma_free(cma);
 }
 
 /* ---- what is asked --------------------------------------------------------------------------- */
@@ -281,7 +281,7 @@ TEST(asked_points)
     const double zero[n] = {0};
     double *x = malloc(sizeof(double[n]) * count), mean[n] = {0}, c[n * n] = {0};
     int within[n][2] = {0};
-    struct cma *s = made(n, count, zero, 0.5, 11);
+    CMA *s = made(n, count, zero, 0.5, 11);
     assert_non_null(x);
     for (int g = 0; g < 3; g++)
         generation(s, rotated_ellipsoid);
@@ -312,7 +312,6 @@ TEST(asked_points)
         const double product = own[k / n * (n + 1)] * own[k % n * (n + 1)];
         assert_true(fabs(c[k] - own[k]) < 5 * sqrt((product + own[k] * own[k]) / count));
     }
-    cma_free(s);
     free(x);
 }
 
@@ -326,7 +325,7 @@ TEST(independent)
     int64_t score[lambda] = {0};
     for (int r = 0; r < runs; r++) {
         const uint64_t seed = (uint64_t)r / 4, restart = (uint64_t)r / 2 % 2;
-        struct cma *s = made_within(
+        CMA *s = made_within(
             &(struct cma_start){n, lambda, zero, free_low, free_high, 1, seed, restart});
         cma_ask(s, z[r]);
         if (r % 2) { /* the second generation of what is still round */
@@ -337,12 +336,11 @@ TEST(independent)
             for (int i = 0; i < lambda * n; i++)
                 z[r][i] /= s->step * s->axis[0];
         }
-        cma_free(s);
     }
     const double *const all = z[0];
     const int count = runs * lambda * n,
               steps[] = {1, 2, 4, n, 2 * n, lambda * n, 2 * lambda * n, 4 * lambda * n};
-    for (size_t k = 0; k < sizeof steps / sizeof *steps; k++) {
+    for (size_t k = 0; k < COUNT(steps); k++) {
         double product = 0;
         for (int i = 0; i + steps[k] < count; i++) {
             product += all[i] * all[i + steps[k]];
@@ -372,7 +370,7 @@ TEST(same_bits)
             mean[j] = 1 + j;
         struct cma *a = made(n, 0, mean, 0.5, 3), *b = made(n, 0, mean, 0.5, 3),
                    *other = made(n, 0, mean, 0.5, 4);
-        struct cma *retold = made(n, 0, mean, 0.5, 99);
+        CMA *retold = made(n, 0, mean, 0.5, 99);
         uint64_t h[4] = {0};
         for (int g = 0; g < 30; g++) {
             double x[MOST * 16], y[MOST * 16];
@@ -398,7 +396,6 @@ TEST(same_bits)
         assert_true(h[0] == h[1] && h[0] == h[2] && h[0] != h[3]);
         cma_free(a);
         cma_free(b);
-        cma_free(retold);
         cma_free(other);
     }
 }
@@ -452,14 +449,13 @@ TEST(optimum_on_bounds)
                 within_low[j] = with && j % 4 ? -1 : -INFINITY;
                 within_high[j] = with && j < bound ? 0.5 : INFINITY;
             }
-            struct cma *s =
+            CMA *s =
                 made_within(&(struct cma_start){n, 0, mean, within_low, within_high, 0.5, 1, 0});
             for (double best = INFINITY; best > 1e-6; candidates[with] += s->lambda) {
                 best = generation(s, shifted_sphere);
                 shifted_sphere(n, s->mean); /* is within bounds, too */
                 assert_true(candidates[with] < 400 * n);
             }
-            cma_free(s);
         }
         print_message("# %d of %d coordinates at a bound: %d candidates, without bounds %d\n",
                       bound, n, candidates[1], candidates[0]);
@@ -484,7 +480,7 @@ TEST(narrow_ranges)
 {
     enum { n = 5 };
     const double mean[n] = {0, 1, 1, 0, 0.5}, low[n] = {0, 0, 0, 0, 0}, high[n] = {1, 1, 1, 1, 1};
-    struct cma *s = made_within(&(struct cma_start){n, 10, mean, low, high, 30, 5, 0});
+    CMA *s = made_within(&(struct cma_start){n, 10, mean, low, high, 30, 5, 0});
     for (int g = 0; cma_stop(s) != CMA_SMALL; g++) {
         assert_true(g < 500);
         for (int j = 0; j < n; j++)
@@ -492,7 +488,6 @@ TEST(narrow_ranges)
         generation(s, g < 150 ? nothing : shell);
     }
     assert_true(shell(n, s->mean) < 1e-3);
-    cma_free(s);
 }
 
 /* Every kind of range: within it, without jumps, slopes of at most 1, mirrored at each
@@ -503,7 +498,7 @@ TEST(image_of_a_range)
         {-1, 2, 0.1},          {-1, 2, 1.5},       {0, INFINITY, 0.5},
         {-INFINITY, 2, 0.25},  {5, 5.001, 0.0002}, {-INFINITY, INFINITY, 1},
         {-1e100, 1e100, 1e-3}, {-7, -6, 1e-9},     {0, 1e-100, 1e-101}};
-    for (size_t t = 0; t < sizeof table / sizeof *table; t++) {
+    for (size_t t = 0; t < COUNT(table); t++) {
         const struct bounds *const b = &table[t];
         const double unit = t == 8 ? 1e-100 : 1;
         double before = bounds_image(b, -10 * unit), most_x = -INFINITY, least_x = INFINITY;
@@ -556,13 +551,12 @@ TEST(plateaus)
         double mean[MOST];
         for (int j = 0; j < n; j++)
             mean[j] = 8 / sqrt(n);
-        struct cma *s = made(n, 0, mean, 0.3, 2);
+        CMA *s = made(n, 0, mean, 0.3, 2);
         int candidates = s->lambda;
         assert_true(lost_of_512(n, mean) > 512 - 25);
         for (; generation(s, lost_of_512) > 0; candidates += s->lambda)
             assert_true(candidates < 200 + 100 * n);
         print_message("# counts, %d coordinates: %d candidates\n", n, candidates);
-        cma_free(s);
     }
 }
 
@@ -573,13 +567,12 @@ TEST(flat)
     const double zero[n] = {0};
     double sum = 0, squares = 0;
     for (uint64_t seed = 0; seed < seeds; seed++) {
-        struct cma *s = made(n, lambda, zero, 1, seed);
+        CMA *s = made(n, lambda, zero, 1, seed);
         for (int g = 0; g < 200; g++)
             generation(s, nothing);
         const double far = log(s->step);
         sum += far;
         squares += far * far;
-        cma_free(s);
     }
     print_message("# flat, 200 generations: ln step %.2f +- %.2f\n", sum / seeds,
                   sqrt(squares) / seeds);
@@ -619,7 +612,7 @@ TEST(told_nonsense)
     const double zero[n] = {0}, low[n] = {-1, -INFINITY, -INFINITY},
                  high[n] = {1, INFINITY, INFINITY};
     const double nonsense[] = {NAN, INFINITY, -INFINITY, 1.5, 1e101};
-    struct cma *s = made_within(&(struct cma_start){n, lambda, zero, low, high, 0.1, 1, 0});
+    CMA *s = made_within(&(struct cma_start){n, lambda, zero, low, high, 0.1, 1, 0});
     double x[n * lambda];
     int64_t score[lambda] = {INT64_MIN, INT64_MAX, 0, -1, 1, INT64_MIN, INT64_MAX};
     uint64_t before = 0, after = 0;
@@ -637,7 +630,6 @@ TEST(told_nonsense)
     hash_state(s, &after);
     assert_true(before == after && s->generation == 1);
     assert_true(cma_tell(s, x, score) && s->generation == 2);
-    cma_free(s);
 }
 
 static void check_finite(const struct cma *s)
@@ -659,7 +651,7 @@ TEST(numbers_stay_finite)
     double x[n * lambda];
     int64_t score[lambda];
     for (int kind = 0; kind < 4; kind++) {
-        struct cma *s = made(n, lambda, zero, 1, 1);
+        CMA *s = made(n, lambda, zero, 1, 1);
         for (int g = 0; g < generations; g++) {
             cma_ask(s, x);
             for (int i = 0; i < lambda; i++) {
@@ -672,7 +664,6 @@ TEST(numbers_stay_finite)
         }
         check_finite(s);
         assert_true(cma_stop(s) != CMA_GOES_ON);
-        cma_free(s);
     }
 }
 
@@ -707,7 +698,7 @@ TEST(stops)
     } table[] = {{sphere, CMA_SMALL}, {two_scales, CMA_CONDITION}, {away, CMA_DIVERGED}};
     assert_string_equal(cma_stop_words[CMA_GOES_ON], "");
     for (int t = 0; t < 3; t++) {
-        struct cma *s = made(n, 0, ones, 0.1, 1);
+        CMA *s = made(n, 0, ones, 0.1, 1);
         assert_int_equal(cma_stop(s), CMA_GOES_ON);
         double wide = INFINITY; /* before the last generation */
         while (cma_stop(s) == CMA_GOES_ON) {
@@ -719,7 +710,6 @@ TEST(stops)
                       (int)s->generation);
         assert_int_equal(cma_stop(s), table[t].expected);
         assert_true(wide >= 1e-3 && (widest(s) < 1e-3) == (cma_stop(s) == CMA_SMALL));
-        cma_free(s);
     }
 }
 

@@ -7,14 +7,13 @@
  */
 #include "random_mechanism.h"
 #include "scratch.h"
-#include "tests.h"
 
 #include "runner/objects/objects.h"
 
 enum { MOST_CASES = 2000 };
 
 static const char *const method_name[] = {"capturing", "midpoint", "implicit", "lagrange"};
-enum { METHODS = sizeof method_name / sizeof method_name[0] };
+enum { METHODS = COUNT(method_name) };
 
 /* Let go at rest, or nearly so, on one support after the other, the posture as it was thrown. */
 static void let_go(const stance_scene *scene, int k, stance_case *c)
@@ -90,7 +89,7 @@ static long compare_mechanism(int tree, const char *method, const char *isa, int
 {
     char tables[STANCE_TREE_TEXT];
     const struct parallel alone = parallel_alone();
-    stance_scene *const scene = random_scene(tree, tree % 2 ? 0.4 : 0);
+    SCENE *scene = random_scene(tree, tree % 2 ? 0.4 : 0);
     struct object object;
     stance_message message;
     const struct objects_wanted wanted = {stance_method_find(method), isa, NULL};
@@ -104,7 +103,6 @@ static long compare_mechanism(int tree, const char *method, const char *isa, int
         print_message("# mechanism %d, %s, %s: %ld of %d cases differ\n", tree, method, isa, differ,
                       count);
     objects_release(&object, 1);
-    stance_scene_free(scene);
     return differ;
 }
 

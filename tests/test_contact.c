@@ -7,7 +7,6 @@
 #include "engine/methods/implicit.c"
 #define DENSE_ROWS 4
 #include "contact_modes.h"
-#include "tests.h"
 
 /* Two feet on the ground at random, H A^-1 H^T of them. The angles couple to the hip alone. */
 static void random_feet(const double *robot, uint64_t *seed, const struct family *f,

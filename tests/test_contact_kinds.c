@@ -21,7 +21,6 @@ static const int scene_other[SCENE_CONTACTS] = {-1, -1, -1, -1, -1, -1, 7, 6, 9,
 #include "engine/core/contact/solve.h"
 #define DENSE_ROWS 18
 #include "contact_modes.h"
-#include "tests.h"
 
 enum { M = 12 };
 

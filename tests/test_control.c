@@ -2,7 +2,6 @@
  * control.json (other equations, other libraries: see control.py), closed formulas and the figures
  * that were published for the default robot. */
 #include "linear.h"
-#include "tests.h"
 
 #define REFERENCE "tests/reference/control.json"
 
@@ -23,14 +22,14 @@ static stance_robustness place(const stance_plant *plant, const stance_poles *po
 static int rank_of(const stance_plant *plant, double *sv)
 {
     int rank;
-    assert_int_equal(stance_kalman(plant, sv, &rank), STANCE_OK);
+    OK(stance_kalman(plant, sv, &rank));
     return rank;
 }
 
 static double critical(const stance_plant *plant, const double *K, double longest)
 {
     double T;
-    assert_int_equal(stance_critical_sample_time(plant, SAMPLING(K, 0, 0), longest, &T), STANCE_OK);
+    OK(stance_critical_sample_time(plant, SAMPLING(K, 0, 0), longest, &T));
     return T;
 }
 
@@ -38,7 +37,7 @@ static double critical(const stance_plant *plant, const double *K, double longes
 static stance_equilibrium paper_plant(double A[36], double B[12])
 {
     const stance_equilibrium e = equilibrium_of(DEFAULT_ROBOT, 0, -0.41, NAN, 0.82, false);
-    assert_int_equal(biped()->linearise(biped(), DEFAULT_ROBOT, &e, A, B), STANCE_OK);
+    OK(biped()->linearise(biped(), DEFAULT_ROBOT, &e, A, B));
     return e;
 }
 
@@ -46,14 +45,6 @@ static stance_equilibrium paper_plant(double A[36], double B[12])
 static double eigenvalue_tolerance(const char *name)
 {
     return strcmp(name, "right angle") == 0 ? 1e-3 : 1e-9;
-}
-
-static void poles_of(const json_t *record, const char *key, double re[6], double im[6])
-{
-    double pairs[12];
-    matrix_of(record, key, 6, 2, pairs);
-    for (int i = 0; i < 6; i++)
-        re[i] = pairs[2 * i], im[i] = pairs[2 * i + 1];
 }
 
 static void compare_design(const json_t *record, const char *name, const double *A, const double *B)
@@ -96,7 +87,7 @@ static void compare_case(const json_t *record)
         assert_near(e.position[i], position[i], 1e-12, name);
     assert_matrix(2, e.torque, torque, 1e-12, name);
 
-    assert_int_equal(biped()->linearise(biped(), robot, &e, A, B), STANCE_OK);
+    OK(biped()->linearise(biped(), robot, &e, A, B));
     assert_matrix(36, A, wanted_A, 1e-12, name);
     assert_matrix(12, B, wanted_B, 1e-12, name);
     assert_eigenvalues(6, A, re, im, eigenvalue_tolerance(name), name);
@@ -107,7 +98,7 @@ static void compare_case(const json_t *record)
 
 TEST(reference_cases)
 {
-    json_t *root = reference_load(REFERENCE);
+    JSON *root = reference_load(REFERENCE);
     const json_t *cases = json_object_get(root, "cases");
     size_t i;
     json_t *record;
@@ -116,7 +107,6 @@ TEST(reference_cases)
     {
         compare_case(record);
     }
-    json_decref(root);
 }
 
 /* What is known of the default robot on one foot, to the digits known. */
@@ -264,7 +254,7 @@ TEST(equilibrium_messages)
          STANCE_BAD_ARGUMENT,
          "an equilibrium's q2 must lie within +-1000"},
     };
-    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
+    for (size_t i = 0; i < COUNT(wrong); i++) {
         stance_equilibrium e;
         stance_message message = {""};
         assert_int_equal(
@@ -280,10 +270,10 @@ TEST(equilibrium_messages)
     const stance_equilibrium_choice any = {1, {NAN, M_PI, 0}, 0};
     stance_equilibrium e;
     stance_message message = {""};
-    assert_int_equal(biped()->equilibrium(biped(), even, &any, &e, &message), STANCE_OK);
+    OK(biped()->equilibrium(biped(), even, &any, &e, &message));
     assert_int_equal(e.undetermined, 0);
     const double neutral[STANCE_MAX_ROBOT] = {0.5, 2, 1, 1, 1, [STANCE_ROBOT_GRAVITY] = 9.81};
-    assert_int_equal(biped()->equilibrium(biped(), neutral, &any, &e, &message), STANCE_OK);
+    OK(biped()->equilibrium(biped(), neutral, &any, &e, &message));
     assert_int_equal(e.undetermined, 1);
 }
 
@@ -329,8 +319,7 @@ TEST(single_input)
     const double re[3] = {-1, -2, -2}, im[3] = {0, 3, -3}; /* (s + 1)(s^2 + 4 s + 13) */
     const double wanted[3] = {(2 + 13) / 2.0, (-3 + 17) / 2.0, (4 + 5) / 2.0};
     double K[3];
-    assert_int_equal(
-        stance_place(STANCE_ROBUST, PLANT(3, 1, A, B), 0, POLES(re, im), K, NULL, NULL), STANCE_OK);
+    OK(stance_place(STANCE_ROBUST, PLANT(3, 1, A, B), 0, POLES(re, im), K, NULL, NULL));
     assert_matrix(3, K, wanted, 1e-12, "companion form");
 }
 
@@ -407,7 +396,7 @@ TEST(placement_messages)
         {&empty, STANCE_BAD_ARGUMENT, {0}, {0}, "a design needs 1 to 32 states and inputs"},
         {&not_finite, STANCE_BAD_ARGUMENT, {-1, -2, -3}, {0}, "A and B must be finite"},
     };
-    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
+    for (size_t i = 0; i < COUNT(wrong); i++) {
         double K[6];
         stance_message message = {""};
         assert_int_equal(stance_place(STANCE_ROBUST, wrong[i].plant, 0,
@@ -437,7 +426,7 @@ TEST(eigenvalues_are_sorted)
     const double A[25] = {[0] = 3, [6] = -1, [7] = 2, [11] = -2, [12] = -1, [18] = -7, [24] = -1};
     const double wanted_re[5] = {-7, -1, -1, -1, 3}, wanted_im[5] = {0, -2, 0, 2, 0};
     double re[5], im[5];
-    assert_int_equal(stance_eigenvalues(5, A, re, im), STANCE_OK);
+    OK(stance_eigenvalues(5, A, re, im));
     for (int i = 0; i < 5; i++) {
         assert_near(re[i], wanted_re[i], 1e-14, "real part");
         assert_near(im[i], wanted_im[i], 1e-14, "imaginary part");
@@ -472,12 +461,12 @@ TEST(discretisation)
     const double wanted_B[3] = {(1 - cos(w * T)) / (w * w), sin(w * T) / w,
                                 4 * (1 - exp(-0.5 * T))};
     double Ad[9], Bd[3], stiff_A[1] = {-2000}, stiff_B[1] = {3};
-    assert_int_equal(stance_discretise(PLANT(3, 1, A, B), T, Ad, Bd), STANCE_OK);
+    OK(stance_discretise(PLANT(3, 1, A, B), T, Ad, Bd));
     assert_matrix(9, Ad, wanted_A, 2e-15, "Ad");
     assert_matrix(3, Bd, wanted_B, 2e-15, "Bd");
-    assert_int_equal(stance_discretise(PLANT(3, 1, A, B), 0, Ad, Bd), STANCE_OK);
+    OK(stance_discretise(PLANT(3, 1, A, B), 0, Ad, Bd));
     assert_true(Ad[0] == 1 && Ad[1] == 0 && Bd[1] == 0);
-    assert_int_equal(stance_discretise(PLANT(1, 1, stiff_A, stiff_B), 0.5, Ad, Bd), STANCE_OK);
+    OK(stance_discretise(PLANT(1, 1, stiff_A, stiff_B), 0.5, Ad, Bd));
     assert_near(Ad[0], 0, 1e-15, "stiff Ad");
     assert_near(Bd[0], 0.0015, 1e-15, "stiff Bd");
     assert_int_equal(stance_discretise(PLANT(3, 1, A, B), -1, Ad, Bd), STANCE_BAD_ARGUMENT);
@@ -520,9 +509,9 @@ TEST(first_crossing)
         double first = INFINITY, Ad[4], Bd[2], loop[4], re[2], im[2];
         const double T = critical(PLANT(2, 1, A, B), K, 4);
         for (int k = 1; k <= 40000 && isinf(first); k++) {
-            assert_int_equal(stance_discretise(PLANT(2, 1, A, B), 1e-4 * k, Ad, Bd), STANCE_OK);
+            OK(stance_discretise(PLANT(2, 1, A, B), 1e-4 * k, Ad, Bd));
             closed_loop(2, 1, Ad, Bd, K, loop);
-            assert_int_equal(stance_eigenvalues(2, loop, re, im), STANCE_OK);
+            OK(stance_eigenvalues(2, loop, re, im));
             if (hypot(re[0], im[0]) > 1 + 1e-12 || hypot(re[1], im[1]) > 1 + 1e-12)
                 first = 1e-4 * k;
         }

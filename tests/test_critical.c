@@ -4,7 +4,6 @@
  */
 #include "runner/base/command.h"
 #include "support.h"
-#include "tests.h"
 
 #include "analysis/critical/critical.h"
 
@@ -166,7 +165,7 @@ TEST(brackets_are_exact)
         {"ullll", CRITICAL_LOST, NAN, 10, 1, 0},     {"klukl", CRITICAL_LOST, 0, 10, 0, 1},
     };
     const struct critical_choice choice = {0.9, 0.95};
-    for (size_t k = 0; k < sizeof rows / sizeof rows[0]; k++) {
+    for (size_t k = 0; k < COUNT(rows); k++) {
         const struct critical_line line = word_line(rows[k].word);
         const struct critical_value found = critical_find(&line, &choice);
         struct critical_island island;
@@ -205,6 +204,6 @@ TEST(ranges_are_read)
     assert_true(option_range("robot.points.p.force[0]=-1e1..2.5", path, ends));
     assert_string_equal(path, "robot.points.p.force[0]");
     assert_true(ends[0] == -10 && ends[1] == 2.5);
-    for (size_t k = 0; k < sizeof bad / sizeof bad[0]; k++)
+    for (size_t k = 0; k < COUNT(bad); k++)
         assert_false(option_range(bad[k], path, ends));
 }

@@ -1,7 +1,6 @@
 /* The decoupling law: every pair of coordinates follows the error dynamics that it promises, in
  * flight and on a foot; singular postures, torque limits, delays, switching; lanes. */
 #include "support.h"
-#include "tests.h"
 
 enum { PAIRS = 10, HORIZON = 20 };
 
@@ -39,15 +38,11 @@ static stance_case pair_case(int pair, const double *posture, bool stands, doubl
     if (stands)
         biped()->stand(biped(), c.robot, 1, c.position, c.velocity);
     assert_true(stance_selection(biped(), pair, controlled));
-    for (int i = 0; i < 2; i++)
-        c.servo[i] = (stance_servo){.coordinate = controlled[i],
-                                    .setpoint = c.position[controlled[i]] + (i ? -0.05 : 0.05),
-                                    .ramp = 0.1,
-                                    .duration = INFINITY,
-                                    .kp = 100,
-                                    .ki = ki,
-                                    .kd = 12,
-                                    .integral_limit = INFINITY};
+    for (int i = 0; i < 2; i++) {
+        const double setpoint = c.position[controlled[i]] + (i ? -0.05 : 0.05);
+        c.servo[i] = servo_of(controlled[i], setpoint, 0.1, 100, 12);
+        c.servo[i].ki = ki;
+    }
     return c;
 }
 
@@ -239,9 +234,7 @@ TEST(singular_is_survived)
 TEST(integrals_are_bounded)
 {
     stance_case c = pair_case(9, flight[9], false, 50);
-    stance_trajectory t = {.interval = 0.01, .rows = 601};
-    double position[601 * 5], velocity[601 * 5], torque[601 * 2], force[601 * 4], gap[601 * 2];
-    t.position = position, t.velocity = velocity, t.torque = torque, t.force = force, t.gap = gap;
+    TRAJECTORY t = trajectory_new(601, 0.01);
     c.trajectory = &t;
     c.steps = 600;
     c.sample_every = 1;
@@ -256,7 +249,7 @@ TEST(integrals_are_bounded)
     const stance_result r = run_one("capturing", &c);
     double beyond = 0;
     for (int k = 0; k < 601; k++)
-        beyond = fmax(position[5 * k + 3] - c.servo[0].setpoint, beyond);
+        beyond = fmax(t.position[5 * k + 3] - c.servo[0].setpoint, beyond);
     const double settled = fabs(r.position[3] - c.servo[0].setpoint);
     print_message("# weak robot: overshoots 1 rad by %.3f, %.1e off at the end\n", beyond, settled);
     assert_true(settled < 0.02 && beyond < 0.5);
@@ -269,12 +262,12 @@ TEST(delay_shortens)
     stance_case c = balance_case(1e-6, 0);
     const stance_equilibrium equilibrium = equilibrium_at(&c);
     double A[36], B[12], Ad[36], Bd[12], loop[64], re[8], im[8], low = 1e-3, high = 0.3;
-    assert_int_equal(biped()->linearise(biped(), c.robot, &equilibrium, A, B), STANCE_OK);
+    OK(biped()->linearise(biped(), c.robot, &equilibrium, A, B));
     for (int round = 0; round < 50; round++) {
         const double T = 0.5 * (low + high);
         double radius = 0;
         memset(loop, 0, sizeof loop);
-        assert_int_equal(stance_discretise(PLANT(6, 2, A, B), T, Ad, Bd), STANCE_OK);
+        OK(stance_discretise(PLANT(6, 2, A, B), T, Ad, Bd));
         for (int i = 0; i < 6; i++) {
             for (int j = 0; j < 6; j++)
                 loop[8 * i + j] = Ad[6 * i + j];
@@ -283,7 +276,7 @@ TEST(delay_shortens)
                 loop[8 * (6 + j) + i] = -c.near.gain[j][i];
             }
         }
-        assert_int_equal(stance_eigenvalues(8, loop, re, im), STANCE_OK);
+        OK(stance_eigenvalues(8, loop, re, im));
         for (int i = 0; i < 8; i++)
             radius = fmax(hypot(re[i], im[i]), radius);
         *(radius < 1 ? &low : &high) = T;
@@ -374,13 +367,7 @@ TEST(missing_reactions_are_counted)
         {-0.027900303337982404, -0.6985898307250517, 17.396477629613372, 0.19566017114806267},
         {-0.16441600848265628, 0.5516669716449893, 1.9723770124414375, 4.168654800320388}};
     for (int i = 0; i < 2; i++)
-        c.servo[i] = (stance_servo){.coordinate = 2 * i,
-                                    .setpoint = servo[i][0],
-                                    .ramp = servo[i][1],
-                                    .duration = INFINITY,
-                                    .kp = servo[i][2],
-                                    .kd = servo[i][3],
-                                    .integral_limit = INFINITY};
+        c.servo[i] = servo_of(2 * i, servo[i][0], servo[i][1], servo[i][2], servo[i][3]);
     const stance_result r = run_done("capturing", &c);
     assert_true(fabs(r.peak_torque - 131.63153345) < 1e-7);
     assert_int_equal(r.degraded_samples, 1);

@@ -1,11 +1,8 @@
 /* test_descend.c - the nearest point of boundaries whose nearest point is known: ellipsoids of any
  * orientation in two to six dimensions, a polytope, a set with several dips. */
 #include "support.h"
-#include "tests.h"
 
 #include "analysis/basin/basin_descend.h"
-
-#include <string.h>
 
 enum { MOST = 6, STARTS = 8, RAYS = 512 };
 
@@ -140,7 +137,7 @@ TEST(ellipsoids)
     static const double kinds[][MOST] = {
         {1, 1.2, 1.5, 2, 2.5, 3}, {0.5, 1, 2, 4, 6, 8}, {1, 1.05, 5, 5, 5, 5}, {2, 2, 2, 2, 2, 2}};
     uint64_t random = 5;
-    for (size_t kind = 0; kind < sizeof kinds / sizeof kinds[0]; kind++) {
+    for (size_t kind = 0; kind < COUNT(kinds); kind++) {
         for (int n = 2; n <= MOST; n++) {
             double worst = 0, rays_off = 0, asked = 0;
             size_t agree = 0;

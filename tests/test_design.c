@@ -2,7 +2,6 @@
  * force on the foot, against tests/reference/design.json (other equations, other libraries: see
  * design.py), closed formulas and a simulation. */
 #include "linear.h"
-#include "tests.h"
 
 #define REFERENCE "tests/reference/design.json"
 
@@ -25,9 +24,7 @@ static double number_of(const struct sample *s, const char *key)
 
 static void for_each_record(void (*check)(const struct sample *s))
 {
-    json_error_t error;
-    json_t *root = json_load_file(REFERENCE, 0, &error);
-    assert_non_null(root);
+    JSON *root = reference_load(REFERENCE);
     const json_t *cases = json_object_get(root, "cases");
     assert_int_equal(json_array_size(cases), 15);
     for (size_t i = 0; i < json_array_size(cases); i++) {
@@ -42,26 +39,24 @@ static void for_each_record(void (*check)(const struct sample *s))
         s.T = number_of(&s, "sample_time");
         s.equilibrium = equilibrium_of(s.robot, (int)number_of(&s, "support"), given[0], given[1],
                                        given[2], false);
-        assert_int_equal(biped()->linearise(biped(), s.robot, &s.equilibrium, s.A, s.B), STANCE_OK);
+        OK(biped()->linearise(biped(), s.robot, &s.equilibrium, s.A, s.B));
         check(&s);
     }
-    json_decref(root);
 }
 
-static void eigenvalues_of(const struct sample *s, const char *key, double *re, double *im)
-{
-    double both[2 * N];
-    matrix_of(s->record, key, N, 2, both);
-    for (int i = 0; i < N; i++) {
-        re[i] = both[2 * i];
-        im[i] = both[2 * i + 1];
-    }
-}
+/* A test of each record, s. */
+#define RECORDS(name)                                                                              \
+    static void check_##name(const struct sample *s);                                              \
+    TEST(name)                                                                                     \
+    {                                                                                              \
+        for_each_record(check_##name);                                                             \
+    }                                                                                              \
+    static void check_##name(const struct sample *s)
 
 static void sampled_closed_loop(const struct sample *s, const double *K, double *loop)
 {
     double Ad[N * N], Bd[N * M];
-    assert_int_equal(stance_discretise(PLANT_OF(s), s->T, Ad, Bd), STANCE_OK);
+    OK(stance_discretise(PLANT_OF(s), s->T, Ad, Bd));
     closed_loop(N, M, Ad, Bd, K, loop);
 }
 
@@ -73,7 +68,7 @@ static void sampled_closed_loop(const struct sample *s, const double *K, double 
 
 /* ---- regulators ------------------------------------------------------------------------------ */
 
-static void check_regulator(const struct sample *s)
+RECORDS(regulators)
 {
     double K[M * N], wanted[M * N], loop[N * N], re[N], im[N];
     stance_message message = {""};
@@ -82,24 +77,19 @@ static void check_regulator(const struct sample *s)
     matrix_of(s->record, "gain", M, N, wanted);
     assert_matrix(M * N, K, wanted, 2e-10, s->name);
     closed_loop(N, M, s->A, s->B, K, loop);
-    eigenvalues_of(s, "eigenvalues", re, im);
+    poles_of(s->record, "eigenvalues", re, im);
     assert_eigenvalues(N, loop, re, im, 1e-7, s->name);
 
     TRY(stance_lqr(PLANT_OF(s), s->T, s->states, s->torques, K, &message), message);
     matrix_of(s->record, "sampled_gain", M, N, wanted);
     assert_matrix(M * N, K, wanted, 2e-10, s->name);
     sampled_closed_loop(s, K, loop);
-    eigenvalues_of(s, "sampled_eigenvalues", re, im);
+    poles_of(s->record, "sampled_eigenvalues", re, im);
     assert_eigenvalues(N, loop, re, im, 1e-9, s->name);
 }
 
-TEST(regulators)
-{
-    for_each_record(check_regulator);
-}
-
 /* As T goes to 0 the sampled regulator tends to the continuous one, linearly. */
-static void check_limit(const struct sample *s)
+RECORDS(regulator_limits)
 {
     double K[M * N], sampled[M * N], distance[2];
     const double T[2] = {2e-4, 1e-4};
@@ -114,17 +104,12 @@ static void check_limit(const struct sample *s)
     assert_near(distance[0] / distance[1], 2, 0.1, s->name);
 }
 
-TEST(regulator_limits)
-{
-    for_each_record(check_limit);
-}
-
 /* x' = a x + u: k = a + sqrt(a^2 + q/r); sampled, the scalar equation is a quadratic. */
 TEST(scalar_regulator)
 {
     const double a = 1.5, b = 1, q = 3, r = 0.5, T = 0.4, e = exp(a * T), bd = (e - 1) / a;
     double k;
-    assert_int_equal(stance_lqr(PLANT(1, 1, &a, &b), 0, &q, &r, &k, NULL), STANCE_OK);
+    OK(stance_lqr(PLANT(1, 1, &a, &b), 0, &q, &r, &k, NULL));
     assert_near(k, a + sqrt(a * a + q / r), 1e-13, "continuous");
     /* x = e^(at) x0 + (e^(at) - 1)/a u */
     const double qd = q * (e * e - 1) / (2 * a), sd = q * ((e * e - 1) / (2 * a) - (e - 1) / a) / a,
@@ -134,7 +119,7 @@ TEST(scalar_regulator)
         const double cross = sd + e * x * bd;
         x = e * e * x - cross * cross / (rd + bd * bd * x) + qd;
     }
-    assert_int_equal(stance_lqr(PLANT(1, 1, &a, &b), T, &q, &r, &k, NULL), STANCE_OK);
+    OK(stance_lqr(PLANT(1, 1, &a, &b), T, &q, &r, &k, NULL));
     assert_near(k, (sd + e * x * bd) / (rd + bd * bd * x), 1e-12, "sampled");
 }
 
@@ -175,14 +160,14 @@ TEST(regulator_messages)
 
 /* ---- poles ----------------------------------------------------------------------------------- */
 
-static void check_placement(const struct sample *s)
+RECORDS(placements)
 {
     double K[M * N], loop[N * N], re[N], im[N], zre[N], zim[N];
     stance_robustness got;
     stance_message message = {""};
 
-    eigenvalues_of(s, "poles", re, im);
-    eigenvalues_of(s, "sampled_poles", zre, zim);
+    poles_of(s->record, "poles", re, im);
+    poles_of(s->record, "sampled_poles", zre, zim);
     TRY(stance_place(STANCE_SCHUR, PLANT_OF(s), 0, POLES(re, im), K, NULL, &message), message);
     closed_loop(N, M, s->A, s->B, K, loop);
     assert_eigenvalues(N, loop, re, im, 1e-6, s->name);
@@ -196,19 +181,14 @@ static void check_placement(const struct sample *s)
     assert_true(got.sweeps > 0 && got.condition >= 1);
 }
 
-TEST(placements)
-{
-    for_each_record(check_placement);
-}
-
 /* As T goes to 0 the gains of the sampled model tend to those of continuous time, linearly: the
  * robust ones too, which come as twins. At the right angle they are not even isolated. */
-static void check_placement_limit(const struct sample *s)
+RECORDS(placement_limits)
 {
     double K[M * N], sampled[M * N], re[N], im[N], distance[2];
     const double T[2] = {1e-4, 5e-5};
     stance_message message = {""};
-    eigenvalues_of(s, "poles", re, im);
+    poles_of(s->record, "poles", re, im);
     for (int real = 0; real < 2; real++) {
         if (strstr(s->name, "right angle"))
             continue;
@@ -229,11 +209,6 @@ static void check_placement_limit(const struct sample *s)
     }
 }
 
-TEST(placement_limits)
-{
-    for_each_record(check_placement_limit);
-}
-
 /* With one input the gain is unique: Ackermann's formula for a double integrator held over T. */
 TEST(sampled_double_integrator)
 {
@@ -243,9 +218,7 @@ TEST(sampled_double_integrator)
         const double a = -expm1(-T[k]), b = -expm1(-2 * T[k]); /* 1 - z */
         double K[2];
         for (int how = STANCE_ROBUST; how <= STANCE_SCHUR; how++) {
-            assert_int_equal(
-                stance_place(how, PLANT(2, 1, A, B), T[k], POLES(re, im), K, NULL, NULL),
-                STANCE_OK);
+            OK(stance_place(how, PLANT(2, 1, A, B), T[k], POLES(re, im), K, NULL, NULL));
             assert_near(K[0], a * b / (T[k] * T[k]), 1e-11 * fabs(K[0]), "position");
             assert_near(K[1], (a + b - a * b / 2) / T[k], 1e-11 * fabs(K[1]), "rate");
         }
@@ -277,9 +250,8 @@ TEST(placement_messages)
     assert_text(message.text, "the pair (A, B) is not controllable: no input reaches the mode with "
                               "eigenvalue 2");
     /* More often than inputs: the Schur method does not mind. */
-    assert_int_equal(stance_place(STANCE_SCHUR, PLANT(2, 1, A, B), 0, POLES((double[]){-2, -2}, im),
-                                  K, NULL, &message),
-                     STANCE_OK);
+    OK(stance_place(STANCE_SCHUR, PLANT(2, 1, A, B), 0, POLES((double[]){-2, -2}, im), K, NULL,
+                    &message));
     assert_near(K[0], 4, 1e-12, "double pole");
     assert_near(K[1], 4, 1e-12, "double pole");
 }
@@ -294,16 +266,13 @@ TEST(schur_is_steady)
     stance_message message;
     stance_robot_fallback(biped(), robot);
     const stance_equilibrium e = equilibrium_of(robot, 0, -0.41, NAN, 0.82, false);
-    assert_int_equal(biped()->linearise(biped(), robot, &e, A, B), STANCE_OK);
-    assert_int_equal(
-        stance_place(STANCE_SCHUR, PLANT(N, M, A, B), 0, POLES(re, im), K[0], NULL, &message),
-        STANCE_OK);
+    OK(biped()->linearise(biped(), robot, &e, A, B));
+    OK(stance_place(STANCE_SCHUR, PLANT(N, M, A, B), 0, POLES(re, im), K[0], NULL, &message));
     for (int round = 0; round < 50; round++) {
         for (int i = 0; i < N * N; i++)
             rounded[i] = A[i] * (1 + uniform(&seed, -1e-15, 1e-15));
-        assert_int_equal(stance_place(STANCE_SCHUR, PLANT(N, M, rounded, B), 0, POLES(re, im), K[1],
-                                      NULL, &message),
-                         STANCE_OK);
+        OK(stance_place(STANCE_SCHUR, PLANT(N, M, rounded, B), 0, POLES(re, im), K[1], NULL,
+                        &message));
         for (int i = 0; i < N * M; i++)
             assert_near(K[1][i], K[0][i], 1e-9, "gain");
     }
@@ -323,8 +292,8 @@ TEST(uncontrollable_equilibrium)
     int rank;
     stance_message message;
     const stance_equilibrium e = equilibrium_of(robot, 0, NAN, level, level, false);
-    assert_int_equal(biped()->linearise(biped(), robot, &e, A, B), STANCE_OK);
-    assert_int_equal(stance_kalman(PLANT(N, M, A, B), sv, &rank), STANCE_OK);
+    OK(biped()->linearise(biped(), robot, &e, A, B));
+    OK(stance_kalman(PLANT(N, M, A, B), sv, &rank));
     assert_int_equal(rank, 4);
     const double rate = sqrt(9.81 * cos(M_PI / 6) / 1.75);
     char wanted[64];
@@ -350,7 +319,7 @@ TEST(uncontrollable_equilibrium)
 
 /* ---- sampled loops --------------------------------------------------------------------------- */
 
-static void check_critical(const struct sample *s)
+RECORDS(critical_sample_times)
 {
     static const char *const gains[2] = {"gain", "sampled_gain"};
     static const char *const keys[2] = {"critical", "sampled_critical"};
@@ -359,23 +328,17 @@ static void check_critical(const struct sample *s)
         matrix_of(s->record, gains[g], M, N, K);
         for (int delay = 0; delay < 2; delay++) {
             const double wanted = number_at(json_object_get(s->record, keys[g]), (size_t)delay);
-            assert_int_equal(
-                stance_critical_sample_time(PLANT_OF(s), SAMPLING(K, 0, delay), 10, &T), STANCE_OK);
+            OK(stance_critical_sample_time(PLANT_OF(s), SAMPLING(K, 0, delay), 10, &T));
             if (isnan(wanted))
                 assert_true(T == 0 || isinf(T));
             else
                 assert_near(T, wanted, 1e-8 * wanted, s->name);
         }
     }
-    assert_int_equal(stance_sampled_loop(PLANT_OF(s), SAMPLING(K, s->T, 1), re, im), STANCE_OK);
+    OK(stance_sampled_loop(PLANT_OF(s), SAMPLING(K, s->T, 1), re, im));
     for (int i = 0; i < N + M; i++)
         radius = fmax(radius, hypot(re[i], im[i]));
     assert_near(radius, number_of(s, "delayed_radius"), 1e-9, s->name);
-}
-
-TEST(critical_sample_times)
-{
-    for_each_record(check_critical);
 }
 
 /* x' = u = -k x: z = 1 - kT, lost at kT = 2; a sample late, z^2 - z + kT = 0, lost at kT = 1; d
@@ -385,22 +348,17 @@ TEST(delayed_integrator)
 {
     const double a = 0, b = 1, k = 4;
     double T, re[2], im[2];
-    assert_int_equal(stance_critical_sample_time(PLANT(1, 1, &a, &b), SAMPLING(&k, 0, 0), 10, &T),
-                     STANCE_OK);
+    OK(stance_critical_sample_time(PLANT(1, 1, &a, &b), SAMPLING(&k, 0, 0), 10, &T));
     assert_near(T, 0.5, 1e-14, "at once");
-    assert_int_equal(stance_critical_sample_time(PLANT(1, 1, &a, &b), SAMPLING(&k, 0, 1), 10, &T),
-                     STANCE_OK);
+    OK(stance_critical_sample_time(PLANT(1, 1, &a, &b), SAMPLING(&k, 0, 1), 10, &T));
     assert_near(T, 0.25, 1e-14, "a sample late");
-    assert_int_equal(stance_sampled_loop(PLANT(1, 1, &a, &b), SAMPLING(&k, 0.125, 1), re, im),
-                     STANCE_OK);
+    OK(stance_sampled_loop(PLANT(1, 1, &a, &b), SAMPLING(&k, 0.125, 1), re, im));
     assert_near(re[0], 0.5, 1e-14, "real part");
     assert_near(im[0], -0.5, 1e-14, "imaginary part");
     assert_int_equal(stance_sampled_loop(PLANT(1, 1, &a, &b), SAMPLING(&k, 0.125, -1), re, im),
                      STANCE_BAD_ARGUMENT);
     for (int d = 0; d <= STANCE_MAX_DELAY; d++) {
-        assert_int_equal(
-            stance_critical_sample_time(PLANT(1, 1, &a, &b), SAMPLING(&k, 0, d), 10, &T),
-            STANCE_OK);
+        OK(stance_critical_sample_time(PLANT(1, 1, &a, &b), SAMPLING(&k, 0, d), 10, &T));
         assert_near(T, 2 * sin(M_PI / (4 * d + 2)) / k, 1e-10, "samples late");
     }
 }
@@ -416,20 +374,17 @@ TEST(integrator_with_actuator_and_noise)
     for (double lag = 1e-3; lag < 1; lag *= 3) {
         stance_lagged(PLANT(1, 1, &a, &b), &k, lag, A, B, K);
         closed_loop(2, 1, A, B, K, loop);
-        assert_int_equal(stance_eigenvalues(2, loop, re, im), STANCE_OK);
+        OK(stance_eigenvalues(2, loop, re, im));
         for (int i = 0; i < 2; i++) {
             assert_near(lag * (re[i] * re[i] - im[i] * im[i]) + re[i] + k, 0, 1e-9, "real");
             assert_near(im[i] * (2 * lag * re[i] + 1), 0, 1e-9, "imaginary");
         }
     }
-    assert_int_equal(stance_sampled_wander(PLANT(1, 1, &a, &b), SAMPLING(&k, T, 0), &v, 0, &rms),
-                     STANCE_OK);
+    OK(stance_sampled_wander(PLANT(1, 1, &a, &b), SAMPLING(&k, T, 0), &v, 0, &rms));
     assert_near(rms * rms, v * g / (2 - g), 1e-14, "measured");
-    assert_int_equal(stance_sampled_wander(PLANT(1, 1, &a, &b), SAMPLING(&k, T, 0), &none, v, &rms),
-                     STANCE_OK);
+    OK(stance_sampled_wander(PLANT(1, 1, &a, &b), SAMPLING(&k, T, 0), &none, v, &rms));
     assert_near(rms * rms, T * v / (k * (2 - g)), 1e-14, "commanded");
-    assert_int_equal(stance_sampled_wander(PLANT(1, 1, &a, &b), SAMPLING(&k, T, 1), &v, 0, &rms),
-                     STANCE_OK);
+    OK(stance_sampled_wander(PLANT(1, 1, &a, &b), SAMPLING(&k, T, 1), &v, 0, &rms));
     assert_near(rms * rms, v * g * (1 + g) / ((1 - g) * (2 + g)), 1e-14, "a sample late");
     assert_int_equal(stance_sampled_wander(PLANT(1, 1, &a, &b), SAMPLING(&k, 0.6, 0), &v, 0, &rms),
                      STANCE_NUMERICAL);
@@ -439,7 +394,7 @@ TEST(integrator_with_actuator_and_noise)
 
 /* ---- Lyapunov functions and sublevel sets ---------------------------------------------------- */
 
-static void check_lyapunov(const struct sample *s)
+RECORDS(lyapunov_functions)
 {
     double K[M * N], loop[N * N], P[N * N], wanted[N * N], tolerance[N], weight[N];
     stance_message message = {""};
@@ -456,11 +411,6 @@ static void check_lyapunov(const struct sample *s)
     TRY(stance_lyapunov(N, loop, true, weight, P, &message), message);
     matrix_of(s->record, "sampled_lyapunov", N, N, wanted);
     assert_matrix(N * N, P, wanted, 2e-10, s->name);
-}
-
-TEST(lyapunov_functions)
-{
-    for_each_record(check_lyapunov);
 }
 
 TEST(lyapunov_messages)
@@ -481,15 +431,14 @@ TEST(sublevel_sets)
 {
     const double P[4] = {1, 0, 0, 4}, a[4] = {1, 1, -1, 0}, d[2] = {1, 3};
     stance_sublevel_set set;
-    assert_int_equal(stance_sublevel(2, P, &(stance_bounds){2, a, d}, &set), STANCE_OK);
+    OK(stance_sublevel(2, P, &(stance_bounds){2, a, d}, &set));
     assert_int_equal(set.binding, 0);
     assert_near(set.level, 0.8, 1e-15, "level");
     assert_near(set.alone[0], sqrt(0.8), 1e-15, "x");
     assert_near(set.extent[1], sqrt(0.2), 1e-15, "y");
-    assert_int_equal(stance_sublevel(2, P, &(stance_bounds){2, a, (double[]){1, -3}}, &set),
-                     STANCE_OK);
+    OK(stance_sublevel(2, P, &(stance_bounds){2, a, (double[]){1, -3}}, &set));
     assert_true(set.level == 0 && set.binding == 1 && set.extent[0] == 0);
-    assert_int_equal(stance_sublevel(2, P, &(stance_bounds){0, a, d}, &set), STANCE_OK);
+    OK(stance_sublevel(2, P, &(stance_bounds){0, a, d}, &set));
     assert_true(isinf(set.level) && set.binding == -1);
     assert_int_equal(stance_sublevel(2, (double[]){1, 2, 2, 1}, &(stance_bounds){1, a, d}, &set),
                      STANCE_BAD_ARGUMENT);
@@ -497,12 +446,10 @@ TEST(sublevel_sets)
 
 /* ---- the force on the foot ------------------------------------------------------------------- */
 
-static void check_force(const struct sample *s)
+RECORDS(forces_on_the_foot)
 {
     double force[2], by_state[2 * N], by_torque[2 * M], wanted[2 * N];
-    assert_int_equal(
-        biped()->contact_force(biped(), s->robot, &s->equilibrium, force, by_state, by_torque),
-        STANCE_OK);
+    OK(biped()->contact_force(biped(), s->robot, &s->equilibrium, force, by_state, by_torque));
     matrix_of(s->record, "force", 2, 1, wanted);
     assert_near(force[0], wanted[0], 1e-12 * wanted[0], s->name);
     assert_near(wanted[1], 0, 1e-9, s->name);
@@ -512,13 +459,8 @@ static void check_force(const struct sample *s)
     assert_matrix(2 * M, by_torque, wanted, 1e-11, s->name);
 }
 
-TEST(forces_on_the_foot)
-{
-    for_each_record(check_force);
-}
-
 /* The level of each bound, in the order of the reference. */
-static void check_levels(const struct sample *s)
+RECORDS(levels)
 {
     double K[M * N], P[N * N], force[2], by[2 * N], by_torque[2 * M], a[7 * N], d[7];
     stance_sublevel_set set;
@@ -547,18 +489,12 @@ static void check_levels(const struct sample *s)
     const json_t *levels = json_object_get(s->record, "levels");
     for (int k = 0; k < 7; k++) {
         const double wanted = number_at(levels, (size_t)k);
-        assert_int_equal(stance_sublevel(N, P, &(stance_bounds){1, a + k * N, d + k}, &set),
-                         STANCE_OK);
+        OK(stance_sublevel(N, P, &(stance_bounds){1, a + k * N, d + k}, &set));
         if (isnan(wanted))
             assert_true(set.level > 1e6);
         else
             assert_near(set.level, wanted, 1e-8 * wanted, s->name);
     }
-}
-
-TEST(levels)
-{
-    for_each_record(check_levels);
 }
 
 /* One short step of the simulator with both the posture and the torques off the equilibrium: the
@@ -573,8 +509,7 @@ TEST(force_in_simulation)
         const stance_equilibrium e = equilibrium_of(c.robot, 0, -0.41, NAN, 0.82, false);
         double force[2], by_state[2 * N], by_torque[2 * M];
         double position[2][5], velocity[2][5], torque[2][2], gap[2][2], found[2][2][2];
-        assert_int_equal(scene->contact_force(scene, c.robot, &e, force, by_state, by_torque),
-                         STANCE_OK);
+        OK(scene->contact_force(scene, c.robot, &e, force, by_state, by_torque));
         memcpy(c.position, e.position, sizeof c.position);
         for (int i = 0; i < 3; i++) {
             const double off = uniform(&seed, -1e-3, 1e-3);

@@ -2,11 +2,9 @@
  * against the recurrence of their direction numbers, integrals against exact ones. */
 #include "tests.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "runner/scenario/doe.h"
+
+#define DOE FREED(doe_end) struct doe
 
 static struct doe design(enum doe_method method, uint64_t count, size_t factors, uint64_t seed)
 {
@@ -23,8 +21,7 @@ static struct doe design(enum doe_method method, uint64_t count, size_t factors,
 static double *all_points(const struct doe *s)
 {
     const uint64_t n = doe_points(s);
-    double *u = malloc(n * s->factors * sizeof *u);
-    assert_non_null(u);
+    double *u = room(n * s->factors * sizeof *u);
     for (uint64_t i = 0; i < n; i++)
         doe_unit(s, i, u + i * s->factors);
     return u;
@@ -32,9 +29,8 @@ static double *all_points(const struct doe *s)
 
 static double *points_of(enum doe_method method, uint64_t count, size_t factors, uint64_t seed)
 {
-    struct doe s = design(method, count, factors, seed);
+    DOE s = design(method, count, factors, seed);
     double *u = all_points(&s);
-    doe_end(&s);
     return u;
 }
 
@@ -44,7 +40,7 @@ TEST(test_range_and_seeds)
 {
     for (int method = 0; method < DOE_METHODS; method++) {
         for (size_t k = 1; k <= 7; k += 3) {
-            struct doe s = design(method, 300, k, 5);
+            DOE s = design(method, 300, k, 5);
             const size_t n = doe_points(&s) * k;
             double *u = all_points(&s), *other = points_of(method, 300, k, 6);
             for (size_t i = 0; i < n; i++) {
@@ -55,7 +51,6 @@ TEST(test_range_and_seeds)
                 assert_memory_not_equal(u, other, n * sizeof *u);
             free(u);
             free(other);
-            doe_end(&s);
         }
     }
 }
@@ -65,9 +60,9 @@ TEST(test_prefix)
 {
     static const uint64_t counts[] = {1, 2, 3, 64, 100, 129};
     for (int method = 0; method < DOE_METHODS; method++) {
-        double *whole = points_of(method, 500, 5, 9);
-        for (size_t c = 0; c < sizeof counts / sizeof counts[0]; c++) {
-            struct doe s = design(method, counts[c], 5, 9);
+        OWN double *whole = points_of(method, 500, 5, 9);
+        for (size_t c = 0; c < COUNT(counts); c++) {
+            DOE s = design(method, counts[c], 5, 9);
             bool same = true;
             for (uint64_t i = doe_points(&s); i-- > 0;) {
                 double u[5];
@@ -75,9 +70,7 @@ TEST(test_prefix)
                 same = same && memcmp(u, whole + i * 5, sizeof u) == 0;
             }
             assert_int_equal(same, method != DOE_LHS);
-            doe_end(&s);
         }
-        free(whole);
     }
 }
 
@@ -86,7 +79,7 @@ TEST(test_uncorrelated)
 {
     enum { N = 4096, K = 6 };
     for (int method = DOE_RANDOM; method <= DOE_SOBOL; method++) {
-        double *u = points_of(method, N, K, 3);
+        OWN double *u = points_of(method, N, K, 3);
         for (int a = 0; a < K; a++) {
             double mean = 0;
             for (int i = 0; i < N; i++)
@@ -99,7 +92,6 @@ TEST(test_uncorrelated)
                 assert_float_equal(correlation, 0, 5 / sqrt(N));
             }
         }
-        free(u);
     }
 }
 
@@ -108,20 +100,17 @@ TEST(test_uncorrelated)
 TEST(test_strata)
 {
     static const uint64_t counts[] = {1, 2, 3, 7, 64, 1000, 4099};
-    for (size_t c = 0; c < sizeof counts / sizeof counts[0]; c++) {
+    for (size_t c = 0; c < COUNT(counts); c++) {
         const uint64_t n = counts[c];
-        double *u = points_of(DOE_LHS, n, 4, 11);
+        OWN double *u = points_of(DOE_LHS, n, 4, 11);
         for (size_t j = 0; j < 4; j++) {
-            char *taken = calloc(n, 1);
-            assert_non_null(taken);
+            OWN char *taken = room(n * 1);
             for (uint64_t i = 0; i < n; i++) {
                 const size_t stratum = (size_t)(u[i * 4 + j] * (double)n);
                 assert_true(stratum < n && !taken[stratum]);
                 taken[stratum] = 1;
             }
-            free(taken);
         }
-        free(u);
     }
 }
 
@@ -133,12 +122,11 @@ TEST(test_orders)
     int seen[256] = {0}, orders = 0;
     double chi_square = 0;
     for (uint64_t seed = 0; seed < SEEDS; seed++) {
-        double *u = points_of(DOE_LHS, 4, 1, seed);
+        OWN double *u = points_of(DOE_LHS, 4, 1, seed);
         int code = 0;
         for (int i = 0; i < 4; i++)
             code = code * 4 + (int)(u[i] * 4);
         seen[code]++;
-        free(u);
     }
     for (int code = 0; code < 256; code++) {
         orders += seen[code] > 0;
@@ -229,7 +217,7 @@ TEST(test_scramble)
  * shape, holds one. So point 0 is no point too many. */
 TEST(test_net)
 {
-    double *u = points_of(DOE_SOBOL, 1024, 2, 77);
+    OWN double *u = points_of(DOE_SOBOL, 1024, 2, 77);
     for (int m = 1; m <= 8; m++) {
         for (int start = 0; start < 1024; start += 1 << m) {
             for (int split = 0; split <= m; split++) {
@@ -244,7 +232,6 @@ TEST(test_net)
             }
         }
     }
-    free(u);
 }
 
 /* Error of the mean of prod 1 + (x_j - 1/2) c_j, whose integral is 1: root mean square over seeds.
@@ -287,13 +274,13 @@ TEST(test_saltelli)
 {
     enum { K = 3, N = 64 * DOE_REPLICATES };
     for (int second = 0; second < 2; second++) {
-        struct doe s = {
+        DOE s = {
             .method = DOE_SALTELLI, .count = N, .factors = K, .second_order = second, .seed = 4};
         assert_true(doe_begin(&s));
         const size_t block = second ? 2 * K + 2 : K + 2;
         assert_int_equal(doe_block(&s), block);
         assert_int_equal(doe_points(&s), N * block);
-        double *u = all_points(&s);
+        OWN double *u = all_points(&s);
         bool taken[DOE_REPLICATES][2 * K][64] = {{{0}}};
         for (size_t i = 0; i < N; i++) {
             const double *A = u + i * block * K, *B = A + (block - 1) * K;
@@ -309,8 +296,6 @@ TEST(test_saltelli)
                 }
             }
         }
-        free(u);
-        doe_end(&s);
     }
     assert_int_equal(doe_most_factors(DOE_SALTELLI), 20);
 }
@@ -319,11 +304,10 @@ TEST(test_morris)
 {
     enum { K = 5, N = 2000 };
     for (int levels = 2; levels <= 8; levels += 2) {
-        struct doe s = {
-            .method = DOE_MORRIS, .count = N, .factors = K, .levels = levels, .seed = 8};
+        DOE s = {.method = DOE_MORRIS, .count = N, .factors = K, .levels = levels, .seed = 8};
         assert_true(doe_begin(&s));
         assert_int_equal(doe_block(&s), K + 1);
-        double *u = all_points(&s);
+        OWN double *u = all_points(&s);
         const double delta = levels / (2.0 * (levels - 1));
         int up = 0, first[K] = {0}, level_seen[8] = {0};
         for (size_t t = 0; t < N; t++) {
@@ -354,8 +338,6 @@ TEST(test_morris)
             assert_true(abs(first[j] - N / K) < 5 * sqrt(N * (1.0 / K) * (1 - 1.0 / K)));
         for (int l = 0; l < levels; l++)
             assert_true(abs(level_seen[l] - N / levels) < 5 * sqrt(N / levels));
-        free(u);
-        doe_end(&s);
     }
 }
 
@@ -365,7 +347,7 @@ TEST(test_sphere)
 {
     enum { N = 4096 };
     for (size_t k = 1; k <= 10; k++) {
-        double *u = points_of(DOE_SPHERE, N, k, 2);
+        OWN double *u = points_of(DOE_SPHERE, N, k, 2);
         double first[10] = {0}, second[10][10] = {{0}}, fourth[10] = {0};
         for (size_t p = 0; p < N; p++) {
             double d[10], square = 0;
@@ -388,14 +370,13 @@ TEST(test_sphere)
             for (size_t j = 0; j < k; j++)
                 assert_float_equal(second[i][j], i == j ? 1 / n : 0, 0.01);
         }
-        free(u);
     }
 }
 
 /* Two factors: 2^m angles fall one into each of 2^m equal sectors. */
 TEST(test_circle)
 {
-    double *u = points_of(DOE_SPHERE, 64, 2, 21);
+    OWN double *u = points_of(DOE_SPHERE, 64, 2, 21);
     char taken[64] = {0};
     for (int i = 0; i < 64; i++) {
         const double angle = atan2(u[2 * i + 1] - 0.5, u[2 * i] - 0.5) / (2 * M_PI);
@@ -403,5 +384,4 @@ TEST(test_circle)
         assert_false(taken[sector]);
         taken[sector] = 1;
     }
-    free(u);
 }

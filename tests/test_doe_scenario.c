@@ -1,8 +1,5 @@
 /* sweep.sample: where factors lead, what a case of a sample is, and by what its noise is keyed. */
 #include "reading.h"
-#include "tests.h"
-
-#include <math.h>
 
 #include "runner/plan/plan.h"
 #include "runner/ranks/parallel.h"
@@ -40,9 +37,9 @@ static const char every_kind[] =
 TEST(test_factors)
 {
     static const char *const names[] = {"midpoint", "implicit", "capturing", "midpoint"};
-    struct scenario s;
+    SCENARIO s = {0};
     read_sweep(&s, every_kind);
-    struct doe design = s.sample.design;
+    DOE design = s.sample.design;
     const struct scenario_axis *axis = &s.axis[1];
     assert_true(s.sample.given && s.axes == 2 && axis->sample && !axis->words && axis->design);
     assert_string_equal(axis->name, "sample");
@@ -72,14 +69,12 @@ TEST(test_factors)
     struct scenario_values first;
     scenario_case_values(&s, 0, &first);
     assert_string_equal(word, stance_methods()[first.method]->name);
-    doe_end(&design);
-    scenario_free(&s);
 }
 
 /* Bounds are reached by the designs that have points there, and never left. */
 TEST(test_bounds)
 {
-    struct scenario s;
+    SCENARIO s = {0};
     bool low = false, high = false;
     read_sweep(&s, "sweep: {sample: {method: morris, count: 50, levels: 6, vary: [\n"
                    "  {path: ground.friction, from: 0.1, to: 0.7, spacing: log},\n"
@@ -93,21 +88,19 @@ TEST(test_bounds)
         high = high || value == 0.7;
     }
     assert_true(low && high);
-    scenario_free(&s);
 }
 
 /* Whole numbers between bounds are equally likely, both bounds included: as many of each as there
  * can be among 2^m Sobol' points and four numbers. */
 TEST(test_whole_numbers)
 {
-    struct scenario s;
+    SCENARIO s = {0};
     int seen[2] = {0};
     read_sweep(&s, "sweep: {sample: {method: sobol, count: 64, vary: [\n"
                    "  {path: initial.support_foot, from: 1, to: 2}]}}");
     for (size_t i = 0; i < 64; i++)
         seen[(int)scenario_axis_value(&s.axis[0], i, 0) - 1]++;
     assert_true(seen[0] == 32 && seen[1] == 32);
-    scenario_free(&s);
 }
 
 /* Cases of a larger design are those of the smaller one, noise included; each point that moves the
@@ -119,7 +112,7 @@ TEST(test_keys)
         "  grid: [{path: initial.offset.vtheta, values: [0, 0.1]}]\n"
         "  sample: {method: random, count: %d, vary: [{path: ground.friction, from: 0.1, to: 1},\n"
         "    {path: controller.model.hip_mass, from: 5, to: 6}]}\n";
-    struct scenario s[2];
+    static struct scenario s[2];
     struct plan plan[2];
     struct plan_error error;
     const struct parallel alone = {.size = 1};
@@ -151,7 +144,7 @@ TEST(test_keys)
 /* More designs than are kept in memory: an error, not an attempt. */
 TEST(test_designs_have_a_limit)
 {
-    struct scenario s;
+    SCENARIO s = {0};
     struct plan plan;
     struct plan_error error;
     read_sweep(
@@ -161,5 +154,4 @@ TEST(test_designs_have_a_limit)
     assert_false(plan_make(&plan, &s, false, 0, false, &error));
     assert_non_null(strstr(error.message.text, "controller designs"));
     assert_true(error.line == 9 && error.column > 0);
-    scenario_free(&s);
 }

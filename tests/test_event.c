@@ -1,7 +1,6 @@
 /* The event-driven reference: independent figures, conserved quantities, closed forms, agreement
  * with the method that never locates an event, and events that are easy to miss. */
 #include "support.h"
-#include "tests.h"
 
 #include <unistd.h>
 
@@ -16,7 +15,7 @@ TEST(drop_against_reference)
         stance_case c = second_drop(step);
         double position = 0, velocity = 0;
         c.tolerance = 1e-12;
-        stance_trajectory t = trajectory_new(13, 0.1);
+        TRAJECTORY t = trajectory_new(13, 0.1);
         c.trajectory = &t;
         const stance_result r = run_done("event-driven", &c);
         json_object_foreach(json_object_get(second, "states"), at, row)
@@ -38,7 +37,6 @@ TEST(drop_against_reference)
                     r.dissipation_residual < 1e-10);
         size_t contact_events = json_array_size(json_object_get(second, "events"));
         assert_int_equal(r.events, contact_events);
-        trajectory_free(&t);
     }
     json_decref(root);
 }
@@ -67,14 +65,13 @@ TEST(agrees_with_capturing)
         random_case(&seed, i, 1e-3, &c);
         c.restitution = i % 7 == 0 ? 0.5 : 0;
         c.tolerance = 1e-12;
-        stance_trajectory t = trajectory_new(c.steps + 1, c.step);
+        TRAJECTORY t = trajectory_new(c.steps + 1, c.step);
         c.trajectory = &t;
         const stance_result a = run_one("event-driven", &c);
         c.trajectory = NULL;
         c.tolerance = 1e-10;
         const stance_result b = run_one("capturing", &c);
         const bool compare = !feet_meet(&t, a.end_time);
-        trajectory_free(&t);
         gave_up[0] += a.status != STANCE_DONE;
         gave_up[1] += b.status != STANCE_DONE;
         /* Rebounds and rocking that accumulate, and states without a motion, end a case. */
@@ -218,7 +215,7 @@ static void graze(const char *method, double tolerance, double least)
         c.steps = (int64_t)ceil((when + 0.4 / spin) / c.step);
         c.position[1] = 0;
         const double low = lowest(&c, when - 0.3 / spin, when + 0.3 / spin);
-        for (size_t d = 0; d < sizeof depths / sizeof *depths && depths[d] >= least; d++)
+        for (size_t d = 0; d < COUNT(depths) && depths[d] >= least; d++)
             for (int side = -1; side <= 1; side += 2) {
                 c.position[1] = side * depths[d] - low;
                 const stance_result r = run_done(method, &c);
@@ -239,7 +236,7 @@ static void short_slips(const char *method, double tolerance, double least)
 {
     static const double excesses[] = {1e-1, 1e-2, 1e-3, 1e-5, 1e-7};
     for (double frequency = 0.7; frequency < 2000; frequency *= 3)
-        for (size_t k = 0; k < sizeof excesses / sizeof *excesses && excesses[k] >= least; k++)
+        for (size_t k = 0; k < COUNT(excesses) && excesses[k] >= least; k++)
             for (int side = -1; side <= 1; side += 2) {
                 const double mu = 0.3, drag = mu * STANCE_GRAVITY;
                 const double pull = drag * (1 + side * excesses[k]), w = 2 * M_PI * frequency;

@@ -14,7 +14,6 @@
  * without arguments: a share of both; COUNT alone: so many states on a sliding foot
  */
 #include "support.h"
-#include "tests.h"
 
 enum { BATCH = 64, WORST = 10, NUDGED = 20 };
 
@@ -68,7 +67,7 @@ static bool parallel(const stance_case *c)
 {
     enum { FINER = 100 };
     stance_case fine = *c;
-    stance_trajectory way = trajectory_new(FINER * c->steps + 1, c->step / FINER);
+    TRAJECTORY way = trajectory_new(FINER * c->steps + 1, c->step / FINER);
     stance_result r;
     bool found = false;
     fine.tolerance = reference_tolerance;
@@ -78,7 +77,6 @@ static bool parallel(const stance_case *c)
     for (int64_t k = 0; k < way.rows; k++)
         found |= fmax(way.gap[2 * k], way.gap[2 * k + 1]) < 1e-6 &&
                  fabs(sin(way.position[5 * k + 3] - way.position[5 * k + 4])) < 1e-6;
-    trajectory_free(&way);
     return found;
 }
 

@@ -4,11 +4,8 @@
 #include "support.h"
 
 #include "cases.h"
-#include "tests.h"
 
 #include "analysis/basin/basin_map.h"
-
-#include <string.h>
 
 /* ---- maps of the unit square, somewhere in a plane --------------------------------------- */
 
@@ -36,46 +33,37 @@ static int turned_stripes(double x, double y, double c, const double *p)
 }
 
 /* Squares cut into base^2, of which those that `keeps` names are cut on, and the others have the
- * colour of their stage. */
-static int squares(double x, double y, int base, bool (*keeps)(int i, int j), const double *p)
-{
-    x = 0.1 + 0.8 * x + 0.1 * (p[0] - 0.5);
-    y = 0.1 + 0.8 * y + 0.1 * (p[1] - 0.5);
-    for (int stage = 0; stage < 12; stage++) {
-        const int i = (int)(x * base), j = (int)(y * base);
-        if (!keeps(i, j))
-            return (stage + 1) % 2;
-        x = x * base - i;
-        y = y * base - j;
-    }
-    return 0;
-}
+ * colour of their stage: Vicsek's cross, dust, dust of nine. */
 static bool cross(int i, int j)
 {
     return i == 1 || j == 1;
-}
-static int vicsek(double x, double y, double c, const double *p)
-{
-    (void)c;
-    return squares(x, y, 3, cross, p);
 }
 static bool corners(int i, int j)
 {
     return i != 1 && j != 1;
 }
-static int dust(double x, double y, double c, const double *p)
-{
-    (void)c;
-    return squares(x, y, 3, corners, p);
-}
 static bool nine(int i, int j)
 {
     return i != 1 && j != 2;
 }
-static int dust_of_nine(double x, double y, double c, const double *p)
+static const struct {
+    int base;
+    bool (*keeps)(int i, int j);
+} cut[] = {{3, cross}, {3, corners}, {4, nine}};
+
+static int squares(double x, double y, double c, const double *p)
 {
-    (void)c;
-    return squares(x, y, 4, nine, p);
+    const int base = cut[(int)c].base;
+    x = 0.1 + 0.8 * x + 0.1 * (p[0] - 0.5);
+    y = 0.1 + 0.8 * y + 0.1 * (p[1] - 0.5);
+    for (int stage = 0; stage < 12; stage++) {
+        const int i = (int)(x * base), j = (int)(y * base);
+        if (!cut[(int)c].keeps(i, j))
+            return (stage + 1) % 2;
+        x = x * base - i;
+        y = y * base - j;
+    }
+    return 0;
 }
 
 /* Graphs of Weierstrass's and Takagi's functions: dimensions 2 - c and 2 + log2 c. */
@@ -106,15 +94,21 @@ static int koch(double x, double y, double c, const double *p)
  * length `cycle`. The Julia set between them has the dimension 1.26835 for c = -1, 1.3934 for
  * Douady's rabbit (C. McMullen, Hausdorff dimension and conformal dynamics III, Am. J. Math. 120,
  * 1998). */
-static int julia(double x, double y, double re, double im, int cycle, const double *p)
+static const struct {
+    double re, im;
+    int cycle;
+} square[] = {{-1, 0, 2}, {-0.122561166876654, 0.744861766619744, 3}};
+
+static int julia(double x, double y, double c, const double *p)
 {
+    const int cycle = square[(int)c].cycle;
     double a = 2.6 * (x - 0.5) + 0.2 * (p[0] - 0.5), b = 2.6 * (y - 0.5) + 0.2 * (p[1] - 0.5);
     double least = INFINITY;
     int colour = 0;
     for (int k = 0; k < 600 + cycle; k++) {
-        const double square = a * a - b * b + re;
-        b = 2 * a * b + im;
-        a = square;
+        const double next = a * a - b * b + square[(int)c].re;
+        b = 2 * a * b + square[(int)c].im;
+        a = next;
         if (a * a + b * b > 16)
             return 0;
         /* Of the last ones the nearest to zero tells the phase. */
@@ -125,15 +119,6 @@ static int julia(double x, double y, double re, double im, int cycle, const doub
     }
     return colour > 2 ? 2 : colour; /* the outcomes are four */
 }
-static int basilica(double x, double y, double c, const double *p)
-{
-    return julia(x, y, c, 0, 2, p);
-}
-static int rabbit(double x, double y, double c, const double *p)
-{
-    return julia(x, y, c, 0.744861766619744, 3, p);
-}
-
 static int line(double x, double y, double c, const double *p)
 {
     const double a = 2 * M_PI * p[0];
@@ -173,8 +158,7 @@ static int three(double x, double y, double c, const double *p)
 /* A map of n x n cases. Freed by the caller. */
 static uint8_t *paint(size_t n, painter colour, double c, const double *p, double *place)
 {
-    uint8_t *kind = malloc(n * n);
-    assert_non_null(kind);
+    uint8_t *kind = room(n * n);
     for (size_t i = 0; i < n; i++)
         place[i] = ((double)i + 0.5) / (double)n;
     for (size_t i = 0; i < n * n; i++)
@@ -192,13 +176,12 @@ enum { MOST = 1025 };
 static struct measured measure(size_t n, painter colour, double c, const double *p)
 {
     static double place[MOST];
-    uint8_t *kind = paint(n, colour, c, p, place);
+    OWN uint8_t *kind = paint(n, colour, c, p, place);
     const struct basin_map map = {2, {n, n}, {place, place}, n * n, kind};
     struct basin_uncertainty u = {.scales = basin_map_scales(&map)};
     struct basin_entropy e = {0};
     basin_map_uncertainty(&map, &u);
     basin_map_entropy(&map, 5, &e);
-    free(kind);
     return (struct measured){basin_exponent(&u), basin_is_fractal(&e, &u),
                              basin_boundary_entropy(&e)};
 }
@@ -220,17 +203,17 @@ TEST(alphas_are_within_their_errors)
         {"turned stripes", turned_stripes, 0.25, 0},
         {"turned stripes", turned_stripes, 1 / 3.0, 0},
         {"turned stripes", turned_stripes, 0.4, 0},
-        {"Vicsek", vicsek, 0, 0.53503},
-        {"dust", dust, 0, 0.73814},
-        {"dust of nine", dust_of_nine, 0, 0.41504},
+        {"Vicsek", squares, 0, 0.53503},
+        {"dust", squares, 1, 0.73814},
+        {"dust of nine", squares, 2, 0.41504},
         {"Weierstrass", weierstrass, 0.3, 0.3},
         {"Weierstrass", weierstrass, 0.5, 0.5},
         {"Weierstrass", weierstrass, 0.7, 0.7},
         {"Takagi", takagi, 0.7, 0.51457},
         {"Takagi", takagi, 0.8, 0.32193},
         {"Koch", koch, 0, 0.73814},
-        {"z^2 - 1", basilica, -1, 0.73165},
-        {"rabbit", rabbit, -0.122561166876654, 0.6066},
+        {"z^2 - 1", julia, 0, 0.73165},
+        {"rabbit", julia, 1, 0.6066},
         {"line", line, 0, 1},
         {"along an axis", along, 0, 1},
         {"disc", disc, 0, 1},
@@ -249,7 +232,7 @@ TEST(alphas_are_within_their_errors)
     const int tries = patient ? 40 : 3;
     int held[2] = {0}, given[2] = {0};
     uint64_t random = 3;
-    for (size_t k = 0; k < sizeof maps / sizeof maps[0]; k++) {
+    for (size_t k = 0; k < COUNT(maps); k++) {
         const double alpha = maps[k].alpha > 0 ? maps[k].alpha : 1 + log(2) / log(maps[k].c);
         const bool smooth = alpha == 1;
         for (size_t n = 256; n <= (patient ? 1024 : 512); n *= 2) {
@@ -295,7 +278,7 @@ TEST(alphas_are_within_their_errors)
 TEST(thin_bands_are_smooth)
 {
     static const double widths[] = {0.2, 0.1, 0.06, 0.03, 0.015};
-    for (size_t w = 0; w < sizeof widths / sizeof widths[0]; w++) {
+    for (size_t w = 0; w < COUNT(widths); w++) {
         for (size_t n = 65; n <= 1025; n = 2 * n - 1) {
             int given = 0, held = 0;
             double farthest = 0;

@@ -29,7 +29,7 @@ struct twin {
 
 static void twin_make(struct twin *t, const stance_scene *scene, const stance_case *c)
 {
-    char *xml = NULL;
+    OWN char *xml = NULL;
     size_t size = 0;
     FILE *const out = open_memstream(&xml, &size);
     assert_non_null(out);
@@ -39,7 +39,6 @@ static void twin_make(struct twin *t, const stance_scene *scene, const stance_ca
     t->model = mujoco_model(xml);
     assert_non_null(t->model);
     t->data = mj_makeData(t->model);
-    free(xml);
     assert_int_equal(t->model->nq, scene->coordinates);
     for (int i = 0; i < scene->coordinates; i++) {
         t->joint[i] = mj_name2id(t->model, mjOBJ_JOINT, scene->coordinate[i].name);
@@ -157,9 +156,9 @@ TEST(shipped)
     static const char *const names[] = {"cart_pole", "acrobot",      "rabbit",      "flat_feet",
                                         "pushed",    "rolling_disc", "compass_gait"};
     const struct parallel alone = parallel_alone();
-    for (size_t k = 0; k < sizeof names / sizeof *names; k++) {
+    for (size_t k = 0; k < COUNT(names); k++) {
         static struct scenario s;
-        struct plan plan;
+        PLAN plan;
         struct plan_error error;
         stance_case c;
         int method;
@@ -172,8 +171,6 @@ TEST(shipped)
         assert_true(plan_resolve(&plan, 0, &c, &method));
         compare_states(names[k], s.scene, &c,
                        strcmp(names[k], "rabbit") == 0 ? STATES_RABBIT : STATES);
-        plan_free(&plan);
-        scenario_free(&s);
     }
 }
 
@@ -226,8 +223,8 @@ TEST(others)
          "actuator m f 40\n",
          1.62, 0},
     };
-    for (size_t k = 0; k < sizeof list / sizeof *list; k++) {
-        stance_scene *const scene = mechanism_scene(list[k].text);
+    for (size_t k = 0; k < COUNT(list); k++) {
+        SCENE *scene = mechanism_scene(list[k].text);
         stance_case c = {.friction = 0.5, .step = 1e-3, .contacts = ~0u, .torque_limit = INFINITY};
         stance_robot_fallback(scene, c.robot);
         c.scene = scene;
@@ -236,7 +233,6 @@ TEST(others)
         for (int i = 0; i < scene->coordinates; i++)
             c.position[i] = 0.1 * (i + 1), c.velocity[i] = -0.3 * i;
         compare_states(list[k].name, scene, &c, STATES);
-        stance_scene_free(scene);
     }
 }
 

@@ -5,7 +5,7 @@
 #include "motions.h"
 
 static const double steps[] = {0.02, 0.004, 0.001};
-enum { STEPS = sizeof steps / sizeof *steps };
+enum { STEPS = COUNT(steps) };
 
 /* Both methods that look inside, in steps of each length. */
 #define EACH_LOOK(m, k)                                                                            \
@@ -42,7 +42,7 @@ static double tip_above(double t, const double *x)
 }
 TEST(thrown)
 {
-    struct robot r = robot_of("body stick free - 1 0.1 0 0 0 0\nnamed tip stick 0 1 0.2\n", 0);
+    ROBOT r = robot_of("body stick free - 1 0.1 0 0 0 0\nnamed tip stick 0 1 0.2\n", 0);
     uint64_t seed = 7;
     int fell[2] = {0}, between = 0;
     for (int i = 0; i < 1000; i++) {
@@ -71,7 +71,6 @@ TEST(thrown)
     print_message("# %d fell, %d did not; %d were up again at the end of a step of 20 ms\n",
                   fell[1], fell[0], between);
     assert_true(fell[0] > 20 && fell[1] > 20 && between > 5);
-    stance_scene_free(r.scene);
 }
 
 /* A wheel on a spring that may turn a little less, or more, than it does; the fixed steps that
@@ -85,7 +84,7 @@ TEST(turned)
         const double turn = i == 0 ? A / 2 : A * (1 - 1e-5 * i);
         snprintf(text, sizeof text, "body wheel hinge - 1 0.5 0 0 0 0 stiffness 30 turn %.17g\n",
                  turn);
-        struct robot r = robot_of(text, 0);
+        ROBOT r = robot_of(text, 0);
         r.c.velocity[0] = A * w;
         for (const stance_method *const *m = stance_methods(); *m; m++)
             for (int k = 0; k < STEPS; k++) {
@@ -102,7 +101,6 @@ TEST(turned)
                     near((*m)->name, "fall time", e.fall_time, asin(turn / A) / w,
                          i > 0 ? 2e-6 : 2e-7);
             }
-        stance_scene_free(r.scene);
     }
     assert_true(seen < tried);
 }
@@ -137,7 +135,7 @@ static void wheel_held(double t, const double *x, double *v)
 }
 TEST(held)
 {
-    struct robot r = robot_of("body wheel hinge - 1 0.4 0 0 0 0\nactuator motor wheel 1000\n", 0);
+    ROBOT r = robot_of("body wheel hinge - 1 0.4 0 0 0 0\nactuator motor wheel 1000\n", 0);
     uint64_t seed = 11;
     double worst[2] = {0};
     for (int i = 0; i < (long_tests() ? 40 : 10); i++) {
@@ -162,7 +160,6 @@ TEST(held)
     }
     print_message("# excursion off by %.1e, torque by %.1e\n", worst[0], worst[1]);
     assert_true(worst[0] < 5e-7 && worst[1] < 1e-5);
-    stance_scene_free(r.scene);
 }
 
 /* A mass on a spring in a box that stands, x = where it begins, how its way leans: |rT| / rN and,
@@ -180,7 +177,7 @@ TEST(sprung)
     uint64_t seed = 13;
     double worst[3] = {0};
     for (int leans = 0; leans < 2; leans++) {
-        struct robot r =
+        ROBOT r =
             robot_of(leans ? "body box free - 1 0.05 0 0.02 0 0\n"
                              "body mass slide box 2 0.05 0 0 0 0.1 axis 0.3 1 stiffness 3000\n"
                              "sole s box -0.3 0 0.3 0\n"
@@ -204,7 +201,6 @@ TEST(sprung)
                     worst[1 + peaks] = fmax(worst[1 + peaks], fabs(e.least_normal_force + most[1]));
             }
         }
-        stance_scene_free(r.scene);
     }
     print_message("# friction off by %.1e, normal force by %.1e N at a peak, %.1e N on the way\n",
                   worst[0], worst[2], worst[1]);
@@ -216,7 +212,7 @@ TEST(sprung)
  * inside a step. */
 TEST(struck)
 {
-    struct robot r = robot_of("body arm hinge - 1 0.1 0 -0.5 0 0 limits -inf 0.3\n", 0);
+    ROBOT r = robot_of("body arm hinge - 1 0.1 0 -0.5 0 0 limits -inf 0.3\n", 0);
     r.c.has_target = true;
     for (int i = 0; i < 10; i++) {
         r.c.velocity[0] = 2 + 0.2 * i;
@@ -226,5 +222,4 @@ TEST(struck)
             assert_true(end.position[0] < 0.299 && fabs(end.excursion - 0.3) < 1e-7);
         }
     }
-    stance_scene_free(r.scene);
 }

@@ -1,7 +1,6 @@
 /* The fused operations of every instruction set against the C library's fma(), bit by bit: random
  * operands, and those that are hard to round. */
 #include "support.h"
-#include "tests.h"
 
 #include "lanes_fma.h"
 
@@ -18,7 +17,7 @@ static const struct {
 
 static fused_function *function_of(const char *isa)
 {
-    for (size_t i = 0; i < sizeof fused / sizeof *fused; i++)
+    for (size_t i = 0; i < COUNT(fused); i++)
         if (strcmp(isa, fused[i].isa) == 0)
             return fused[i].function;
     fail_msg("no test of %s", isa);
@@ -174,7 +173,7 @@ static void special(uint64_t *seed, double *x)
                                     0x1.ffffffcp1023,
                                     INFINITY,
                                     NAN};
-    enum { N = sizeof values / sizeof *values };
+    enum { N = COUNT(values) };
     uint64_t i = (*seed)++;
     for (int k = 0; k < 3; k++, i /= 2 * N)
         x[k] = i % 2 ? -values[i / 2 % N] : values[i / 2 % N];

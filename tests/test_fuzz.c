@@ -1,8 +1,6 @@
 /* test_fuzz.c - inputs that fuzzing found, and every scenario there is, through the function that
  * fuzzing calls (fuzz_scenario.c). */
 #include <glob.h>
-#include <stdio.h>
-#include <stdlib.h>
 
 #include "fuzz_scenario.h"
 #include "tests.h"
@@ -13,13 +11,11 @@ static void run_file(const char *name)
     assert_non_null(in);
     fseek(in, 0, SEEK_END);
     size_t size = (size_t)ftell(in);
-    uint8_t *data = malloc(size + 1);
-    assert_non_null(data);
+    OWN uint8_t *data = room(size + 1);
     rewind(in);
     assert_int_equal(fread(data, 1, size, in), size);
     fclose(in);
     LLVMFuzzerTestOneInput(data, size);
-    free(data);
 }
 
 static void run_files(const char *pattern)

@@ -6,14 +6,9 @@
  * Westervelt, Grizzle and Koditschek's (IEEE Trans. Autom. Control 48 (2003) 42): 0.649552458326 of
  * the gait `exactly`.
  */
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include <jansson.h>
 
 #include "linear.h"
-#include "tests.h"
 
 #include "analysis/gait/gait.h"
 #include "runner/plan/instruction_set.h"
@@ -35,7 +30,7 @@ static struct walker *walk(const char *file, int steps, int settle, const char *
     struct walker *const w = calloc(1, sizeof *w);
     const struct parallel alone = parallel_alone();
     struct plan_error error;
-    stance_case *const c = malloc(sizeof *c);
+    OWN stance_case *c = malloc(sizeof *c);
     struct return_point from = {.time = 0};
     int method;
     assert_true(w && c);
@@ -48,7 +43,6 @@ static struct walker *walk(const char *file, int steps, int settle, const char *
     w->message.text[0] = '\0';
     w->found = return_map_begin(&w->map, c, kernel, steps, settle, &from, &w->message) &&
                gait_find(&w->map, &from, &w->gait, &w->message);
-    free(c);
     return w;
 }
 static void leave(struct walker *w)
@@ -57,6 +51,12 @@ static void leave(struct walker *w)
     scenario_free(&w->scenario);
     free(w);
 }
+
+static void walker_gone(struct walker *const *w)
+{
+    leave(*w);
+}
+#define WALKER FREED(walker_gone) struct walker
 
 struct truth {
     const char *file;
@@ -102,9 +102,9 @@ static const struct truth truths[] = {
 
 TEST(gaits_are_those_of_another_program)
 {
-    for (size_t i = 0; i < sizeof truths / sizeof *truths; i++) {
+    for (size_t i = 0; i < COUNT(truths); i++) {
         const struct truth *const t = &truths[i];
-        struct walker *const w = walk(t->file, 1, 40, t->set, t->sets);
+        WALKER *w = walk(t->file, 1, 40, t->set, t->sets);
         if (!w->found)
             fail_msg("%s: %s", t->file, w->message.text);
         const struct gait *const g = &w->gait;
@@ -122,17 +122,15 @@ TEST(gaits_are_those_of_another_program)
         const int next = t->im > 0 ? 2 : 1;
         if (!isnan(t->second))
             assert_near(g->re[next], t->second, fmax(t->tolerance, 5e-7), t->file);
-        leave(w);
     }
 }
 
 /* Following the clock in place of the stance leg's angle is all that differs. */
 TEST(by_the_clock_it_does_not_hold)
 {
-    struct walker *const w = walk("scenarios/gaits/walks_by_the_clock.yaml", 1, 1, SET(events));
+    WALKER *w = walk("scenarios/gaits/walks_by_the_clock.yaml", 1, 1, SET(events));
     assert_true(w->found && !w->gait.stable);
     assert_near(w->gait.re[0], -5.1, 0.05, "multiplier");
-    leave(w);
 }
 
 TEST(what_has_no_gait_says_why)
@@ -156,15 +154,14 @@ TEST(what_has_no_gait_says_why)
          {"sweep={}", "robot.bodies.leg2.mass=5.5"},
          "differ: a gait repeats"},
     };
-    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+    for (size_t i = 0; i < COUNT(wrong); i++) {
         size_t sets = 0;
         while (sets < 4 && wrong[i].set[sets])
             sets++;
-        struct walker *const w = walk(wrong[i].file, 1, 40, wrong[i].set, sets);
+        WALKER *w = walk(wrong[i].file, 1, 40, wrong[i].set, sets);
         assert_false(w->found);
         if (!strstr(w->message.text, wrong[i].says))
             fail_msg("'%s' does not say '%s'", w->message.text, wrong[i].says);
-        leave(w);
     }
 }
 
@@ -182,8 +179,8 @@ TEST(gaits_have_margins)
     };
     static const char *const fine[] = {"method.tolerance=1e-10", "method.step=0.0002",
                                        "controller.sample_time=0", "sweep={}"};
-    for (size_t i = 0; i < sizeof truth / sizeof *truth; i++) {
-        struct walker *const w = walk(truth[i].file, 1, 40, SET(fine));
+    for (size_t i = 0; i < COUNT(truth); i++) {
+        WALKER *w = walk(truth[i].file, 1, 40, SET(fine));
         struct gait_margins m;
         assert_true(w->found);
         assert_true(gait_margins_find(&w->map, &w->gait, &m, &w->message));
@@ -194,7 +191,6 @@ TEST(gaits_have_margins)
         assert_true(fabs(m.under - truth[i].under) < 6e-5);
         if (isfinite(truth[i].least_force))
             assert_true(fabs(m.least_normal_force - truth[i].least_force) < 2);
-        leave(w);
     }
 }
 
@@ -276,9 +272,9 @@ TEST(steps_of_the_ground_vary_a_gait_as_the_norm_says)
 {
     enum { LAID = 6, CASES = 600 };
     static const char *const set[] = {"method.step=0.005", "sweep={}", RANDOM};
-    struct walker *const w = walk("scenarios/gaits/walk_pushes.yaml", 1, 40, SET(set));
-    stance_case *const c = calloc(2 * CASES, sizeof *c);
-    stance_result *const r = calloc(2 * CASES, sizeof *r);
+    WALKER *w = walk("scenarios/gaits/walk_pushes.yaml", 1, 40, SET(set));
+    OWN stance_case *c = calloc(2 * CASES, sizeof *c);
+    OWN stance_result *r = calloc(2 * CASES, sizeof *r);
     struct gait_sensitivity is;
     double sum[2] = {0}, square[2] = {0};
     uint64_t random = 12345;
@@ -307,9 +303,6 @@ TEST(steps_of_the_ground_vary_a_gait_as_the_norm_says)
         print_message("# measure %d: %g, the norm %g\n", m, sqrt(variance), says);
         assert_true(fabs(sqrt(variance) / says - 1) < 0.09);
     }
-    leave(w);
-    free(c);
-    free(r);
 }
 
 /* A step of the ground under RABBIT, whose feet touch wherever they are: what comes of one, in each
@@ -319,9 +312,9 @@ TEST(what_a_step_of_the_ground_does_adds_up_to_the_norm)
     enum { STEPS = 12 };
     static const char *const set[] = {"method.tolerance=1e-10", "method.step=0.005", "sweep={}",
                                       "controller.sample_time=0", GROUND("")};
-    struct walker *const w = walk("scenarios/gaits/rabbit_walks.yaml", 1, 40, SET(set));
-    stance_case *const c = calloc(4 * STEPS, sizeof *c);
-    stance_result *const r = calloc(4 * STEPS, sizeof *r);
+    WALKER *w = walk("scenarios/gaits/rabbit_walks.yaml", 1, 40, SET(set));
+    OWN stance_case *c = calloc(4 * STEPS, sizeof *c);
+    OWN stance_result *r = calloc(4 * STEPS, sizeof *r);
     struct gait_sensitivity is;
     double square[2] = {0};
     assert_true(c && r);
@@ -347,7 +340,4 @@ TEST(what_a_step_of_the_ground_does_adds_up_to_the_norm)
     }
     assert_near(sqrt(square[0] / 12) / is.time, 1, 2e-3, "time");
     assert_near(sqrt(square[1] / 12) / is.length, 1, 2e-3, "length");
-    leave(w);
-    free(c);
-    free(r);
 }

@@ -2,7 +2,6 @@
  * it.
  */
 #include "reading.h"
-#include "tests.h"
 
 #include "runner/plan/ground_line.h"
 

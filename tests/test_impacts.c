@@ -20,7 +20,6 @@ static const int scene_other[SCENE_CONTACTS] = {-1, -1, -1, -1};
 #include "dense.h"
 #include "long.h"
 #include "support.h"
-#include "tests.h"
 
 struct system {
     int contacts, coordinates;
@@ -55,16 +54,7 @@ static void random_system(uint64_t *seed, bool leaves, struct system *s)
             s->H[c][i] = uniform(seed, -1, 1);
     for (int i = 0; i < n; i++)
         s->w[i] = uniform(seed, -3, 3);
-    for (int j = 0; j < n; j++) {
-        double a[N][N + 1], x[N];
-        for (int i = 0; i < n; i++) {
-            memcpy(a[i], s->A[i], sizeof s->A[i]);
-            a[i][n] = i == j;
-        }
-        assert_true(dense_solve(n, a, x));
-        for (int i = 0; i < n; i++)
-            s->inverse[i][j] = x[i];
-    }
+    assert_true(dense_inverse(n, N, s->A[0], s->inverse[0]));
     /* The least change of w that gives the normal velocities that are wanted. */
     double a[N][N + 1], x[N];
     for (int c = 0; c < s->contacts; c++) {

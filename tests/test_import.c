@@ -45,6 +45,8 @@ static void pair_close(struct pair *p)
     mujoco_close(&p->mj);
 }
 
+#define PAIR FREED(pair_close) struct pair
+
 /* A free body anywhere in the plane, turned about its normal. */
 static void place_free(struct pair *p, struct spatial_joint *joint, double *qpos, uint64_t *seed)
 {
@@ -116,7 +118,7 @@ static double compare_posture(struct pair *p, int floor, int *compared)
     double robot[STANCE_MAX_ROBOT], gap[STANCE_MAX_CONTACTS], worst = 0, raised = NAN;
     stance_message message;
     stance_scene *scene;
-    assert_int_equal(stance_mechanism_scene(m, &scene, &message), STANCE_OK);
+    OK(stance_mechanism_scene(m, &scene, &message));
     stance_robot_fallback(scene, robot);
     robot[STANCE_ROBOT_SLOPE] = p->robot.slope;
     scene->gaps(scene, robot, p->robot.start, gap);
@@ -154,8 +156,8 @@ TEST(contacts)
         {"heap", {0}},
         {"sideways", {.weld = weld, .welds = 1, .sole = sole, .soles = 1}},
     };
-    for (size_t k = 0; k < sizeof list / sizeof *list; k++) {
-        struct pair p = {.wishes = list[k].wishes};
+    for (size_t k = 0; k < COUNT(list); k++) {
+        PAIR p = {.wishes = list[k].wishes};
         uint64_t seed = k;
         double worst = 0;
         int compared = 0;
@@ -173,7 +175,6 @@ TEST(contacts)
         print_message("# %s: %d contacts in %d postures, heights %.1e m\n", list[k].file, compared,
                       POSTURES, worst);
         assert_true(compared >= 2 * POSTURES && worst < 1e-12);
-        pair_close(&p);
     }
 }
 
@@ -182,7 +183,7 @@ TEST(contacts)
 /* A leg turned by euler -0.3 on a trunk turned by 0.2, both about +y; ref 0.25. */
 TEST(by_hand)
 {
-    struct pair p = {0};
+    PAIR p = {0};
     pair_open(&p, "turned");
     const stance_mechanism *const m = &p.robot.mechanism;
     const stance_body_numbers *const trunk = &m->value.body[0], *const leg = &m->value.body[1],
@@ -216,21 +217,19 @@ TEST(by_hand)
     NEAR(p.robot.start[0], 0.3 + 0.05 * cos(0.2) + 0.1 * sin(0.2));
     NEAR(p.robot.start[1], 1.1 - 0.05 * sin(0.2) + 0.1 * cos(0.2));
     NEAR(p.robot.start[3], -0.25);
-    pair_close(&p);
 }
 
 /* A floor that is tilted by 0.1 about y at a height of 0.3 below x = 0; feet of several frictions.
  */
 TEST(ramp)
 {
-    struct pair p = {0};
+    PAIR p = {0};
     pair_open(&p, "ramp");
     NEAR(p.robot.slope, 0.1);
     NEAR(p.robot.map.origin[2], 0.3);
     NEAR(p.robot.friction, 1);
     NEAR(p.robot.mechanism.value.element[1].friction_factor, 1.8);
     NEAR(p.robot.gravity, 9.81);
-    pair_close(&p);
 }
 
 static int without(int argc __attribute__((unused)), char **argv __attribute__((unused)))

@@ -4,7 +4,6 @@
  * Skipped without libmujoco.
  */
 #include "support.h"
-#include "tests.h"
 
 #include "runner/import/compare.h"
 #include "runner/plan/mjcf.h"

@@ -1,7 +1,6 @@
 /* test_intervals.c - how often the intervals of shares over a sample hold the truth. */
 #include "long.h"
 #include "support.h"
-#include "tests.h"
 
 #include "cases.h"
 
@@ -10,6 +9,8 @@
 #include "analysis/statistics/doe_bins.h"
 #include "analysis/statistics/intervals.h"
 #include "runner/scenario/doe.h"
+
+#define DOE FREED(doe_end) struct doe
 
 static const double pi = 3.14159265358979323846;
 
@@ -54,15 +55,14 @@ static const struct response responses[] = {
     {"corner", corner, 0.09},  {"slanted", slanted, 0.5}, {"product", product, 0.25},
     {"narrow", narrow, 0.179}, {"waves", waves, 0.5},     {"mostly none", mostly_none, 0.15},
 };
-enum { RESPONSES = sizeof responses / sizeof responses[0] };
+enum { RESPONSES = COUNT(responses) };
 
 /* The interval from a design's blocks, at whose points so many of `cases` are inside as the
  * response says, rounded up or down at random where it is no whole number. */
 static struct interval measure(enum doe_method method, const struct response *response,
                                uint64_t count, double cases, uint64_t seed)
 {
-    struct doe s = {
-        .method = method, .count = count, .factors = FACTORS, .levels = 4, .seed = seed};
+    DOE s = {.method = method, .count = count, .factors = FACTORS, .levels = 4, .seed = seed};
     struct interval_draws draws = {0};
     uint64_t random = seed + 1;
     assert_true(doe_begin(&s));
@@ -75,7 +75,6 @@ static struct interval measure(enum doe_method method, const struct response *re
         }
         interval_add(&draws, inside, cases * (double)block);
     }
-    doe_end(&s);
     return interval_of(&draws, 0.95);
 }
 
@@ -85,7 +84,7 @@ TEST(intervals_hold_as_often_as_they_say)
 {
     const bool patient = long_tests();
     static const enum doe_method methods[] = {DOE_RANDOM, DOE_LHS, DOE_SOBOL, DOE_SALTELLI};
-    for (size_t m = 0; m < sizeof methods / sizeof methods[0]; m++) {
+    for (size_t m = 0; m < COUNT(methods); m++) {
         const int seeds = patient ? 4000 : 100;
         const double slack = 3.5 * sqrt(0.95 * 0.05 / seeds);
         for (size_t k = 0; k < RESPONSES; k++) {
@@ -253,14 +252,13 @@ TEST(volumes_over_sampled_parameters)
     static const double levels[] = {0.95, 0.8, 0.99};
     for (int i = 0; i < GRID; i++)
         grid_place[i] = -1 + 2.0 * i / (GRID - 1);
-    for (size_t k = 0; k < sizeof kinds / sizeof kinds[0]; k++) {
+    for (size_t k = 0; k < COUNT(kinds); k++) {
         for (size_t m = 0; m < 6; m++) {
             const double level = m < 4 ? 0.95 : levels[m - 3];
             const enum doe_method method = m < 4 ? methods[m] : DOE_RANDOM;
             int held = 0;
             for (int seed = 0; seed < seeds; seed++) {
-                struct doe s = {
-                    .method = method, .count = 32, .factors = FACTORS, .seed = (uint64_t)seed};
+                DOE s = {.method = method, .count = 32, .factors = FACTORS, .seed = (uint64_t)seed};
                 assert_true(doe_begin(&s));
                 const size_t points = (size_t)doe_points(&s);
                 for (size_t p = 0; p < points; p++) {
@@ -285,7 +283,6 @@ TEST(volumes_over_sampled_parameters)
                     &r, &(struct basin_sample){.axis = -1, .points = points, .block = r.block},
                     level);
                 held += fabs(row.volume - kinds[k].volume) <= row.reach;
-                doe_end(&s);
             }
             const double share = (double)held / seeds,
                          slack = 3.5 * sqrt(level * (1 - level) / seeds);

@@ -4,12 +4,6 @@
 
 #include "runner/objects/law/law_math.c"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdlib.h>
-
-#include <cmocka.h>
-
 /* In units of 2^-52 of the result; sine and cosine, which are absolute, apart. */
 static double off(double got, double wanted)
 {

@@ -1,9 +1,10 @@
 /* Limits: the step at which explicit steps of a stiff servo become unstable, the sample time at
  * which a sampled controller does, and implicit steps under everything that a scenario admits,
  * which must never run away. */
+#define DENSE_ROWS 3
+#include "dense.h"
 #include "long.h"
 #include "support.h"
-#include "tests.h"
 
 #include <complex.h>
 
@@ -19,22 +20,17 @@ static void servo_matrix(const stance_case *c, double S[2][2])
     const double angle[3] = {c->position[2], c->position[2] + c->position[3],
                              c->position[2] + c->position[4]};
     for (int k = 0; k < 2; k++) {
-        /* A unit torque between trunk and leg k: J a = b by elimination. */
-        double a[3][4];
+        /* A unit torque between trunk and leg k: J a = b. */
+        double a[3][4], x[3];
         for (int i = 0; i < 3; i++) {
             for (int j = 0; j < 3; j++)
                 a[i][j] = (i == j ? m[i] * l[i] * l[i] : 0) -
                           m[i] * l[i] * m[j] * l[j] * cos(angle[i] - angle[j]) / total;
-            a[i][3] = i == 0 ? -1 : i == k + 1 ? 1 : 0;
+            a[i][3] = i == 0 ? -1 : i == k + 1;
         }
-        for (int p = 0; p < 3; p++)
-            for (int i = 0; i < 3; i++) {
-                const double factor = a[i][p] / a[p][p];
-                for (int j = p; j < 4 && i != p; j++)
-                    a[i][j] -= factor * a[p][j];
-            }
+        assert_true(dense_solve(3, a, x));
         for (int i = 0; i < 2; i++)
-            S[i][k] = a[i + 1][3] / a[i + 1][i + 1] - a[0][3] / a[0][0];
+            S[i][k] = x[i + 1] - x[0];
     }
 }
 
@@ -96,7 +92,7 @@ static bool swings_up(const char *method, double h, double kp, double kd, const 
 {
     enum { ROWS = STEPS + 1 };
     stance_case c = flying_case(h, kp, kd, vector);
-    stance_trajectory t = trajectory_new(ROWS, h);
+    TRAJECTORY t = trajectory_new(ROWS, h);
     c.steps = STEPS;
     c.trajectory = &t;
     const stance_result r = run_one(method, &c);
@@ -106,7 +102,6 @@ static bool swings_up(const char *method, double h, double kp, double kd, const 
             double *const mine = &size[k < 100 ? 0 : k < 1500 ? 1 : 2];
             *mine = fmax(*mine, fabs(t.position[5 * k + 3 + i] - c.near.target[i + 1]));
         }
-    trajectory_free(&t);
     return r.status != STANCE_DONE || size[2] > 1.01 * size[0] || size[1] > 1e-3;
 }
 
@@ -158,9 +153,8 @@ static stance_case sampled_case(const struct balance *b, double *critical)
     put_in_balance(&c, b->theta, b->q2, b->speed, 1e-6);
     const stance_equilibrium equilibrium = equilibrium_at(&c);
     get_gain(&c, K);
-    assert_int_equal(biped()->linearise(biped(), c.robot, &equilibrium, A, B), STANCE_OK);
-    assert_int_equal(stance_critical_sample_time(PLANT(6, 2, A, B), SAMPLING(K, 0, 0), 2, critical),
-                     STANCE_OK);
+    OK(biped()->linearise(biped(), c.robot, &equilibrium, A, B));
+    OK(stance_critical_sample_time(PLANT(6, 2, A, B), SAMPLING(K, 0, 0), 2, critical));
     c.tolerance = 1e-13;
     return c;
 }
@@ -223,7 +217,7 @@ static double simulated_limit(const char *method, const stance_case *base, int p
 TEST(sampled_controllers)
 {
     double worst[3] = {0};
-    const size_t n = sizeof balances / sizeof *balances;
+    const size_t n = COUNT(balances);
     for (size_t i = 0; i < n; i++) {
         double T;
         const stance_case c = sampled_case(&balances[i], &T);
@@ -414,7 +408,7 @@ static void report(struct tally *t, const char *method, const char *name)
                   "%lld failed:",
                   method, name, (long long)t->cases, (long long)t->subdivided, (long long)t->broken,
                   t->residual, (long long)t->failed);
-    for (size_t k = 0; k < sizeof reasons / sizeof *reasons; k++)
+    for (size_t k = 0; k < COUNT(reasons); k++)
         if (t->reason[k] > 0)
             print_message(" %s %lld", reasons[k], (long long)t->reason[k]);
     qsort(t->created, (size_t)t->n, sizeof *t->created, ascending);

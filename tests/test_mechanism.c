@@ -3,7 +3,6 @@
 #include "closed_biped.h"
 #include "linear.h"
 #include "mechanism_text.h"
-#include "tests.h"
 
 #include "engine/tree.h"
 
@@ -27,13 +26,13 @@ static void same(const double *got, const double *wanted, int count, double scal
 
 TEST(names)
 {
-    stance_scene *const s = mechanism_scene("body base free - 1 0.1 0 0 0 0\n"
-                                            "body foot hinge base 1 0.1 0 -0.1 0 -0.5 limits -1 1\n"
-                                            "sole flat foot -0.1 -0.2 0.2 -0.2\n"
-                                            "disc wheel base 0 0.3 0.1\n"
-                                            "named head base 0 0.4 0.3\n"
-                                            "reference 0.05 0\n"
-                                            "actuator ankle foot 40\n");
+    SCENE *s = mechanism_scene("body base free - 1 0.1 0 0 0 0\n"
+                               "body foot hinge base 1 0.1 0 -0.1 0 -0.5 limits -1 1\n"
+                               "sole flat foot -0.1 -0.2 0.2 -0.2\n"
+                               "disc wheel base 0 0.3 0.1\n"
+                               "named head base 0 0.4 0.3\n"
+                               "reference 0.05 0\n"
+                               "actuator ankle foot 40\n");
     static const char *const contacts[] = {"flat_heel", "flat_toe", "wheel", "foot_low",
                                            "foot_high"};
     static const char *const coordinates[] = {"x", "z", "base", "foot"};
@@ -56,14 +55,13 @@ TEST(names)
                   {"contacts.wheel.radius", 0.1},  {"points.head.at[1]", 0.4},
                   {"points.head.lowest", 0.3},     {"bodies.base.reference[0]", 0.05},
                   {"actuators.ankle.limit", 40}};
-    for (size_t k = 0; k < sizeof number / sizeof number[0]; k++) {
+    for (size_t k = 0; k < COUNT(number); k++) {
         int i = 0;
         while (i < s->robot_count && strcmp(s->robot[i].name, number[k].name) != 0)
             i++;
         if (i == s->robot_count || s->robot[i].fallback != number[k].fallback)
             fail_msg("%s", number[k].name);
     }
-    stance_scene_free(s);
 }
 
 /* Gaps, contact points, energy, inertia, standing of the biped at random states. */
@@ -144,8 +142,8 @@ static void biped_rests(const stance_scene *s)
         same(e.force[0], weight, 4, 100, "force");
         assert_true(e.freedoms == 3 && e.freedom[2] == 4 && e.condition < 1 + 1e-12);
         assert_near(e.friction, 0, 1e-12, "friction");
-        assert_int_equal(s->linearise(s, robot, &e, A[1], B[1]), STANCE_OK);
-        assert_int_equal(s->contact_force(s, robot, &e, force, by[1], by_torque[1]), STANCE_OK);
+        OK(s->linearise(s, robot, &e, A[1], B[1]));
+        OK(s->contact_force(s, robot, &e, force, by[1], by_torque[1]));
         closed_linearise(own, e.position, foot, A[0], B[0], by[0], by_torque[0]);
         same(A[1], A[0], 36, 100, "A");
         same(B[1], B[0], 12, 10, "B");
@@ -160,10 +158,9 @@ static void biped_rests(const stance_scene *s)
 /* As described, and as the program carries it. */
 TEST(the_biped)
 {
-    stance_scene *const s = mechanism_scene(BIPED);
+    SCENE *s = mechanism_scene(BIPED);
     biped_moves(s);
     biped_rests(s);
-    stance_scene_free(s);
     biped_moves(biped());
     biped_rests(biped());
 }
@@ -201,7 +198,7 @@ TEST(the_rod)
 TEST(turned_frames)
 {
     const double a = 0.7;
-    stance_scene *const s =
+    SCENE *s =
         mechanism_scene("body trunk free - 2 0.1 0.05 0.2 0 0 angle 0.7\n"
                         "reference 0.1 0.3\n"
                         "body arm hinge trunk 1 0.02 0.1 -0.3 0.2 0.1 angle -1.1 limits -1 1\n"
@@ -231,7 +228,7 @@ TEST(turned_frames)
              at[0][0], at[0][1], at[1][0], at[1][1], at[2][0], at[2][1], at[3][0], at[3][1],
              at[4][0], at[4][1], at[5][0], at[5][1], at[6][0], at[6][1], at[7][0], at[7][1],
              at[8][0], at[8][1], at[9][0], at[9][1], at[10][0], at[10][1], at[11][0], at[11][1]);
-    stance_scene *const hand = mechanism_scene(text);
+    SCENE *hand = mechanism_scene(text);
     double robot[2][STANCE_MAX_ROBOT];
     uint64_t seed = 8;
     stance_robot_fallback(s, robot[0]);
@@ -262,8 +259,6 @@ TEST(turned_frames)
         same(number[0].curvature, number[1].curvature, 3, 1000, "curvature");
     }
     assert_int_equal(memcmp(s->tree->kind, hand->tree->kind, sizeof hand->tree->kind), 0);
-    stance_scene_free(s);
-    stance_scene_free(hand);
 }
 
 static stance_equilibrium at_rest(const stance_scene *s, const double *robot,
@@ -281,27 +276,26 @@ TEST(a_pendulum)
 {
     const double m = 2, inertia = 0.1, l = 0.5, g = 9.81, k = 3, d = 0.4, rotor = 0.05;
     const double I = inertia + m * l * l + rotor;
-    stance_scene *const s = mechanism_scene("body rod hinge - 2 0.1 0 -0.5 0.3 1 stiffness 3 "
-                                            "damping 0.4 armature 0.05\n"
-                                            "actuator motor rod 20\n");
+    SCENE *s = mechanism_scene("body rod hinge - 2 0.1 0 -0.5 0.3 1 stiffness 3 "
+                               "damping 0.4 armature 0.05\n"
+                               "actuator motor rod 20\n");
     double robot[STANCE_MAX_ROBOT], A[4], B[2];
     stance_robot_fallback(s, robot);
     const stance_equilibrium e = at_rest(s, robot, &(stance_equilibrium_choice){0, {0}, 0});
-    assert_int_equal(s->linearise(s, robot, &e, A, B), STANCE_OK);
+    OK(s->linearise(s, robot, &e, A, B));
     same(A, (double[]){0, 1, -(m * g * l + k) / I, -d / I}, 4, 100, "A");
     same(B, (double[]){0, 1 / I}, 2, 10, "B");
     const stance_equilibrium tilted = at_rest(s, robot, &(stance_equilibrium_choice){0, {1}, 0});
     assert_near(tilted.torque[0], m * g * l * sin(1) + k, 1e-13, "torque");
-    stance_scene_free(s);
 }
 
 /* (M + m) x'' - m l a'' = F,  -m l x'' + (I + m l^2) a'' = m g l a. */
 TEST(a_cart_pole)
 {
     const double M = 1, m = 0.1, l = 0.5, I = 0.00833, g = 1.62;
-    stance_scene *const s = mechanism_scene("body cart slide - 1 0 0 0 0 0\n"
-                                            "body pole hinge cart 0.1 0.00833 0 0.5 0 0\n"
-                                            "actuator push cart 20\n");
+    SCENE *s = mechanism_scene("body cart slide - 1 0 0 0 0 0\n"
+                               "body pole hinge cart 0.1 0.00833 0 0.5 0 0\n"
+                               "actuator push cart 20\n");
     double robot[STANCE_MAX_ROBOT], A[16], B[4];
     stance_robot_fallback(s, robot);
     robot[STANCE_ROBOT_GRAVITY] = g;
@@ -316,7 +310,7 @@ TEST(a_cart_pole)
         assert_near(e.position[1], branch ? M_PI : 0, 1e-14, branch ? "hangs" : "stands");
         assert_near(e.torque[0], 0, 1e-14, "force");
         if (branch == 0) {
-            assert_int_equal(s->linearise(s, robot, &e, A, B), STANCE_OK);
+            OK(s->linearise(s, robot, &e, A, B));
             same(A, wanted, 16, 10, "A");
             same(B, (double[]){0, 0, J / det, m * l / det}, 4, 10, "B");
         }
@@ -324,7 +318,6 @@ TEST(a_cart_pole)
     const stance_equilibrium anywhere =
         at_rest(s, robot, &(stance_equilibrium_choice){0, {NAN, NAN}, 0});
     assert_true(anywhere.undetermined == 1 && anywhere.position[0] == 0);
-    stance_scene_free(s);
 }
 
 /* A wheel whose mass is off its axis rests on a slope with that mass above where it touches; with
@@ -332,8 +325,8 @@ TEST(a_cart_pole)
 TEST(a_heavy_side)
 {
     const double m = 2, I = 0.1, r = 0.3, c = 0.1, slope = 0.2;
-    stance_scene *const s = mechanism_scene("body hub free - 2 0.1 0.1 0 0 0\n"
-                                            "disc rim hub 0 0 0.3\n");
+    SCENE *s = mechanism_scene("body hub free - 2 0.1 0.1 0 0 0\n"
+                               "disc rim hub 0 0 0.3\n");
     double robot[STANCE_MAX_ROBOT], A[4], none[1];
     stance_robot_fallback(s, robot);
     robot[STANCE_ROBOT_SLOPE] = slope;
@@ -346,17 +339,15 @@ TEST(a_heavy_side)
         assert_near(e.friction, tan(slope), 1e-13, "friction");
         assert_near(e.force[0][0], m * STANCE_GRAVITY * cos(slope), 1e-12, "normal");
         const double high = r * cos(slope) + c * sin(a);
-        assert_int_equal(s->linearise(s, robot, &e, A, none), STANCE_OK);
+        OK(s->linearise(s, robot, &e, A, none));
         same(A, (double[]){0, 1, m * STANCE_GRAVITY * c * sin(a) / (I + m * high * high), 0}, 4,
              100, "A");
     }
     stance_equilibrium list[STANCE_MAX_BRANCHES];
     int count;
-    assert_int_equal(stance_mechanism_equilibria(
-                         s, robot, &(stance_equilibrium_choice){1, {NAN}, 0}, list, &count, NULL),
-                     STANCE_OK);
+    OK(stance_mechanism_equilibria(s, robot, &(stance_equilibrium_choice){1, {NAN}, 0}, list,
+                                   &count, NULL));
     assert_int_equal(count, 2);
-    stance_scene_free(s);
 }
 
 /* A sentence for each reason why there is no equilibrium. */
@@ -388,8 +379,8 @@ TEST(no_equilibrium)
         {LAMP, {3, {NAN, -0.35}, 0}, "beyond its limits -0.3 ... 1"},
         {LAMP, {3, {0.1, 0}, 0}, "cannot touch"},
     };
-    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
-        stance_scene *const s = mechanism_scene(wrong[i].mechanism);
+    for (size_t i = 0; i < COUNT(wrong); i++) {
+        SCENE *s = mechanism_scene(wrong[i].mechanism);
         stance_equilibrium e;
         stance_message message = {""};
         double robot[STANCE_MAX_ROBOT];
@@ -398,7 +389,6 @@ TEST(no_equilibrium)
         if (!strstr(message.text, wrong[i].text))
             fail_msg("'%s' instead of '%s'", message.text, wrong[i].text);
         assert_int_not_equal(s->equilibrium(s, robot, &wrong[i].choice, &e, NULL), STANCE_OK);
-        stance_scene_free(s);
     }
 #undef LAMP
 }
@@ -406,7 +396,7 @@ TEST(no_equilibrium)
 /* Numbers of robot[] take the place of described ones. */
 TEST(numbers_vary)
 {
-    stance_scene *const s = mechanism_scene("body rod hinge - 2 0.1 0 -0.5 0 0\n");
+    SCENE *s = mechanism_scene("body rod hinge - 2 0.1 0 -0.5 0 0\n");
     double robot[STANCE_MAX_ROBOT], A;
     stance_robot_fallback(s, robot);
     for (int i = 0; i < s->robot_count; i++)
@@ -414,14 +404,13 @@ TEST(numbers_vary)
             robot[i] = 5;
     s->inertia(s, robot, (double[]){0.3}, &A);
     assert_near(A, 0.1 + 5 * 0.25, 1e-15, "inertia");
-    stance_scene_free(s);
 }
 
 /* A wheel on a slope stands on its lowest point, and rolls. */
 TEST(a_wheel)
 {
-    stance_scene *const s = mechanism_scene("body hub free - 2 0.1 0 0 0 0\n"
-                                            "disc rim hub 0.01 0 0.3\n");
+    SCENE *s = mechanism_scene("body hub free - 2 0.1 0 0 0 0\n"
+                               "disc rim hub 0.01 0 0.3\n");
     double robot[STANCE_MAX_ROBOT], q[3] = {5, 5, 0.4}, v[3] = {1, 2, -3}, gap, point[2], speed[2];
     stance_robot_fallback(s, robot);
     robot[STANCE_ROBOT_SLOPE] = 0.2;
@@ -433,16 +422,15 @@ TEST(a_wheel)
     same(speed, (double[]){0, 0}, 2, 1, "at rest");
     assert_near(q[0], 0.3 * sin(0.2) - 0.01 * cos(0.4), 1e-15, "x of the hub");
     assert_near(q[1], 0.3 * cos(0.2) - 0.01 * sin(0.4), 1e-15, "z of the hub");
-    stance_scene_free(s);
 }
 
 /* By a point too near the ground, normal to it, or a body turned too far. */
 TEST(falls)
 {
-    stance_scene *const s = mechanism_scene("body base free - 1 0.1 0 0 0 0 turn 1.5\n"
-                                            "body arm hinge base 1 0.1 0 0.5 0 1\n"
-                                            "named head arm 0 0.5 0.3\n"
-                                            "point foot base 0 0\n");
+    SCENE *s = mechanism_scene("body base free - 1 0.1 0 0 0 0 turn 1.5\n"
+                               "body arm hinge base 1 0.1 0 0.5 0 1\n"
+                               "named head arm 0 0.5 0.3\n"
+                               "point foot base 0 0\n");
     double robot[STANCE_MAX_ROBOT];
     stance_robot_fallback(s, robot);
     assert_false(s->fallen(s, robot, (double[]){0, 0, 0, 0}));
@@ -452,32 +440,30 @@ TEST(falls)
     assert_true(s->fallen(s, robot, (double[]){0, 2, -1.6, 0}));
     robot[STANCE_ROBOT_SLOPE] = -0.5;
     assert_true(s->fallen(s, robot, (double[]){3, 0, 0, 0}));
-    stance_scene_free(s);
 }
 
 /* Every joint, contact and massless tip is on the line, which ends where it began. */
 TEST(figures)
 {
-    stance_scene *const s = mechanism_scene("body trunk free - 20 2.22 0 0.2 0 0\n"
-                                            "body thigh1 hinge trunk 6.8 1.08 0 -0.163 0 0\n"
-                                            "body thigh2 hinge trunk 6.8 1.08 0 -0.163 0 0\n"
-                                            "body shank1 hinge thigh1 3.2 0.93 0 -0.128 0 -0.4\n"
-                                            "body shank2 hinge thigh2 3.2 0.93 0 -0.128 0 -0.4\n"
-                                            "disc foot1 shank1 0 -0.4 0.05\n"
-                                            "sole foot2 shank2 -0.1 -0.4 0.2 -0.4\n"
-                                            "named head trunk 0 0.625\n");
+    SCENE *s = mechanism_scene("body trunk free - 20 2.22 0 0.2 0 0\n"
+                               "body thigh1 hinge trunk 6.8 1.08 0 -0.163 0 0\n"
+                               "body thigh2 hinge trunk 6.8 1.08 0 -0.163 0 0\n"
+                               "body shank1 hinge thigh1 3.2 0.93 0 -0.128 0 -0.4\n"
+                               "body shank2 hinge thigh2 3.2 0.93 0 -0.128 0 -0.4\n"
+                               "disc foot1 shank1 0 -0.4 0.05\n"
+                               "sole foot2 shank2 -0.1 -0.4 0.2 -0.4\n"
+                               "named head trunk 0 0.625\n");
     double robot[STANCE_MAX_ROBOT], points[STANCE_MAX_POINTS][2];
     const double q[7] = {0};
     static const double on[][2] = {{0, 0},       {0, 0.625},  {0, -0.4},
                                    {-0.1, -0.8}, {0.2, -0.8}, {0, -0.85}};
     stance_robot_fallback(s, robot);
     const int n = s->figure(s, robot, q, points);
-    for (size_t k = 0; k < sizeof on / sizeof on[0]; k++) {
+    for (size_t k = 0; k < COUNT(on); k++) {
         double least = 1;
         for (int i = 0; i < n; i++)
             least = fmin(least, hypot(points[i][0] - on[k][0], points[i][1] - on[k][1]));
         assert_near(least, 0, 1e-15, "a point of the figure");
     }
     assert_memory_equal(points[0], points[n - 1], sizeof points[0]);
-    stance_scene_free(s);
 }

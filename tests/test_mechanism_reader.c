@@ -2,7 +2,6 @@
  * wrong one is told.
  */
 #include "reading.h"
-#include "tests.h"
 
 #include "engine/mechanism.h"
 #include "runner/plan/resolve.h"
@@ -10,7 +9,7 @@
 /* RABBIT, with every name on a line of its own, and a cart on a rail; what is said where a piece of
  * one is another. */
 enum { RABBIT, CART, MOST = 200 };
-static char base[2][2048];
+static char base[2][BASE_SIZE];
 static struct mistake {
     int base;
     char from[400], to[2048], said[1100];
@@ -41,17 +40,13 @@ static char *spell(char *out, const char *from, const char *end, int number)
 
 static int read_mistakes(void **state __attribute__((unused)))
 {
-    FILE *const in = fopen("tests/mechanism_mistakes.txt", "r");
+    static const char file[] = "tests/mechanism_mistakes.txt";
+    FILE *const in = fopen(file, "r");
     char line[1024];
-    bool in_base = false;
     for (int of = -1; in && fgets(line, sizeof line, in);) {
         struct mistake *const m = &mistake[mistakes];
         if (strncmp(line, "base ", 5) == 0) {
-            in_base = true, of++;
-        } else if (strcmp(line, "end\n") == 0) {
-            in_base = false;
-        } else if (in_base) {
-            strcat(base[of], line);
+            of++;
         } else if (*line == '|') {
             const char *const to = strchr(line + 1, '|') + 1;
             spell(m->from, line + 1, to - 1, 0);
@@ -61,7 +56,7 @@ static int read_mistakes(void **state __attribute__((unused)))
             snprintf(m->said, sizeof m->said, "bad.yaml:%s", line + 2);
         }
     }
-    return in ? fclose(in) : -1;
+    return in && fclose(in) == 0 ? read_bases(file, base) : -1;
 }
 static CMFixtureFunction before_tests = read_mistakes;
 
@@ -70,8 +65,7 @@ static char *edited(const char *text, const char *from, const char *to)
 {
     const char *const at = strstr(text, from);
     assert_non_null(at);
-    char *const result = malloc(strlen(text) + strlen(to) + 1);
-    assert_non_null(result);
+    char *const result = room(strlen(text) + strlen(to) + 1);
     sprintf(result, "%.*s%s%s", (int)(at - text), text, to, at + strlen(from));
     return result;
 }
@@ -98,7 +92,7 @@ static double quantity(const struct scenario *s, const double *robot, const char
 
 TEST(description_becomes_a_scene)
 {
-    struct scenario s;
+    SCENARIO s = {0};
     read_good(&s, base[RABBIT], NULL, 0);
     const stance_mechanism *const m = s.scene->mechanism;
     assert_true(m && m->bodies == 6 && m->elements == 2 && m->points == 1 && m->actuators == 2);
@@ -125,7 +119,6 @@ TEST(description_becomes_a_scene)
     assert_int_equal(s.base.support, 6);
     for (int i = 0; i < m->numbers; i++)
         assert_false(m->varies[i]);
-    scenario_free(&s);
 }
 
 /* A number that is set, swept, sampled; one that is swept alone is there, too, and varies. */
@@ -136,7 +129,7 @@ TEST(numbers_vary)
         "sweep.grid=[{path: 'robot.bodies.trunk.centre[0]', from: -0.1, to: 0.1, count: 3}, "
         "{path: robot.bodies.shank1.damping, values: [0, 2]}, "
         "{paths: [robot.bodies.thigh1.mass, robot.bodies.thigh2.mass], values: [[5, 6]]}]"};
-    struct scenario s;
+    SCENARIO s = {0};
     struct scenario_values v;
     read_good(&s, base[RABBIT], sets, 3);
     assert_near(quantity(&s, s.base.robot, "bodies.thigh2.mass"), 7, 0); /* like thigh1 */
@@ -157,30 +150,25 @@ TEST(numbers_vary)
         varied += wanted;
     }
     assert_int_equal(varied, 4);
-    scenario_free(&s);
 }
 
 /* The text that files store makes the same scene, and the same text again. */
 TEST(text_reads_back)
 {
     for (int i = 0; i < 2; i++) {
-        struct scenario s, again;
+        SCENARIO s = {0}, again = {0};
         read_good(&s, base[i], NULL, 0);
         read_good(&again, s.text, NULL, 0);
         assert_string_equal(s.text, again.text);
         assert_true(scenario_same_scene(&s, &again));
         assert_memory_equal(&s.base, &again.base, sizeof s.base);
-        scenario_free(&again);
         const char *const set = i ? "robot.bodies.pole.mass=2" : "robot.bodies.trunk.mass=2";
         read_good(&again, base[i], &set, 1);
         assert_true(scenario_same_scene(&s, &again)); /* but for a number */
-        scenario_free(&again);
         const char *const more =
             i ? "robot.bodies.pole.damping=2" : "robot.contacts.foot1.body=trunk";
         read_good(&again, base[i], &more, 1);
         assert_false(scenario_same_scene(&s, &again));
-        scenario_free(&again);
-        scenario_free(&s);
     }
 }
 
@@ -189,7 +177,7 @@ TEST(text_reads_back)
 static void resolve(const char *text, const char *const *sets, size_t set_count,
                     struct resolved_design *design, stance_case *c, const char *wanted)
 {
-    struct scenario s;
+    SCENARIO s = {0};
     stance_message message = {""};
     read_good(&s, text, sets, set_count);
     if (!resolve_design(s.scene, &s.base, design, &message) ||
@@ -197,7 +185,6 @@ static void resolve(const char *text, const char *const *sets, size_t set_count,
         assert_string_equal(message.text, wanted ? wanted : "");
     else
         assert_null(wanted);
-    scenario_free(&s);
 }
 
 /* The regulator of a cart and pole, by SciPy from the linear model in closed form. */
@@ -257,7 +244,7 @@ TEST(targets_stand_on_both_feet)
         "controller={kind: state-feedback, design: lqr, sample_time: 0.001}",
         "ground={friction: 0.8}",
         "robot.bodies.shank1.limits=[-2.5, 2.5]"};
-    struct scenario s;
+    SCENARIO s = {0};
     struct resolved_design design;
     stance_message message;
     stance_case c;
@@ -273,7 +260,6 @@ TEST(targets_stand_on_both_feet)
     c.supports = 1; /* it stands on more than that */
     stance_kernel_find(c.scene, stance_method_find("midpoint"), NULL)->run(&c, &end, 1);
     assert_int_not_equal(end.outcome, STANCE_STABILISED);
-    scenario_free(&s);
 }
 
 /* With initial.support a state stands on the ground; beyond a stop it does not begin. */
@@ -282,7 +268,7 @@ TEST(states_stand)
     static const char *const sets[] = {"initial.support=[foot1]", "ground.contacts=[foot1]",
                                        "initial.state.shank1=0.1"};
     struct resolved_design design;
-    struct scenario s;
+    SCENARIO s = {0};
     stance_case c;
     read_good(&s, base[RABBIT], sets, 2);
     stance_message message;
@@ -291,7 +277,6 @@ TEST(states_stand)
                 resolve_case(&s, &s.base, &design, 0, &c, &message));
     s.scene->gaps(s.scene, c.robot, c.position, gap);
     assert_near(gap[0], 0, 1e-15);
-    scenario_free(&s);
     resolve(base[RABBIT], sets, 3, &design, &c,
             "initial.state.shank1: shank1 would start at 0.1 rad, above its upper limit of 0 rad");
 }
@@ -302,17 +287,15 @@ TEST(wrong_ones_are_told)
 {
     int failed = 0;
     for (const struct mistake *m = mistake; m < mistake + mistakes; m++) {
-        char *const text = edited(base[m->base], m->from, m->to);
-        struct scenario s;
+        OWN char *text = edited(base[m->base], m->from, m->to);
+        SCENARIO s = {0};
         const bool accepted = read_as(&s, "bad.yaml", text, NULL, 0);
         if (accepted)
-            scenario_free(&s);
-        if (accepted || strcmp(errors, m->said) != 0) {
-            print_error("%s -> %s: %snot %s", m->from, m->to, accepted ? "accepted, " : errors,
-                        m->said);
-            failed++;
-        }
-        free(text);
+            if (accepted || strcmp(errors, m->said) != 0) {
+                print_error("%s -> %s: %snot %s", m->from, m->to, accepted ? "accepted, " : errors,
+                            m->said);
+                failed++;
+            }
     }
     assert_int_equal(failed, 0);
     assert_in_range(mistakes, 120, MOST - 1);
@@ -333,7 +316,7 @@ TEST(ground_becomes_plates)
         "{path: ground.plates.field.seed, from: 1, to: 3, count: 3}, "
         "{path: ground.plates.field.height, from: 0, to: 0.02, count: 2}]"};
     for (int k = 0; k < 2; k++) {
-        struct scenario s, again;
+        SCENARIO s = {0}, again = {0};
         struct scenario_values v;
         read_good(&s, scene[k], sets, 2);
         const stance_mechanism *const m = s.scene->mechanism;
@@ -354,7 +337,5 @@ TEST(ground_becomes_plates)
         read_good(&again, s.text, NULL, 0);
         assert_string_equal(s.text, again.text);
         assert_true(scenario_same_scene(&s, &again));
-        scenario_free(&again);
-        scenario_free(&s);
     }
 }

@@ -111,15 +111,15 @@ TEST(two_arms)
 /* Seven bodies in flight: momentum as gravity gives it, energy. */
 TEST(flight)
 {
-    struct robot r = robot_of("body trunk free - 4 0.3 0.1 0.2 0 0\n"
-                              "body thigh1 hinge trunk 2 0.1 0 -0.2 0.1 -0.1\n"
-                              "body shank1 hinge thigh1 1 0.05 0.05 -0.2 0 -0.4\n"
-                              "body foot1 hinge shank1 0.5 0.01 0.1 0 0 -0.4\n"
-                              "body thigh2 hinge trunk 2 0.1 0 -0.2 0 0\n"
-                              "body load fixed thigh2 0.3 0.001 0.1 0.1 0.1 0.1\n"
-                              "body shank2 hinge thigh2 1 0.05 0 -0.2 0 -0.4\n"
-                              "body arm hinge trunk 0.7 0.02 0 -0.3 0 0.5 armature 0.1\n",
-                              0.2);
+    ROBOT r = robot_of("body trunk free - 4 0.3 0.1 0.2 0 0\n"
+                       "body thigh1 hinge trunk 2 0.1 0 -0.2 0.1 -0.1\n"
+                       "body shank1 hinge thigh1 1 0.05 0.05 -0.2 0 -0.4\n"
+                       "body foot1 hinge shank1 0.5 0.01 0.1 0 0 -0.4\n"
+                       "body thigh2 hinge trunk 2 0.1 0 -0.2 0 0\n"
+                       "body load fixed thigh2 0.3 0.001 0.1 0.1 0.1 0.1\n"
+                       "body shank2 hinge thigh2 1 0.05 0 -0.2 0 -0.4\n"
+                       "body arm hinge trunk 0.7 0.02 0 -0.3 0 0.5 armature 0.1\n",
+                       0.2);
     const int n = r.scene->coordinates;
     double A[STANCE_MAX_COORDINATES * STANCE_MAX_COORDINATES], momentum[2][2];
     uint64_t seed = 5;
@@ -146,7 +146,6 @@ TEST(flight)
         near((*m)->name, "energy", r.scene->energy(r.scene, r.c.robot, end.position, end.velocity),
              energy, 1e-6 * fabs(energy));
     }
-    stance_scene_free(r.scene);
 }
 
 /* Four motors make trunk and joints obey e'' + kd e' + kp e = 0, on one foot and in the air, by
@@ -154,15 +153,15 @@ TEST(flight)
 TEST(four_motors_decouple)
 {
     for (int stands = 0; stands < 2; stands++) {
-        struct robot r = robot_of("body trunk free - 20 2.2 0 0.2 0 0\n"
-                                  "body thigh1 hinge trunk 6.8 1.08 0 -0.163 0 0\n"
-                                  "body thigh2 hinge trunk 6.8 1.08 0 -0.163 0 0\n"
-                                  "body shank1 hinge thigh1 3.2 0.93 0 -0.128 0 -0.4\n"
-                                  "body shank2 hinge thigh2 3.2 0.93 0 -0.128 0 -0.4\n"
-                                  "point foot1 shank1 0 -0.4\npoint foot2 shank2 0 -0.4\n"
-                                  "actuator hip1 thigh1 1e9\nactuator hip2 thigh2 1e9\n"
-                                  "actuator knee1 shank1 1e9\nactuator knee2 shank2 1e9\n",
-                                  0.1);
+        ROBOT r = robot_of("body trunk free - 20 2.2 0 0.2 0 0\n"
+                           "body thigh1 hinge trunk 6.8 1.08 0 -0.163 0 0\n"
+                           "body thigh2 hinge trunk 6.8 1.08 0 -0.163 0 0\n"
+                           "body shank1 hinge thigh1 3.2 0.93 0 -0.128 0 -0.4\n"
+                           "body shank2 hinge thigh2 3.2 0.93 0 -0.128 0 -0.4\n"
+                           "point foot1 shank1 0 -0.4\npoint foot2 shank2 0 -0.4\n"
+                           "actuator hip1 thigh1 1e9\nactuator hip2 thigh2 1e9\n"
+                           "actuator knee1 shank1 1e9\nactuator knee2 shank2 1e9\n",
+                           0.1);
         static const double posture[5] = {0.1, 0.2, 0.6, -0.3, -0.9};
         static const int controlled[4] = {2, 4, 5, 6}; /* not the leg that stands */
         const double fast = -9, slow = -4, T = 0.12;
@@ -197,16 +196,15 @@ TEST(four_motors_decouple)
                           stands ? "on one foot" : "in the air", (*m)->name, worst);
             assert_true(worst < 1e-8);
         }
-        stance_scene_free(r.scene);
     }
 }
 
 /* The acrobot: two links that swing wildly and lose nothing; over hours with STANCE_TEST_LONG. */
 TEST(acrobot_keeps_its_energy)
 {
-    struct robot r = robot_of("body upper hinge - 1 0.083 0 -0.5 0 0\n"
-                              "body lower hinge upper 1 0.33 0 -1 0 -1\n",
-                              0);
+    ROBOT r = robot_of("body upper hinge - 1 0.083 0 -0.5 0 0\n"
+                       "body lower hinge upper 1 0.33 0 -1 0 -1\n",
+                       0);
     r.c.position[0] = 2, r.c.position[1] = 1;
     const double energy = r.scene->energy(r.scene, r.c.robot, r.c.position, r.c.velocity);
     const stance_method *const fast = stance_method_find("capturing");
@@ -221,7 +219,6 @@ TEST(acrobot_keeps_its_energy)
         /* Errors of each step within its tolerance may add up. */
         near((*m)->name, "energy", now, energy, 10 * (*m)->tolerance * T / 0.01);
     }
-    stance_scene_free(r.scene);
 }
 
 /* ---- contacts ---------------------------------------------------------------------------------*/
@@ -290,15 +287,14 @@ TEST(disc)
         {"disc without friction", 0.4, 0, 1, 5},
     };
     const double T = 0.5;
-    for (size_t k = 0; k < sizeof discs / sizeof *discs; k++) {
+    for (size_t k = 0; k < COUNT(discs); k++) {
         const double s = discs[k].slope, v = discs[k].v, w = discs[k].w;
         const struct sliding d = slide((struct sliding){0, 0, v, w}, s, discs[k].friction, T);
-        struct robot r = robot_of(DISC, s);
+        ROBOT r = robot_of(DISC, s);
         r.c.friction = discs[k].friction;
         r.c.position[0] = rim * sin(s), r.c.position[1] = rim * cos(s);
         r.c.velocity[0] = v * cos(s), r.c.velocity[1] = -v * sin(s), r.c.velocity[2] = w;
         disc_arrives(discs[k].what, &r, 1e-3, T, &d);
-        stance_scene_free(r.scene);
     }
 }
 
@@ -308,7 +304,7 @@ TEST(disc_bounces)
 {
     const double e = 0.6, T = 0.3, give = 1 / disc_mass + rim * rim / disc_inertia, fall = 0.1;
     for (int slips = 0; slips < 2; slips++) {
-        struct robot r = robot_of(DISC, 0);
+        ROBOT r = robot_of(DISC, 0);
         const double t = sqrt(2 * fall / G), normal = (1 + e) * disc_mass * G * t, up = e * G * t;
         r.c.friction = slips ? 0.1 : 1, r.c.restitution = e;
         r.c.position[1] = rim + fall, r.c.velocity[0] = 1, r.c.velocity[2] = 20;
@@ -317,7 +313,6 @@ TEST(disc_bounces)
         const double x[MOST] = {
             t + v * d, rim + up * d - G * d * d / 2, 20 * t + w * d, v, up - G * d, w};
         arrives(slips ? "disc bounces, slips" : "disc bounces, sticks", &r, 0.004, T, x, 50);
-        stance_scene_free(r.scene);
     }
 }
 
@@ -345,7 +340,7 @@ TEST(sole_stands)
     const double s = 0.2, weight = box_mass * G;
     double force[2 * 2 * 2], place[6], speed[6], gap[4];
     for (const stance_method *const *m = stance_methods(); *m; m++) {
-        struct robot r = box(s, 0.3);
+        ROBOT r = box(s, 0.3);
         stance_trajectory way = {0.5, 2, place, speed, NULL, force, gap};
         double torque[2];
         way.torque = torque;
@@ -360,29 +355,26 @@ TEST(sole_stands)
         near((*m)->name, "force at the toe", force[6], toe_force, 1e-5);
         near((*m)->name, "friction", force[5] + force[7], -weight * sin(s), 1e-5);
         near((*m)->name, "friction used", end.friction_used, tan(s), 1e-6);
-        stance_scene_free(r.scene);
     }
 }
 TEST(sole_slides)
 {
-    struct robot r = box(0.5, 0.2);
+    ROBOT r = box(0.5, 0.2);
     const double T = 0.48, pull = G * (sin(0.5) - 0.2 * cos(0.5)), gone = pull * T * T / 2;
     double x[MOST] = {gone * cos(0.5),     -gone * sin(0.5),     -0.5,
                       pull * T * cos(0.5), -pull * T * sin(0.5), 0};
     arrives("a sole slides", &r, 0.016, T, x, 0);
-    stance_scene_free(r.scene);
 }
 TEST(sole_tips)
 {
     const double s = 0.5, T = 0.4;
-    struct robot r = box(s, 5);
+    ROBOT r = box(s, 5);
     double q[MOST] = {-s, 0};
     integrate(tipping_rate, 2, 0, T, NULL, q);
     /* The reference point is `toe` behind the toe, which is at rest. */
     const double x[MOST] = {toe * cos(s) - toe * cos(q[0]), -toe * sin(s) - toe * sin(q[0]), q[0],
                             toe * sin(q[0]) * q[1],         -toe * cos(q[0]) * q[1],         q[1]};
     arrives("a sole tips about its toe", &r, 0.008, T, x, 0);
-    stance_scene_free(r.scene);
 }
 
 /* ---- impacts ----------------------------------------------------------------------------------*/
@@ -400,7 +392,7 @@ static double until_stop(const double *x)
 }
 TEST(stop_is_hit)
 {
-    struct robot r = robot_of("body arm hinge - 1 0.1 0 -0.5 0 0 limits -inf 0.3\n", 0);
+    ROBOT r = robot_of("body arm hinge - 1 0.1 0 -0.5 0 0 limits -inf 0.3\n", 0);
     double x[MOST] = {0};
     int hits = 0;
     r.c.position[0] = -1;
@@ -413,13 +405,12 @@ TEST(stop_is_hit)
     }
     assert_int_equal(hits, 1);
     arrives("a stop is hit", &r, 0.004, 1.6, x, 20);
-    stance_scene_free(r.scene);
 }
 /* An arm that falls onto its stop lies there, and has not fallen where the stop is as far as it may
  * turn. */
 TEST(stop_holds)
 {
-    struct robot r = robot_of("body arm hinge - 1 0.03 0 0.3 0 0 turn 1 limits -1 1\n", 0);
+    ROBOT r = robot_of("body arm hinge - 1 0.03 0 0.3 0 0 turn 1 limits -1 1\n", 0);
     r.c.settle = true;
     for (const stance_method *const *m = stance_methods(); *m; m++)
         for (double h = 0.01; h > 4e-4; h /= 2)
@@ -430,18 +421,17 @@ TEST(stop_holds)
                 near((*m)->name, "rate", end.velocity[0], 0, 1e-9);
                 assert_int_not_equal(end.outcome, STANCE_FELL);
             }
-    stance_scene_free(r.scene);
 }
 
 /* Whatever the interval before it is, an impact is the contact law's and not the projection's; nor
  * does that stop what slides. */
 TEST(impacts_are_not_projected)
 {
-    struct robot r = robot_of("body foot free - 1 0.01 0 0.05 0 0 turn 1.5\n"
-                              "body shank hinge foot 4 0.06 0 0.2 0 0.07 limits -0.8 0.8\n"
-                              "body thigh hinge shank 40 3 0 0.4 0 0.42 limits 0 2.5\n"
-                              "sole sole foot -0.06 0 0.14 0\n",
-                              0);
+    ROBOT r = robot_of("body foot free - 1 0.01 0 0.05 0 0 turn 1.5\n"
+                       "body shank hinge foot 4 0.06 0 0.2 0 0.07 limits -0.8 0.8\n"
+                       "body thigh hinge shank 40 3 0 0.4 0 0.42 limits 0 2.5\n"
+                       "sole sole foot -0.06 0 0.14 0\n",
+                       0);
     const stance_method *const method = stance_method_find("capturing");
     uint64_t seed = 11;
     double most = 0;
@@ -455,15 +445,14 @@ TEST(impacts_are_not_projected)
     }
     print_message("# energy added by projection in impacts: %.1e J\n", most);
     assert_true(most < 1e-5);
-    stance_scene_free(r.scene);
 }
 
 /* Two bodies about one point in free flight: the stop shares out the moment of momentum. */
 TEST(stop_in_flight)
 {
-    struct robot r = robot_of("body trunk free - 1 0.3 0 0 0 0\n"
-                              "body leg hinge trunk 2 0.1 0 0 0 0 limits -0.5 0.5\n",
-                              0);
+    ROBOT r = robot_of("body trunk free - 1 0.3 0 0 0 0\n"
+                       "body leg hinge trunk 2 0.1 0 0 0 0 limits -0.5 0.5\n",
+                       0);
     r.c.velocity[3] = 2, r.c.position[1] = 2;
     for (const stance_method *const *m = stance_methods(); *m; m++) {
         const stance_result end = run(&r, *m, 1e-3, 0.4);
@@ -474,14 +463,13 @@ TEST(stop_in_flight)
         near((*m)->name, "vz", end.velocity[1], -0.4 * G, 1e-10);
         assert_true(end.max_penetration <= 1e-9);
     }
-    stance_scene_free(r.scene);
 }
 
 /* A cart runs down its rail to the end, and stays. */
 TEST(rail_ends)
 {
     for (const stance_method *const *m = stance_methods(); *m; m++) {
-        struct robot r =
+        ROBOT r =
             robot_of("body cart slide - 2 0 0 0 0 0 axis 4 -3 armature 0.5 limits -1 1\n", 0.4);
         stance_trajectory way = {
             0.5,           3, (double[3]){0}, (double[3]){0}, (double[3]){0}, (double[12]){0},
@@ -492,7 +480,6 @@ TEST(rail_ends)
              1e-9);
         near((*m)->name, "the end of the rail", end.position[0], 1, 1e-9);
         near((*m)->name, "rate at the end", end.velocity[0], 0, 1e-9);
-        stance_scene_free(r.scene);
     }
 }
 
@@ -519,7 +506,7 @@ TEST(rimless_wheel)
     for (int k = 0; k < 6; k++)
         snprintf(text + strlen(text), sizeof text - strlen(text),
                  "point foot%d wheel %.17g %.17g\n", k, sin(k * M_PI / 3), -cos(k * M_PI / 3));
-    struct robot r = robot_of(text, s);
+    ROBOT r = robot_of(text, s);
     double p[MOST] = {s, 1.3};
     r.c.friction = 2;
     r.c.position[0] = sin(s), r.c.position[1] = cos(s), r.c.position[2] = -s;
@@ -540,7 +527,6 @@ TEST(rimless_wheel)
                             -p[1] * sin(a),
                             -p[1]};
     arrives("rimless wheel", &r, 0.004, T, x, 30);
-    stance_scene_free(r.scene);
 }
 
 /* ---- pushes -----------------------------------------------------------------------------------*/
@@ -575,10 +561,9 @@ TEST(push)
     double x[MOST];
     for (int k = 0; k < 2; k++) {
         swinging = k ? 3.7 : 0;
-        struct robot r =
+        ROBOT r =
             pushed(k ? PUSHED "0.104 0.256 3.7\n" : PUSHED "0.104 0.256\n", 0.104, 0.256, 0.4, x);
         arrives(k ? "push that swings" : "push from step to step", &r, 0.008, 0.4, x, k ? 20 : 0);
-        stance_scene_free(r.scene);
     }
     swinging = 0;
 }
@@ -587,7 +572,7 @@ TEST(push)
 TEST(push_inside_steps)
 {
     double x[MOST];
-    struct robot r = pushed(PUSHED "0.1037 0.2531\n", 0.1037, 0.2531, 0.4, x);
+    ROBOT r = pushed(PUSHED "0.1037 0.2531\n", 0.1037, 0.2531, 0.4, x);
     for (const stance_method *const *m = stance_methods(); *m; m++) {
         double error[2];
         for (int k = 0; k < 2; k++) {
@@ -606,7 +591,6 @@ TEST(push_inside_steps)
         assert_true(error[1] < ((*m)->order_smooth > 2 ? 1e-10 : 1e-8) ||
                     order > (*m)->order_smooth - 0.3);
     }
-    stance_scene_free(r.scene);
 }
 
 /* A blow to a pendulum: I q' changes by the blow's moment; and to a disc that lies on the ground,
@@ -626,7 +610,7 @@ static struct robot struck_pendulum(const char *text, double when, double *x)
 TEST(blow_to_pendulum)
 {
     double x[MOST];
-    struct robot r = struck_pendulum(STRUCK "0.4\n", 0.4, x);
+    ROBOT r = struck_pendulum(STRUCK "0.4\n", 0.4, x);
     arrives("blow to a pendulum", &r, 0.008, 1.2, x, 0);
     stance_scene_free(r.scene);
     /* Inside a step: methods whose steps may be of any length have it at its instant. */
@@ -637,13 +621,12 @@ TEST(blow_to_pendulum)
         print_message("# blow inside a step, %s: %.1e\n", (*m)->name, error);
         assert_true(error < ((*m)->order_smooth > 2 ? 1e-6 : 5e-3));
     }
-    stance_scene_free(r.scene);
 }
 TEST(blow_to_disc)
 {
     const double px = 3, pz = 2, y = 0.04;
     for (int slips = 0; slips < 2; slips++) {
-        struct robot r = robot_of(DISC "named hand disc 0 0.04\nimpulse 3 -2 0.1\n", 0);
+        ROBOT r = robot_of(DISC "named hand disc 0 0.04\nimpulse 3 -2 0.1\n", 0);
         const double friction = slips ? 0.02 : 0.5;
         const double give = 1 / disc_mass + rim * rim / disc_inertia;
         const double stick = -(px / disc_mass - rim * y * px / disc_inertia) / give;
@@ -655,7 +638,6 @@ TEST(blow_to_disc)
             slide((struct sliding){0, 0, (px + t) / disc_mass, (rim * t - y * px) / disc_inertia},
                   0, friction, 0.3);
         disc_arrives(slips ? "blow to a disc, slips" : "blow to a disc, rolls", &r, 1e-3, 0.4, &d);
-        stance_scene_free(r.scene);
     }
 }
 

@@ -1,41 +1,13 @@
 /* The null-controllable set: its support function against quadrature, its gauge against closed
  * forms, against all directions, and against torques that steer a point just inside home. */
+#define DENSE_ROWS 10
+#include "dense.h"
 #include "linear.h"
 #include "long.h"
-#include "tests.h"
 
 #include "runner/plan/design.h"
 
-enum { K = 10, INPUTS = 4 }; /* states and torques at most */
-
-/* By Gauss and Jordan, with pivots. */
-static void invert(int n, const double *T, double *inverse)
-{
-    double work[K * 2 * K];
-    for (int i = 0; i < n; i++)
-        for (int j = 0; j < 2 * n; j++)
-            work[i * 2 * n + j] = j < n ? T[i * n + j] : (j - n == i);
-    for (int c = 0; c < n; c++) {
-        int row = c;
-        for (int i = c; i < n; i++)
-            row = fabs(work[i * 2 * n + c]) > fabs(work[row * 2 * n + c]) ? i : row;
-        for (int j = 0; j < 2 * n; j++) {
-            const double swap = work[c * 2 * n + j];
-            work[c * 2 * n + j] = work[row * 2 * n + j], work[row * 2 * n + j] = swap;
-        }
-        const double pivot = work[c * 2 * n + c];
-        for (int j = 0; j < 2 * n; j++)
-            work[c * 2 * n + j] /= pivot;
-        for (int i = 0; i < n; i++) {
-            const double factor = work[i * 2 * n + c];
-            for (int j = 0; j < 2 * n && i != c; j++)
-                work[i * 2 * n + j] -= factor * work[c * 2 * n + j];
-        }
-    }
-    for (int i = 0; i < n; i++)
-        for (int j = 0; j < n; j++)
-            inverse[i * n + j] = work[i * 2 * n + n + j];
-}
+enum { K = DENSE_ROWS, INPUTS = 4 }; /* states and torques at most */
 
 /* out[rows][columns] = a[rows][inner] b[inner][columns], of neither of which it may be part. */
 static void multiply(int rows, int inner, int columns, const double *a, const double *b,
@@ -55,7 +27,7 @@ static void random_basis(uint64_t *seed, int n, const double *D, double *T, doub
     double inverse[K * K], product[K * K];
     for (int i = 0; i < n * n; i++)
         T[i] = uniform(seed, -1, 1) + (i % (n + 1) == 0 ? 2 : 0);
-    invert(n, T, inverse);
+    assert_true(dense_inverse(n, n, T, inverse));
     multiply(n, n, n, T, D, product);
     multiply(n, n, n, product, inverse, A);
 }
@@ -87,11 +59,17 @@ static stance_null_set *made(int n, int m, const double *A, const double *B, con
     return set;
 }
 
+static void set_gone(stance_null_set *const *set)
+{
+    stance_null_set_free(*set);
+}
+#define NULL_SET FREED(set_gone) stance_null_set
+
 /* x' = a x + b u: |x| < b u / a, by sides. */
 TEST(one_mode)
 {
     const double a = 2, b = 3, low = -1, high = 5;
-    stance_null_set *const set = made(1, 1, &a, &b, &low, &high);
+    NULL_SET *set = made(1, 1, &a, &b, &low, &high);
     double re[K], im[K];
     assert_int_equal(stance_null_set_modes(set, re, im), 1);
     assert_near(re[0], 2, 1e-14, "mode");
@@ -100,7 +78,6 @@ TEST(one_mode)
         assert_near(stance_null_set_gauge(set, &x), wanted, 1e-13, "gauge");
         assert_true(stance_null_set_holds(set, &x) == (wanted < 1));
     }
-    stance_null_set_free(set);
 }
 
 /* diag(l1, l2), one symmetric torque |u| <= 1, b = (1, 1): the boundary is traced by u switching
@@ -108,7 +85,7 @@ TEST(one_mode)
 TEST(two_modes)
 {
     const double A[4] = {3, 0, 0, 1.2}, B[2] = {1, 1}, low = -1, high = 1;
-    stance_null_set *const set = made(2, 1, A, B, &low, &high);
+    NULL_SET *set = made(2, 1, A, B, &low, &high);
     for (double T = 0; T < 6; T += 0.01) {
         double z[2];
         for (int i = 0; i < 2; i++)
@@ -117,7 +94,6 @@ TEST(two_modes)
         z[0] *= -0.5, z[1] *= -0.5;
         assert_near(stance_null_set_gauge(set, z), 0.5, 1e-12, "inside");
     }
-    stance_null_set_free(set);
 }
 
 struct plant {
@@ -262,10 +238,9 @@ TEST(support_is_the_integral)
             p.unstable[i * p.n + i] = 1;
         for (int j = 0; j < p.m; j++)
             p.low[j] = -uniform(&seed, 0.2, 2), p.high[j] = uniform(&seed, 0.2, 2);
-        stance_null_set *const set = made(p.n, p.m, p.A, p.B, p.low, p.high);
+        NULL_SET *set = made(p.n, p.m, p.A, p.B, p.low, p.high);
         assert_int_equal(stance_null_set_modes(set, NULL, NULL), p.n);
         compare(&seed, &p, set, slowest, 5, &e);
-        stance_null_set_free(set);
     }
     print_message("# %d points: gauge by quadrature off by %.1e; another direction above by %.1e\n",
                   e.points, e.worst, e.above);
@@ -282,7 +257,7 @@ static void project(struct plant *p, double shift)
         S[i] = p->A[i] - (i % (n + 1) == 0 ? shift : 0);
     for (int round = 0; round < 100 && moved > 1e-14; round++) {
         moved = 0;
-        invert(n, S, inverse);
+        assert_true(dense_inverse(n, n, S, inverse));
         for (int i = 0; i < n * n; i++) {
             const double next = 0.5 * (S[i] + inverse[i]);
             moved = fmax(moved, fabs(next - S[i]) / (1 + fabs(next)));
@@ -338,7 +313,7 @@ TEST(robots)
           {"robot.actuators.knee1.limit", 150}}},
     };
     uint64_t seed = 7;
-    for (size_t kind = 0; kind < sizeof kinds / sizeof kinds[0]; kind++) {
+    for (size_t kind = 0; kind < COUNT(kinds); kind++) {
         struct errors e = {0};
         for (int round = 0; round < 4; round++) {
             static struct scenario s;
@@ -353,7 +328,7 @@ TEST(robots)
                 sets[k] = text[k];
             }
             assert_true(scenario_read(&s, kinds[kind].file, NULL, sets, 4, stderr));
-            stance_null_set *const set = design_set(&r, &s, kinds[kind].robot);
+            NULL_SET *set = design_set(&r, &s, kinds[kind].robot);
             assert_int_equal(stance_null_set_modes(set, re, im), kinds[kind].modes);
             for (int i = 0; i < kinds[kind].modes; i++)
                 slowest = fmin(slowest, re[i]);
@@ -369,7 +344,6 @@ TEST(robots)
             }
             project(&p, 0.5 * slowest);
             compare(&seed, &p, set, slowest, 3, &e);
-            stance_null_set_free(set);
             scenario_free(&s);
         }
         print_message("## %s, %d unstable mode%s, %d points of 4 random robots: support function "
@@ -520,13 +494,12 @@ TEST(hardly_reached)
     const double A[4] = {1, 0, 0, 2}, low = -1, high = 1, x[2] = {1e-7, 0};
     for (int i = 0; i < 2; i++) {
         const double B[2] = {i ? 1e-14 : 1e-7, 1};
-        stance_null_set *const set = made(2, 1, A, B, &low, &high);
+        NULL_SET *set = made(2, 1, A, B, &low, &high);
         assert_int_equal(stance_null_set_unreached(set, NULL, NULL), i);
         if (i)
             assert_true(isinf(stance_null_set_gauge(set, x)));
         else
             assert_near(stance_null_set_gauge(set, x), 1 + sqrt(2), 1e-9, "gauge");
-        stance_null_set_free(set);
     }
 }
 
@@ -565,7 +538,7 @@ TEST(drifting_robots)
          0.5},
 #undef CART
     };
-    for (size_t k = 0; k < sizeof robots / sizeof *robots; k++) {
+    for (size_t k = 0; k < COUNT(robots); k++) {
         static struct scenario s;
         static struct design_report r;
         const int poles = robots[k].poles;
@@ -586,7 +559,7 @@ TEST(drifting_robots)
         snprintf(text + used, sizeof text - (size_t)used,
                  "initial: {equilibrium: {}}\ncontroller: {kind: none}\nstop: {time: 1}\n");
         assert_true(scenario_read(&s, "robot.yaml", text, NULL, 0, stderr));
-        stance_null_set *const set = design_set(&r, &s, robots[k].what);
+        NULL_SET *set = design_set(&r, &s, robots[k].what);
         assert_int_equal(stance_null_set_unreached(set, NULL, NULL), robots[k].unreached);
         assert_int_equal(stance_null_set_modes(set, NULL, NULL), poles);
         for (int at = 0; at < 3; at++) {
@@ -598,7 +571,6 @@ TEST(drifting_robots)
             if (isfinite(gauge) && !isnan(robots[k].gauge))
                 assert_near(gauge, robots[k].gauge, 1e-12, robots[k].what);
         }
-        stance_null_set_free(set);
         scenario_free(&s);
     }
 }
@@ -606,7 +578,7 @@ TEST(drifting_robots)
 TEST(refusals)
 {
     const double A[4] = {1, 0, 0, 2}, B[2] = {0, 1}, low = -1, high = 1, none = -INFINITY, up = 0.1;
-    stance_null_set *set;
+    NULL_SET *set;
     stance_message message;
     assert_int_equal(stance_null_set_make(PLANT(2, 1, A, B), &none, &high, &set, &message),
                      STANCE_BAD_ARGUMENT);
@@ -617,5 +589,4 @@ TEST(refusals)
     const double calm[4] = {-1, 0, 0, -2}, x[2] = {1e9, 1e9};
     set = made(2, 1, calm, B, &low, &high);
     assert_true(stance_null_set_holds(set, x) && stance_null_set_gauge(set, x) == 0);
-    stance_null_set_free(set);
 }

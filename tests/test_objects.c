@@ -7,7 +7,6 @@
  */
 #include "scratch.h"
 #include "support.h"
-#include "tests.h"
 
 #include "runner/base/units.h"
 #include "runner/objects/objects.h"
@@ -102,7 +101,7 @@ static CMFixtureFunction before_tests = cache_make, after_tests = scratch_remove
 TEST(one_after_the_other)
 {
     static const char *const scene[] = {"ball", "rod", "block"};
-    enum { SCENES = sizeof scene / sizeof scene[0] };
+    enum { SCENES = COUNT(scene) };
     const struct parallel alone = parallel_alone();
     struct object object[SCENES], again;
     for (int turn = 0; turn < 2; turn++) { /* compiled, kept */
@@ -144,7 +143,7 @@ TEST(labels)
          "gcc (Debian 12.2.0-14+deb12u1) 12.2.0"},
         {"k", ""},
         {"k", "a compiler whose name is as long as any name that may be kept is: 80 characters"}};
-    for (size_t i = 0; i < sizeof given / sizeof given[0]; i++) {
+    for (size_t i = 0; i < COUNT(given); i++) {
         struct image image = sealed(1000 + i, &given[i]);
         struct image_label read;
         assert_true(image_label(&image, &read));

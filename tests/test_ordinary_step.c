@@ -7,7 +7,6 @@
 #define STANCE_SCENE_LANES "engine/scenes/biped_lanes.h"
 #include "engine/methods/implicit.c"
 #include "inside.h"
-#include "tests.h"
 
 /* A random operator: symmetric and positive, of condition up to 1e4, bent a little. */
 static void random_operator(uint64_t *seed, int n, double bend, double D[2][2][2][2])
@@ -205,7 +204,7 @@ static void random_law(uint64_t *seed, struct law *law)
 TEST(ordinary_steps_are_converged)
 {
     static const double steps[] = {1e-4, 1e-3, 5e-3, 2e-2};
-    enum { TRIES = 600, LENGTH = 100, STEPS = sizeof steps / sizeof *steps };
+    enum { TRIES = 600, LENGTH = 100, STEPS = COUNT(steps) };
     uint64_t seed = 17;
     for (size_t n = 0; n < 2 * STEPS; n++) {
         const bool coupled = n >= STEPS;

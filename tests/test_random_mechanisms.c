@@ -9,11 +9,6 @@
  *
  * The same holds on random plates; and on one plate that is raised a robot does what it does below.
  */
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "long.h"
 #include "random_mechanism.h"
 #include "tests.h"
@@ -67,7 +62,7 @@ static stance_scene *on_plates(stance_scene *flat, void (*lay)(stance_mechanism 
     stance_scene *scene = NULL;
     m = *flat->mechanism;
     lay(&m);
-    assert_int_equal(stance_mechanism_scene(&m, &scene, NULL), STANCE_OK);
+    OK(stance_mechanism_scene(&m, &scene, NULL));
     stance_scene_free(flat);
     return scene;
 }
@@ -120,8 +115,7 @@ static void hunt(const stance_method *method, int hinged, int sliding,
     struct tally t = {0};
     long bad = 0;
     for (int tree = 0; tree < hinged + sliding; tree++) {
-        stance_scene *scene =
-            tree < hinged ? random_scene(tree, 0) : random_scene(tree - hinged, 0.4);
+        SCENE *scene = tree < hinged ? random_scene(tree, 0) : random_scene(tree - hinged, 0.4);
         if (lay)
             scene = on_plates(scene, lay);
         for (int k = 0; k < CASES; k++) {
@@ -135,7 +129,6 @@ static void hunt(const stance_method *method, int hinged, int sliding,
                 bad++;
                 tell(method->name, tree, k, &cases[k], &results[k]);
             }
-        stance_scene_free(scene);
     }
     print_message(
         "## %s: penetration %.1e, cone %.1e, impacts add %.1e of the energy, Signorini %.1e "
@@ -176,7 +169,7 @@ static void factors_of(int tree, const char *method, long *same, long *cases)
     m = *scene->mechanism;
     for (int e = 0; e < m.elements; e++)
         m.element[e].rough = true, m.value.element[e].friction_factor = 2;
-    assert_int_equal(stance_mechanism_scene(&m, &rough, NULL), STANCE_OK);
+    OK(stance_mechanism_scene(&m, &rough, NULL));
     for (int k = 0; k < 20; k++, ++*cases) {
         random_scene_case(scene, &c[0]);
         c[0].step = 0.002;
@@ -200,7 +193,7 @@ static void factors_of(int tree, const char *method, long *same, long *cases)
 TEST(factors)
 {
     static const char *const method[] = {"implicit", "midpoint", "capturing", "lagrange"};
-    for (size_t i = 0; i < sizeof method / sizeof *method; i++) {
+    for (size_t i = 0; i < COUNT(method); i++) {
         long same = 0, cases = 0;
         for (int tree = 0; tree < trees_of() / 10; tree++)
             factors_of(tree, method[i], &same, &cases);
@@ -212,7 +205,7 @@ TEST(factors)
 TEST(plates)
 {
     static const char *const method[] = {"implicit", "midpoint", "capturing"};
-    for (size_t i = 0; i < sizeof method / sizeof *method; i++)
+    for (size_t i = 0; i < COUNT(method); i++)
         hunt(stance_method_find(method[i]), trees_of() / 3, trees_of() / 5, lay_any);
 }
 
@@ -221,12 +214,10 @@ static void raised_by(const char *name, long *same, long *cases)
     static stance_case c[CASES], up[CASES];
     static stance_result r[CASES], above[CASES];
     for (int tree = 0; tree < trees_of() / 2; tree++) {
-        stance_scene *const flat = random_scene(tree, 0.2);
-        if (flat->mechanism->body[0].joint != STANCE_FREE) {
-            stance_scene_free(flat);
+        SCENE *flat = random_scene(tree, 0.2);
+        if (flat->mechanism->body[0].joint != STANCE_FREE)
             continue;
-        }
-        stance_scene *const raised = on_plates(random_scene(tree, 0.2), lay_raised);
+        SCENE *raised = on_plates(random_scene(tree, 0.2), lay_raised);
         for (int k = 0; k < CASES; k++) {
             random_scene_case(flat, &c[k]);
             c[k].tolerance = stance_method_find(name)->tolerance;
@@ -246,15 +237,13 @@ static void raised_by(const char *name, long *same, long *cases)
                 off = fmax(off, fabs(r[k].position[i] - above[k].position[i]));
             *same += r[k].status == above[k].status && off <= 1e-5;
         }
-        stance_scene_free(flat);
-        stance_scene_free(raised);
     }
 }
 
 TEST(raised)
 {
     static const char *const method[] = {"implicit", "midpoint", "capturing", "lagrange"};
-    for (size_t i = 0; i < sizeof method / sizeof *method; i++) {
+    for (size_t i = 0; i < COUNT(method); i++) {
         long same = 0, cases = 0;
         raised_by(method[i], &same, &cases);
         print_message("# on a raised plate, %s: %ld of %ld the same\n", method[i], same, cases);
@@ -270,7 +259,7 @@ TEST(reference)
     static stance_result r[2][CASES];
     long same = 0, cases = 0;
     for (int tree = 0; tree < trees_of(); tree++) {
-        stance_scene *const scene = on_plates(random_scene(tree, 0.1), lay_any);
+        SCENE *scene = on_plates(random_scene(tree, 0.1), lay_any);
         for (int k = 0; k < 20; k++)
             random_scene_case(scene, &c[k]);
         for (int i = 0; i < 2; i++) {
@@ -287,7 +276,6 @@ TEST(reference)
             cases++;
             same += off <= 1e-5;
         }
-        stance_scene_free(scene);
     }
     print_message("# on plates, capturing and event-driven: %ld of %ld the same\n", same, cases);
     assert_true(cases - same <= 1 + cases / 100);

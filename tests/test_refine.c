@@ -2,7 +2,6 @@
  * implementation that goes through cells one by one with the definition of refine.h in hand.
  */
 #include "support.h"
-#include "tests.h"
 
 #include "runner/plan/refine.h"
 
@@ -161,6 +160,12 @@ static void brute(const struct refine_map *map, label_function label, int *known
 
 /* ---- both ----------------------------------------------------------------------------------- */
 
+static void refine_gone(struct refine *const *refine)
+{
+    refine_free(*refine);
+}
+#define REFINE FREED(refine_gone) struct refine
+
 /* Runs a map, `room` points a round, each round's labels given in reverse; how many simulated. */
 static uint64_t run(struct refine *refine, const struct refine_map *map, label_function label,
                     size_t room)
@@ -191,7 +196,7 @@ static void agree(const struct refine_map *map, label_function label)
     assert_true(points <= MOST);
     memset(known, 0, sizeof known);
     for (int r = 0; r < 3; r++) {
-        struct refine *refine = refine_make(map);
+        REFINE *refine = refine_make(map);
         uint64_t rows[MOST], n;
         assert_non_null(refine);
         refine_want(refine, points / 3);
@@ -209,7 +214,6 @@ static void agree(const struct refine_map *map, label_function label)
             assert_true(result[i] > 0);
         }
         assert_int_equal(simulated, expected);
-        refine_free(refine);
     }
 }
 
@@ -309,12 +313,11 @@ TEST(test_smooth)
     for (size_t n = 128; n <= 1024; n *= 2) {
         const struct refine_map map = {
             .axes = 2, .count = {n, n}, .refined = {true, true}, .start = 16, .margin = 1};
-        struct refine *refine = refine_make(&map);
+        REFINE *refine = refine_make(&map);
         assert_non_null(refine);
         uint64_t simulated = run(refine, &map, disc, 1 << 20);
         for (uint64_t i = 0; i < n * n; i++)
             assert_int_equal(refine_label(refine, i), truth(&map, disc, i));
-        refine_free(refine);
         assert_int_equal(refine_coarse(&map), 17 * 17);
         /* 2 pi 0.3 n crossings, a band of 2 (1 + 2 margin) + 1 points at the last level, as much as
          * that in all levels before it, and some more where the boundary is oblique. */
@@ -345,7 +348,7 @@ TEST(test_probes)
                                        .start = 8,
                                        .probes = share,
                                        .seed = seed};
-        struct refine *refine = refine_make(&map);
+        REFINE *refine = refine_make(&map);
         uint64_t rows[N * N], right = 0;
         assert_non_null(refine);
         probes += (double)refine_next(refine, rows, N * N) - (double)refine_coarse(&map);
@@ -354,7 +357,6 @@ TEST(test_probes)
             right += refine_label(refine, i) == truth(&map, island, i);
         assert_true(right == N * N || right == N * N - INNER);
         seen += right == N * N;
-        refine_free(refine);
     }
     /* Binomial: within four standard deviations. The lattice has 9 x 9 points of its own. */
     const double p = 1 - pow(1 - share, INNER), n = (double)SEEDS * (N * N - 81);
@@ -366,7 +368,7 @@ TEST(test_extremes)
 {
     struct refine_map map = {
         .axes = 2, .count = {40, 40}, .refined = {true, true}, .start = 8, .probes = 1};
-    struct refine *refine = refine_make(&map);
+    REFINE *refine = refine_make(&map);
     assert_non_null(refine);
     assert_int_equal(run(refine, &map, half_plane, 64), 1600);
     refine_free(refine);
@@ -375,5 +377,4 @@ TEST(test_extremes)
     refine = refine_make(&map);
     assert_non_null(refine);
     assert_int_equal(run(refine, &map, half_plane, 64), 1600);
-    refine_free(refine);
 }

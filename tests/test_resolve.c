@@ -1,6 +1,5 @@
 /* From the numbers of a scenario to a case: start, law, doe, and what is refused. */
 #include "support.h"
-#include "tests.h"
 
 #include "runner/plan/resolve.h"
 
@@ -161,7 +160,7 @@ TEST(sampling)
         {0.3, 0.1, 0.3, 3, 3},        {0, 0.002, 0.0029, 0, 1},   {0.7, 0.0007, 1.4, 1000, 2000},
         {0, 0.001, 0.0016, 0, 2},
     };
-    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+    for (size_t i = 0; i < COUNT(rows); i++) {
         struct scenario_values v = balance_values();
         v.sample_time = rows[i].sample_time;
         v.step = rows[i].step;

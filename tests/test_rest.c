@@ -2,7 +2,6 @@
  * they say is held to the same case simulated on without settling, for ten times as long. */
 #include "long.h"
 #include "support.h"
-#include "tests.h"
 
 enum { SIDE = 48 };
 
@@ -57,9 +56,8 @@ static double critical_time(const stance_case *c, int delay)
     const stance_equilibrium equilibrium = equilibrium_at(c);
     double A[36], B[12], K[12], T;
     get_gain(c, K);
-    assert_int_equal(scene->linearise(scene, c->robot, &equilibrium, A, B), STANCE_OK);
-    assert_int_equal(stance_critical_sample_time(PLANT(6, 2, A, B), SAMPLING(K, 0, delay), 1, &T),
-                     STANCE_OK);
+    OK(scene->linearise(scene, c->robot, &equilibrium, A, B));
+    OK(stance_critical_sample_time(PLANT(6, 2, A, B), SAMPLING(K, 0, delay), 1, &T));
     return T;
 }
 
@@ -118,26 +116,14 @@ TEST(stiff_legs_rest)
 /* A block that is pulled to and fro rests where the pull never reaches what friction holds. */
 TEST(pulled_blocks_rest_if_held)
 {
-    const stance_scene *const scene = stance_scene_find("block");
     static const double share[] = {0.9, 0.999, 1.001, 1.05, 1.2}; /* of what friction holds */
     for (int k = 0; k < 5; k++) {
-        stance_case c = plain_case();
-        stance_robot_fallback(scene, c.robot);
-        c.scene = scene;
-        for (int i = 0; i < scene->robot_count; i++) {
-            if (strcmp(scene->robot[i].name, "pull") == 0)
-                c.robot[i] = share[k] * 0.5 * 9.81 * c.robot[0];
-            if (strcmp(scene->robot[i].name, "pull_frequency") == 0)
-                c.robot[i] = 0.05; /* 20 s: it is still for long */
-        }
-        c.friction = 0.5;
-        c.contacts = 1;
+        stance_case c = case_of_scene("block", 1e-3, 2);
+        c.robot[1] = share[k] * 0.5 * 9.81 * c.robot[0]; /* the pull, and its frequency: */
+        c.robot[2] = 0.05;                               /* 20 s, it is still for long */
         c.settle = true;
-        c.robot[STANCE_ROBOT_FALL_HEIGHT] = -1e9;
-        c.steps = 2000;
-        stance_result r;
-        run_cases(stance_kernel_find(scene, stance_method_find("capturing"), NULL), &c, &r, 1);
-        assert_int_equal(r.outcome, share[k] > 1 ? STANCE_UNDECIDED : STANCE_RESTED);
+        assert_int_equal(run_one("capturing", &c).outcome,
+                         share[k] > 1 ? STANCE_UNDECIDED : STANCE_RESTED);
     }
 }
 
@@ -225,13 +211,9 @@ static stance_case odd_case(uint64_t *seed, int kind)
     } else if (kind == RAMPS) {
         c.decouples = true;
         for (int i = 0; i < 2; i++)
-            c.servo[i] = (stance_servo){.coordinate = 2 + i,
-                                        .setpoint = c.position[2 + i],
-                                        .ramp = 1e-3 * exp(uniform(seed, 0, 4)),
-                                        .duration = i ? 20 : INFINITY,
-                                        .kp = 100,
-                                        .kd = 20,
-                                        .integral_limit = INFINITY};
+            c.servo[i] =
+                servo_of(2 + i, c.position[2 + i], 1e-3 * exp(uniform(seed, 0, 4)), 100, 20);
+        c.servo[1].duration = 20;
     } else if (kind == LIMITS) {
         const double rate = uniform(seed, -0.5, 0.5);
         c.velocity[2] = rate, c.velocity[3] = c.velocity[4] = -rate;
@@ -290,8 +272,7 @@ TEST(soft_legs_rest_where_they_stay)
 {
     static const char *const methods[] = {"implicit", "midpoint"};
     const int count = long_tests() ? 20000 : 500;
-    stance_case *const c = calloc((size_t)count, sizeof *c);
-    assert_non_null(c);
+    OWN stance_case *c = room((size_t)count * sizeof *c);
     for (int m = 0; m < 2; m++) {
         uint64_t seed = 11;
         for (int i = 0; i < count; i++)
@@ -303,7 +284,6 @@ TEST(soft_legs_rest_where_they_stay)
         assert_true(sum.rested > count / 5 && sum.fallen == 0 && sum.left == 0);
         assert_true(sum.missed * 20 < sum.still);
     }
-    free(c);
 }
 
 /* The same with laws that are not linear about where it stands, and where the trunk sinks. */
@@ -311,8 +291,7 @@ TEST(odd_laws_rest_where_they_stay)
 {
     static const char *const names[] = {"two laws", "ramps", "limits", "underground"};
     const int count = long_tests() ? 10000 : 200;
-    stance_case *const c = calloc((size_t)count, sizeof *c);
-    assert_non_null(c);
+    OWN stance_case *c = room((size_t)count * sizeof *c);
     for (int kind = 0; kind < KINDS; kind++) {
         uint64_t seed = 5;
         for (int i = 0; i < count; i++)
@@ -323,27 +302,19 @@ TEST(odd_laws_rest_where_they_stay)
         assert_true(sum.fallen == 0 && sum.left == 0);
         assert_true(kind == RAMPS || sum.rested > count / 5);
     }
-    free(c);
 }
 
 /* At e = 0.55 and 0.75 the steps of 1 ms end in bounces of micrometres, for ever: it lies still. */
 TEST(bounces_within_a_step_rest)
 {
-    const stance_scene *const scene = stance_scene_find("ball");
     for (int k = 0; k < 19; k++) {
-        stance_case c = plain_case();
-        stance_robot_fallback(scene, c.robot);
-        c.scene = scene;
+        stance_case c = case_of_scene("ball", 1e-3, 8);
         double gap[STANCE_MAX_CONTACTS];
-        scene->gaps(scene, c.robot, c.position, gap);
+        c.scene->gaps(c.scene, c.robot, c.position, gap);
         c.position[1] += 0.5 - gap[0];
         c.restitution = 0.05 * k;
-        c.contacts = 1;
         c.settle = true;
         c.settle_rate = 0.02, c.settle_hold = 0.25;
-        c.steps = 8000;
-        stance_result r;
-        run_cases(stance_kernel_find(scene, stance_method_find("midpoint"), NULL), &c, &r, 1);
-        assert_int_equal(r.outcome, STANCE_RESTED);
+        assert_int_equal(run_one("midpoint", &c).outcome, STANCE_RESTED);
     }
 }

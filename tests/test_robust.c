@@ -1,12 +1,8 @@
 /* test_robust.c - signs of life and what others make of them. */
 #include "support.h"
-#include "tests.h"
 
 #include "runner/run/heartbeat.h"
 
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
 /* ---- signs of life ------------------------------------------------------------------------ */
@@ -98,7 +94,7 @@ TEST(test_strange_notes)
     };
     const struct place *place = *state;
     struct heartbeat_note note;
-    for (size_t k = 0; k < sizeof notes / sizeof notes[0]; k++) {
+    for (size_t k = 0; k < COUNT(notes); k++) {
         put(place->lock, notes[k]);
         heartbeat_read(place->file, &note);
         assert_false(note.exists || note.running);

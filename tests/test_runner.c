@@ -1,7 +1,6 @@
 /* test_runner.c - options, checksums, plan, results file and lock, each alone and on one rank. */
 #include "runner/base/words.h"
 #include "support.h"
-#include "tests.h"
 
 #include "runner/base/checksum.h"
 #include "runner/base/command.h"
@@ -15,6 +14,9 @@
 #include <signal.h>
 #include <sys/wait.h>
 #include <unistd.h>
+
+#define SCENARIO FREED(scenario_free) struct scenario
+#define PLAN FREED(plan_free) struct plan
 
 /* ---- checksums ---------------------------------------------------------------------------- */
 
@@ -43,36 +45,51 @@ TEST(test_crc32c)
 /* FIPS 180-4's examples, and the lengths around a block's end by what they continue to. */
 TEST(test_sha256)
 {
-    char text[CHECKSUM_SHA256_TEXT], *million = malloc(1000000);
-    const char *two = "abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq";
-    checksum_sha256("", 0, text);
-    assert_string_equal(text, "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
-    checksum_sha256("abc", 3, text);
-    assert_string_equal(text, "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
-    checksum_sha256(two, strlen(two), text);
-    assert_string_equal(text, "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1");
-    assert_non_null(million);
-    memset(million, 'a', 1000000);
-    checksum_sha256(million, 1000000, text);
+    static char million[1000000];
+    static const struct {
+        const char *of, *wanted;
+    } known[] = {{"", "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855"},
+                 {"abc", "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad"},
+                 {"abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq",
+                  "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1"}};
+    char text[CHECKSUM_SHA256_TEXT];
+    for (size_t k = 0; k < COUNT(known); k++) {
+        checksum_sha256(known[k].of, strlen(known[k].of), text);
+        assert_string_equal(text, known[k].wanted);
+    }
+    memset(million, 'a', sizeof million);
+    checksum_sha256(million, sizeof million, text);
     assert_string_equal(text, "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
-    free(million);
 }
 
 /* ---- words and options -------------------------------------------------------------------- */
 
 TEST(test_nearest_word)
 {
-    const char *const known[] = {"check", "design", "run", "status", "summary", "sample_time"};
-    assert_string_equal(nearest_word("chekc", known, 6), "check"); /* a swap is one edit */
-    assert_string_equal(nearest_word("stats", known, 6), "status");
-    assert_string_equal(nearest_word("sampletime", known, 6), "sample_time");
-    assert_string_equal(nearest_word("ru", known, 6), "run");
-    assert_null(nearest_word("xyz", known, 6));
-    const char *const axes[] = {"z", "vz", "gain"};
+    static const char *const known[] = {"check",    "design",      "run",
+                                        "status",   "summary",     "sample_time",
+                                        "friction", "restitution", "contacts"},
+                             *const axes[] = {"z", "vz", "gain"};
+    static const struct {
+        const char *word, *nearest;
+    } of[] = {{"chekc", "check"}, /* a swap is one edit */
+              {"stats", "status"},
+              {"sampletime", "sample_time"},
+              {"ru", "run"},
+              {"xyz", NULL},
+              {"", NULL},
+              {"telescope", NULL},
+              {"fricton", "friction"},
+              {"rfiction", "friction"},
+              {"restituti", "restitution"},
+              {"gravity", NULL}};
+    for (size_t k = 0; k < COUNT(of); k++) {
+        const char *const found = nearest_word(of[k].word, known, COUNT(known));
+        assert_true(of[k].nearest ? found && strcmp(found, of[k].nearest) == 0 : !found);
+    }
     assert_null(nearest_word("zzz", axes, 3)); /* two of three letters are too many */
+    assert_null(nearest_word("x", axes, 3));
     assert_string_equal(nearest_word("gian", axes, 3), "gain");
-    assert_null(nearest_word("", known, 6));
-    assert_null(nearest_word("telescope", known, 6));
 }
 
 static int nothing(int argc, char **argv)
@@ -148,7 +165,7 @@ TEST(test_options)
         {"try", "a", "--colours=red,"}};
     int silent = dup(STDERR_FILENO);
     assert_non_null(freopen("/dev/null", "w", stderr));
-    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+    for (size_t i = 0; i < COUNT(bad); i++) {
         int count = 0;
         while (count < 5 && bad[i][count])
             count++;
@@ -166,7 +183,7 @@ TEST(test_options)
 TEST(test_chunks)
 {
     const uint64_t sizes[] = {1, 2, 7, 8, 63, 64, 65, 1000, 4096, 65536, 1000003, 40000000};
-    for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++) {
+    for (size_t i = 0; i < COUNT(sizes); i++) {
         for (int ranks = 1; ranks <= 1024; ranks = ranks * 3 + 1) {
             uint64_t next = 0, first, count, k = 0, before = UINT64_MAX;
             for (; schedule_chunk(sizes[i], ranks, k, &first, &count); k++) {
@@ -296,7 +313,7 @@ TEST(test_checks)
 TEST(test_impatient)
 {
     struct fixture *f = *state;
-    struct plan plan;
+    PLAN plan;
     struct plan_error error = {0};
     bool bound;
     assert_true(plan_make(&plan, &f->scenario, false, 0, false, &error));
@@ -320,7 +337,6 @@ TEST(test_impatient)
         assert_memory_equal(&plan.design[d * plan.design_size],
                             &f->plan.design[d * plan.design_size],
                             plan.design_size * sizeof *plan.design);
-    plan_free(&plan);
 }
 
 /* ---- the results file --------------------------------------------------------------------- */
@@ -380,21 +396,29 @@ static void assert_whole(struct store *store, uint64_t first, size_t n, bool exp
     }
 }
 
+/* The file anew, as that plan makes it. */
+static struct store *opened(const struct fixture *f, const struct plan *plan)
+{
+    struct store *store;
+    stance_message message;
+    unlink(f->file);
+    assert_true(store_create(f->file, plan, NULL, 1, "here", &message));
+    assert_true(store_open(&store, f->file, plan, NULL, &message));
+    return store;
+}
+
 /* Ranges of all lengths over a grid of 3 x 2 x 5 x 2: written rows are whole, others stay pending
  * (trajectories, which these rows lack, are tested from outside). */
 TEST(test_rows)
 {
     struct fixture *f = *state;
-    struct store *store;
     struct store_counts counts;
     stance_message message;
     struct plan plan = f->plan;
     plan.record_rows = 0, plan.record_cases = 0;
     for (uint64_t first = 0; first < 60; first++) {
         const size_t n = 1 + (size_t)(first * 37 % (60 - first));
-        unlink(f->file);
-        assert_true(store_create(f->file, &plan, NULL, 1, "here", &message));
-        assert_true(store_open(&store, f->file, &plan, NULL, &message));
+        struct store *const store = opened(f, &plan);
         assert_whole(store, 0, 60, false);
         write_rows(store, first, n);
         assert_whole(store, first, n, true);
@@ -412,13 +436,10 @@ TEST(test_rows)
 TEST(test_listed_rows)
 {
     struct fixture *f = *state;
-    struct store *store;
     stance_message message;
     struct plan plan = f->plan;
     plan.record_rows = 0, plan.record_cases = 0;
-    unlink(f->file);
-    assert_true(store_create(f->file, &plan, NULL, 1, "here", &message));
-    assert_true(store_open(&store, f->file, &plan, NULL, &message));
+    struct store *const store = opened(f, &plan);
     for (uint64_t third = 0; third < 3; third++) {
         const uint64_t begin = 20 * third, step = 7 - 3 * third;
         stance_result results[20];
@@ -438,14 +459,11 @@ TEST(test_listed_rows)
 TEST(test_designs_stored)
 {
     struct fixture *f = *state;
-    struct store *store;
     stance_message message;
-    struct plan copy = f->plan;
-    unlink(f->file);
-    assert_true(store_create(f->file, &f->plan, NULL, 1, "here", &message));
+    PLAN copy = f->plan;
     copy.design = calloc(4, copy.design_size * sizeof *copy.design);
     copy.design_status = calloc(4, 1);
-    assert_true(store_open(&store, f->file, &f->plan, NULL, &message));
+    struct store *const store = opened(f, &f->plan);
     assert_true(store_read_designs(store, &copy, &message));
     assert_true(store_close(store, &message));
     assert_memory_equal(copy.design_status, f->plan.design_status, 4);
@@ -454,7 +472,6 @@ TEST(test_designs_stored)
                             &f->plan.design[d * copy.design_size],
                             copy.design_size * sizeof *copy.design);
     assert_true(isnan(plan_design_at(&copy, 1).gain[0][0]));
-    plan_free(&copy);
 }
 
 /* A scene without actuators and designs: rows with trajectories, whole when both are. */
@@ -466,10 +483,9 @@ TEST(test_plain_scene)
         "sweep: {grid: [{path: robot.radius, values: [0, 0.1, 0.2]}]}\n"
         "record: {every: 0.1, cases: all}\n";
     const struct fixture *f = *state;
-    struct scenario s;
-    struct plan plan;
+    SCENARIO s;
+    PLAN plan;
     struct plan_error error;
-    struct store *store;
     stance_message message;
     struct store_found found[3];
     stance_result results[3];
@@ -480,9 +496,7 @@ TEST(test_plain_scene)
     assert_true(plan_compute_designs(&plan, &f->alone, &error));
     assert_int_equal(plan.designs, 1);
     assert_true(plan_check_cases(&plan, &error));
-    unlink(f->file);
-    assert_true(store_create(f->file, &plan, NULL, 1, "here", &message));
-    assert_true(store_open(&store, f->file, &plan, NULL, &message));
+    struct store *const store = opened(f, &plan);
     for (int i = 0; i < 42; i++)
         data[i] = nothing;
     for (uint64_t row = 0; row < 3; row++) {
@@ -507,8 +521,6 @@ TEST(test_plain_scene)
     assert_true(store_verify(store, &(struct rows){.count = 3, .first = 0}, found, &message));
     assert_true(found[2].whole); /* its checksum is of what was written */
     assert_true(store_close(store, &message));
-    plan_free(&plan);
-    scenario_free(&s);
 }
 
 TEST(test_origin)

@@ -4,7 +4,6 @@
  */
 #include "long.h"
 #include "reading.h"
-#include "tests.h"
 
 #include "runner/scenario/schema.h"
 #include "runner/store/store.h"
@@ -13,114 +12,28 @@
 
 static void refused(const char *text, const char *const *sets, size_t set_count, const char *wanted)
 {
-    struct scenario s, empty;
-    memset(&empty, 0, sizeof empty);
+    SCENARIO s = {0}, empty = {0};
     assert_false(read_as(&s, "bad.yaml", text, sets, set_count));
     assert_string_equal(errors, wanted);
     assert_memory_equal(&s, &empty, sizeof s);
 }
 
-static const char full[] =
-    "stance: 1\n"
-    "title: \"Every key: \\\"one\\\" of them\"\n"
-    "scene: biped\n"
-    "robot: {leg_length: 0.5, trunk_length: 0.6, foot_mass: 1.5, trunk_mass: 2, hip_mass: 5}\n"
-    "ground: {friction: 0.7, restitution: 0.25, contacts: [foot2]}\n"
-    "initial:\n"
-    "  equilibrium: {theta: -0.41, q1: .5, branch: lower}\n"
-    "  support_foot: 2\n"
-    "  offset: {x: 1, z: 2, theta: 0.1, q1: 0.2, q2: 0.3, vx: 3, vz: 4, vtheta: 5, vq1: 6, "
-    "vq2: 7e-1}\n"
-    "controller:\n"
-    "  kind: state-feedback\n"
-    "  design: place\n"
-    "  poles: [-3, -3.3, -4+1.5i, -5, -4-1.5i, -4.6e0]\n"
-    "  model: {leg_length: 0.51, hip_mass: 5.5}\n"
-    "  equilibrium: {theta: -0.4, q2: +0.8}\n"
-    "  sample_time: 0.002\n"
-    "  torque_limit: 10\n"
-    "  noise: 0.1\n"
-    "method: {name: midpoint, step: 5e-4, tolerance: 1e-7}\n"
-    "stop: {time: 8.5, settle: {angle: 0.04, rate: 0.4, hold: 0.6}, fall_height: 0.3}\n"
-    "sweep:\n"
-    "  grid:\n"
-    "    - {path: ground.friction, from: 0.1, to: 0.7, count: 4}\n"
-    "    - {path: robot.hip_mass, from: 1, to: 100, count: 3, spacing: log}\n"
-    "    - {path: method.name, values: [midpoint, implicit]}\n"
-    "    - paths: [initial.offset.theta, 'controller.poles[1]']\n"
-    "      values: [[0.1, -3], [0.2, -4], [0.3, -5]]\n"
-    "    - {path: stop.time, from: 3, count: 1}\n"
-    "record: {every: 0.02, cases: [5, 3, 5], answers: [outcome, steps, final_state]}\n"
-    "seed: 9223372036854775807\n";
+/* The first of them are read, damaged and read back. */
+static char texts[10][BASE_SIZE];
+static const char *const full = texts[0], *const holds = texts[1], *const gives_gains = texts[2],
+                         *const places = texts[3], *const regulates = texts[4],
+                         *const bounces = texts[5], *const decouples = texts[6],
+                         *const follows = texts[7], *const switches = texts[8],
+                         *const bends = texts[9];
+enum { GOOD_TEXTS = 6 };
+
+static int read_texts(void **state __attribute__((unused)))
+{
+    return read_bases("tests/scenario_texts.txt", texts);
+}
+static CMFixtureFunction before_tests = read_texts;
 
 static const uint64_t one = 1;
-static const char holds[] =
-    "stance: 1\nscene: biped\ninitial: {state: {z: 1.5, theta: -0.5, q1: 0.9, q2: -1, vx: 2}}\n"
-    "controller: {kind: hold, kp: 500, kd: 50, target: {q2: -0.9}}\n"
-    "stop: {time: 1.5, settle: off}\nrecord: {cases: all}\n";
-
-static const char decouples[] =
-    "stance: 1\nscene: biped\ninitial: {state: {z: 1.1}}\nstop: {time: 1}\n"
-    "controller: {kind: decoupling, controlled: x-theta}\n";
-
-static const char follows[] =
-    "stance: 1\nscene: biped\ninitial: {state: {z: 1.1}}\nstop: {time: 1, walks: {steps: 10}}\n"
-    "controller: {kind: outputs, phase: {of: {theta: -1}, clock: [0, 1]},\n"
-    "  outputs: {y1: {of: {theta: 1}, along: [0, 1]}, y2: {of: {q1: 1, q2: 1}, along: [0, 1]}}}\n";
-
-static const char switches[] =
-    "stance: 1\nscene: biped\ninitial: {equilibrium: {theta: -0.41, q2: 0.82}}\nstop: {time: 1}\n"
-    "controller: {kind: state-feedback, design: lqr, far: hold,\n"
-    "  near: {angle: 0.1, rate: 1}, kp: 100, kd: 10, sample_time: 0.01}\n";
-
-static const char bends[] =
-    "stance: 1\nscene: biped\ninitial: {equilibrium: {theta: -0.41, q2: 0.82}}\nstop: {time: 1}\n"
-    "controller: {kind: bimodal-feedback, design: lqr, sample_time: 0.01}\n";
-
-static const char gives_gains[] = "stance: 1\n"
-                                  "scene: biped\n"
-                                  "initial: {equilibrium: {theta: -0.41, q2: 0.82}}\n"
-                                  "controller:\n"
-                                  "  kind: state-feedback\n"
-                                  "  design: gains\n"
-                                  "  gains: [[1, 2, 3, 4, 5, 6], [-1, -2, -3, -4, -5, -6]]\n"
-                                  "  equilibrium: {theta: -0.41, q2: 0.82}\n"
-                                  "  sample_time: 0.001\n"
-                                  "stop: {time: 8}\n";
-
-static const char places[] =
-    "stance: 1\nscene: biped\ninitial: {equilibrium: {theta: -0.41, q2: 0.82}}\nstop: {time: 8}\n"
-    "controller: {kind: state-feedback, poles: [-3, -3.3, -3.6, -3.9, -4.2, -4.6],\n"
-    "  torque_limits: [10, none]}\n";
-
-static const char regulates[] = "stance: 1\n"
-                                "scene: biped\n"
-                                "initial: {equilibrium: {theta: -0.41, q2: 0.82}}\n"
-                                "controller:\n"
-                                "  kind: state-feedback\n"
-                                "  design: lqr\n"
-                                "  design_time: sampled\n"
-                                "  weights: {states: [1, 2, 0, 4, 5, 6], torques: [0.1, 0.2]}\n"
-                                "  sample_time: 0.002\n"
-                                "  delay: 1\n"
-                                "stop: {time: 8}\n";
-
-static const char bounces[] = "stance: 1\n"
-                              "scene: ball\n"
-                              "robot: {radius: 0}\n"
-                              "ground: {restitution: 0.5}\n"
-                              "initial: {state: {vx: 1}}\n"
-                              "method: {name: capturing}\n"
-                              "stop: {time: 3, settle: {rate: 0.01, hold: 0.1}}\n"
-                              "sweep:\n"
-                              "  grid:\n"
-                              "    - {path: method.tolerance, from: 1e-9, to: 1e-5, count: 5, "
-                              "spacing: log}\n"
-                              "    - {path: robot.mass, values: [1, 2]}\n"
-                              "record: {answers: [events, energy_gain, dissipation_residual]}\n";
-
-static const char *const good_texts[] = {full, holds, gives_gains, places, regulates, bounces};
-enum { GOOD_TEXTS = sizeof good_texts / sizeof good_texts[0] };
 
 /* ---- good scenarios ------------------------------------------------------------------------- */
 
@@ -139,7 +52,7 @@ TEST(every_key_is_read)
     static const double offset[] = {1, 2, 0.1, 0.2, 0.3, 3, 4, 5, 6, 0.7};
     static const double re[] = {-3, -3.3, -4, -5, -4, -4.6}, im[] = {0, 0, 1.5, 0, -1.5, 0};
     static const double start[] = {-0.41, 0.5, NAN}, target[] = {-0.4, NAN, 0.8};
-    struct scenario s;
+    SCENARIO s = {0};
     read_good(&s, full, NULL, 0);
     const struct scenario_values *v = &s.base;
 
@@ -185,12 +98,11 @@ TEST(every_key_is_read)
     assert_int_equal(column, 1);
     assert_true(scenario_place(&s, "controller.unknown: a message", &line, &column));
     assert_int_equal(line, 10);
-    scenario_free(&s);
 }
 
 TEST(defaults_hold)
 {
-    struct scenario s;
+    SCENARIO s = {0};
     read_good(&s,
               "stance: 1\nscene: biped\ninitial: {equilibrium: {q1: 0.5, q2: 1}}\n"
               "stop: {time: 2}\n",
@@ -218,7 +130,6 @@ TEST(defaults_hold)
     assert_int_equal(s.record_cases, RECORD_NONE);
     check_numbers(&s.record_every, (double[]){0}, 1);
     assert_true(s.answers == UINT64_MAX);
-    scenario_free(&s);
 
     read_good(&s, holds, NULL, 0);
     assert_string_equal(scenario_law(&s.base)->name, "hold");
@@ -231,13 +142,11 @@ TEST(defaults_hold)
                              *scenario_law_value(&s.base, "hold", "kd"), s.record_every},
                   (double[]){500, 50, 0.01}, 3);
     assert_int_equal(s.record_cases, RECORD_ALL);
-    scenario_free(&s);
 
     read_good(&s, gives_gains, (const char *[]){"controller.torque_limit=none"}, 1);
     assert_int_equal(s.base.design, DESIGN_GAINS);
     check_numbers(s.base.gains, (double[]){1, 2, 3, 4, 5, 6, -1, -2, -3, -4, -5, -6}, 12);
     assert_true(isinf(s.base.torque_limit));
-    scenario_free(&s);
 
     read_good(&s, regulates, NULL, 0);
     assert_int_equal(s.base.design, DESIGN_LQR);
@@ -245,21 +154,18 @@ TEST(defaults_hold)
     assert_int_equal(s.base.delay, 1);
     check_numbers(s.base.state_weights, (double[]){1, 2, 0, 4, 5, 6}, 6);
     check_numbers(s.base.torque_weights, (double[]){0.1, 0.2}, 2);
-    scenario_free(&s);
 
     read_good(&s, regulates, (const char *[]){"controller.weights={torques: [3, 4]}"}, 1);
     check_numbers(s.base.state_weights, (double[]){1, 1, 1, 1, 1, 1}, 6);
     check_numbers(s.base.torque_weights, (double[]){3, 4}, 2);
-    scenario_free(&s);
     read_good(&s, places, NULL, 0);
     assert_int_equal(s.base.design_time, DESIGN_CONTINUOUS);
     assert_int_equal(s.base.delay, 0);
-    scenario_free(&s);
 }
 
 TEST(axes_make_cases)
 {
-    struct scenario s;
+    SCENARIO s = {0};
     struct scenario_values v;
     char text[64];
     uint64_t index = 0;
@@ -303,7 +209,6 @@ TEST(axes_make_cases)
     assert_string_equal(text, "implicit");
     scenario_axis_text(&s.axis[3], 2, 1, text, sizeof text);
     assert_string_equal(text, "-5");
-    scenario_free(&s);
 
     /* Words and numbers together; a billion points take no memory. */
     read_good(&s,
@@ -319,7 +224,6 @@ TEST(axes_make_cases)
     scenario_case_values(&s, 1999999999, &v);
     assert_true(v.step == 2e-3 && v.state[5] == 1);
     assert_string_equal(stance_methods()[v.method]->name, "midpoint");
-    scenario_free(&s);
 }
 
 /* Scenes without controller: their own keys and defaults, and no designs. */
@@ -345,7 +249,7 @@ TEST(other_scenes_are_read)
          {1, 1, 1. / 12},
          {0, 1, 1}},
     };
-    struct scenario s;
+    SCENARIO s = {0};
     struct scenario_values v;
     read_good(&s, bounces, NULL, 0);
     assert_ptr_equal(s.scene, stance_scene_find("ball"));
@@ -359,21 +263,19 @@ TEST(other_scenes_are_read)
     assert_true(v.tolerance == 1e-5 && v.robot[0] == 2);
     assert_int_equal(s.answers, one << STANCE_ANSWER_events | one << STANCE_ANSWER_energy_gain |
                                     one << STANCE_ANSWER_dissipation_residual);
-    scenario_free(&s);
-    for (size_t i = 0; i < sizeof plain / sizeof plain[0]; i++) {
+    for (size_t i = 0; i < COUNT(plain); i++) {
         read_good(&s, plain[i].text, NULL, 0);
         assert_string_equal(s.scene->name, plain[i].scene);
         assert_true(s.base.state_given && s.base.law == 0);
         check_numbers(s.base.robot, plain[i].robot, (size_t)s.scene->robot_count);
         check_numbers(s.base.state, plain[i].start, (size_t)s.scene->coordinates);
-        scenario_free(&s);
     }
 }
 
 /* What only a sweep gives counts as given. */
 TEST(swept_fields_count_as_given)
 {
-    struct scenario s;
+    SCENARIO s = {0};
     static const char *const design[] = {
         "controller.poles=[-1, -2, -3, -4, -5, -6]",
         "sweep.grid=[{path: controller.design, values: [gains, place]}]"};
@@ -385,10 +287,8 @@ TEST(swept_fields_count_as_given)
               "  - {path: stop.time, from: 1, to: 2, count: 2}\n",
               NULL, 0);
     assert_true(s.base.equilibrium.given);
-    scenario_free(&s);
     read_good(&s, gives_gains, design, 2);
     assert_true(s.axis[0].design);
-    scenario_free(&s);
 }
 
 /* ---- round trip ----------------------------------------------------------------------------- */
@@ -423,14 +323,12 @@ TEST(resolved_text_reads_back)
     static const char *const sets[] = {"title=\"caf\\u00e9 \\\"q\\\" \\\\ : # \\u2028\"",
                                        "stop.time=3.25", "ground.restitution=0.25", "seed=5"};
     DIR *directory = opendir("scenarios");
-    struct scenario a, b;
+    SCENARIO a = {0}, b = {0};
     for (size_t i = 0; i < GOOD_TEXTS; i++) {
         for (size_t n = 0; n <= 4; n += 4) {
-            read_good(&a, good_texts[i], sets, n);
+            read_good(&a, texts[i], sets, n);
             read_good(&b, a.text, NULL, 0);
             same_scenario(&a, &b);
-            scenario_free(&a);
-            scenario_free(&b);
         }
     }
     assert_non_null(directory);
@@ -443,8 +341,6 @@ TEST(resolved_text_reads_back)
             fail_msg("%s", errors);
         read_good(&b, a.text, NULL, 0);
         same_scenario(&a, &b);
-        scenario_free(&a);
-        scenario_free(&b);
     }
     closedir(directory);
 }
@@ -452,7 +348,7 @@ TEST(resolved_text_reads_back)
 /* Order and layout of the file do not matter, nor where a value comes from. */
 TEST(resolved_text_is_canonical)
 {
-    struct scenario a, b;
+    SCENARIO a = {0}, b = {0};
     read_good(&a, places, (const char *[]){"ground.friction=0.5", "method.step=0.002"}, 2);
     read_good(&b,
               "# the same\nscene:   biped\nground: {friction: &f 0.5}\nstop:\n    time: 8\n"
@@ -462,15 +358,13 @@ TEST(resolved_text_is_canonical)
               "    theta: -0.41\nstance: 1\n",
               NULL, 0);
     same_scenario(&a, &b);
-    scenario_free(&a);
-    scenario_free(&b);
 }
 
 /* ---- --set ---------------------------------------------------------------------------------- */
 
 TEST(sets_edit)
 {
-    struct scenario s;
+    SCENARIO s = {0};
     read_good(&s, full,
               (const char *[]){"sweep.grid[0].count=7", "controller.poles[0]=-3.1",
                                "sweep.grid[2]={path: ground.restitution, values: [0]}",
@@ -483,19 +377,16 @@ TEST(sets_edit)
     assert_string_equal(s.axis[2].name, "ground.restitution");
     assert_int_equal(s.axis[5].count, 2);
     assert_int_equal(s.base.settle, 0);
-    scenario_free(&s);
     read_good(&s, full, (const char *[]){"sweep={}", "record.cases=[0]"}, 2);
     assert_true(s.axes == 0 && s.cases == 1);
-    scenario_free(&s);
 }
 
 /* Long axes of numbers are refined, words and short lists are not. */
 TEST(refinement)
 {
-    struct scenario s;
+    SCENARIO s = {0};
     read_good(&s, full, NULL, 0);
     assert_false(s.refine.given);
-    scenario_free(&s);
     for (int along = 0; along < 2; along++) { /* all that are, or one of them */
         read_good(
             &s, full,
@@ -507,7 +398,6 @@ TEST(refinement)
         assert_true(s.refine.start == 4 && s.refine.margin == 1 && s.refine.probes == 0.01);
         for (int a = 0; a < s.axes; a++)
             assert_int_equal(s.axis[a].refined, along ? a == 4 : a >= 4);
-        scenario_free(&s);
     }
 }
 
@@ -535,7 +425,7 @@ TEST(bad_sets_are_refused)
          "stop.time: 0 is out of range (more than 0, at most 1e+09 s)"},
     };
     char line[1024];
-    for (size_t i = 0; i < sizeof wanted / sizeof wanted[0]; i++) {
+    for (size_t i = 0; i < COUNT(wanted); i++) {
         snprintf(line, sizeof line, "--set %s: %s\n", wanted[i][0], wanted[i][1]);
         refused(places, &wanted[i][0], 1, line);
     }
@@ -550,7 +440,7 @@ TEST(bad_files_lead_to_one_line)
     assert_non_null(directory);
     for (struct dirent *entry; (entry = readdir(directory)) != NULL;) {
         char file[512], head[1024], wanted[2048];
-        struct scenario s;
+        SCENARIO s = {0};
         if (!strstr(entry->d_name, ".yaml"))
             continue;
         snprintf(file, sizeof file, "tests/bad/%s", entry->d_name);
@@ -569,7 +459,7 @@ TEST(bad_files_lead_to_one_line)
 
 TEST(unreadable_files_lead_to_one_line)
 {
-    struct scenario s;
+    SCENARIO s = {0};
     assert_false(read_as(&s, "tests/bad/absent.yaml", NULL, NULL, 0));
     assert_string_equal(errors, "tests/bad/absent.yaml: No such file or directory\n");
     assert_false(read_as(&s, "tests/bad", NULL, NULL, 0));
@@ -580,12 +470,10 @@ TEST(unreadable_files_lead_to_one_line)
     refused("stance: 1\n\x01\n", NULL, 0,
             "bad.yaml:2:1: not text: the control character U+0001 stands here\n");
 
-    char *large = malloc((1 << 20) + 2);
-    assert_non_null(large);
+    OWN char *large = room((1 << 20) + 2);
     memset(large, '#', (1 << 20) + 1);
     large[(1 << 20) + 1] = '\0';
     refused(large, NULL, 0, "bad.yaml: larger than 1 MiB\n");
-    free(large);
 }
 
 /* All errors, in order of position, those of --set last; at most 20. */
@@ -610,7 +498,7 @@ TEST(several_errors_are_sorted)
     for (int i = 0; i < 300; i++)
         strcat(text, "x, ");
     strcat(text, "y]\n");
-    struct scenario s;
+    SCENARIO s = {0};
     int lines = 0;
     assert_false(read_as(&s, "bad.yaml", text, NULL, 0));
     for (const char *at = errors; (at = strchr(at, '\n')) != NULL; at++)
@@ -653,7 +541,7 @@ static void set_and_sweep(const struct scenario_field *field, uint64_t *random)
     char path[128], number[40], set[256], axis[512];
     const bool real = field->type == FIELD_NUMBER;
     double low = fmax(field->low, -1e6), high = fmin(field->high, 1e6), found;
-    struct scenario s;
+    SCENARIO s = {0};
     struct scenario_values v;
     int word = 0;
 
@@ -683,13 +571,12 @@ static void set_and_sweep(const struct scenario_field *field, uint64_t *random)
             memcpy(&integer, (const char *)&v + offset, sizeof integer);
             assert_int_equal(integer, word);
         }
-        scenario_free(&s);
     }
 }
 
 TEST(every_field_can_be_set_and_swept)
 {
-    struct schema *schema = malloc(sizeof *schema);
+    OWN struct schema *schema = malloc(sizeof *schema);
     uint64_t random = 1;
     int fields = 0;
     assert_non_null(schema);
@@ -709,7 +596,6 @@ TEST(every_field_can_be_set_and_swept)
         }
     }
     assert_true(fields > 20 * 40);
-    free(schema);
 }
 
 /* ---- damaged text --------------------------------------------------------------------------- */
@@ -746,16 +632,14 @@ TEST(damaged_text_is_survived)
     char text[4096], set[256];
     for (long round = 0; round < rounds; round++) {
         const char *const edits[] = {set};
-        struct scenario a, b;
-        snprintf(text, sizeof text, "%s", good_texts[round % GOOD_TEXTS]);
+        SCENARIO a = {0}, b = {0};
+        snprintf(text, sizeof text, "%s", texts[round % GOOD_TEXTS]);
         snprintf(set, sizeof set, "%s", sets[round / GOOD_TEXTS % 4]);
         damage(text, sizeof text, &random);
         damage(set, sizeof set, &random);
         if (read_as(&a, "good.yaml", text, edits, round % 3 == 0)) {
             read_good(&b, a.text, NULL, 0);
             same_scenario(&a, &b);
-            scenario_free(&a);
-            scenario_free(&b);
         } else {
             assert_true(strncmp(errors, "good.yaml:", 10) == 0 ||
                         strncmp(errors, "--set ", 6) == 0);

@@ -1,7 +1,6 @@
 /* Scenarios of linear controllers, from the text to the gains: which axes make designs of their
  * own, which gains a design leads to, and what is said where there is none. */
 #include "reading.h"
-#include "tests.h"
 
 #include "runner/plan/design.h"
 
@@ -24,26 +23,22 @@ TEST(sample_time_may_be_design)
     static const char times[] =
         "sweep.grid=[{path: controller.sample_time, from: 0.001, to: 0.01, count: 3}, "
         "{path: controller.design_time, values: [continuous, sampled]}]";
-    struct scenario s;
+    SCENARIO s = {0};
     read_good(&s, designed("design: lqr, design_time: sampled, sample_time: 0.002"),
               (const char *[]){axis}, 1);
     assert_true(s.axis[0].design);
-    scenario_free(&s);
     read_good(&s, designed("design: lqr, design_time: sampled, sample_time: 0.002"),
               (const char *[]){axis, "controller.design_time=continuous"}, 2);
     assert_false(s.axis[0].design);
-    scenario_free(&s);
     read_good(&s, designed("poles: [-1, -2, -3, -4, -5, -6], sample_time: 0.002"),
               (const char *[]){times}, 1);
     assert_true(s.axis[0].design && s.axis[1].design);
-    scenario_free(&s);
     read_good(
         &s,
         designed(
             "design: gains, gains: [[1, 2, 3, 4, 5, 6], [6, 5, 4, 3, 2, 1]], sample_time: 0.002"),
         (const char *[]){axis}, 1);
     assert_false(s.axis[0].design);
-    scenario_free(&s);
 }
 
 /* ---- gains ----------------------------------------------------------------------------------- */
@@ -58,7 +53,7 @@ static void model(const struct scenario_values *v, double *A, double *B)
     stance_equilibrium e;
     stance_message message;
     assert_true(resolve_equilibrium(scene, v, robot, &e, &message));
-    assert_int_equal(scene->linearise(scene, robot, &e, A, B), STANCE_OK);
+    OK(scene->linearise(scene, robot, &e, A, B));
 }
 
 /* The gains of case `index` are K, and the case carries the delay. */
@@ -85,7 +80,7 @@ TEST(every_design_reaches_the_case)
     static const double Q[N] = {1, 2, 0, 4, 5, 6}, R[M] = {0.1, 0.2};
     const char *const sets[] = {axes};
     double A[N * N], B[N * M], K[M * N];
-    struct scenario s;
+    SCENARIO s = {0};
     for (int k = 0; k < 6; k++) {
         char keys[256];
         snprintf(keys, sizeof keys, "design: %s, design_time: %s, %s",
@@ -110,10 +105,9 @@ TEST(every_design_reaches_the_case)
                 : k == 4
                     ? stance_place(STANCE_SCHUR, PLANT(N, M, A, B), T, POLES(RE, IM), K, NULL, NULL)
                     : stance_lqr(PLANT(N, M, A, B), T, Q, R, K, NULL);
-            assert_int_equal(error, STANCE_OK);
+            OK(error);
             leads_to(&s, (uint64_t)i, K, i % 2);
         }
-        scenario_free(&s);
     }
 }
 
@@ -121,13 +115,12 @@ TEST(every_design_reaches_the_case)
 
 static void impossible(const char *keys, const char *const *sets, size_t count, const char *wanted)
 {
-    struct scenario s;
+    SCENARIO s = {0};
     struct resolved_design design;
     stance_message message;
     read_good(&s, designed(keys), sets, count);
     assert_false(resolve_design(s.scene, &s.base, &design, &message));
     assert_string_equal(message.text, wanted);
-    scenario_free(&s);
 }
 
 TEST(impossible_designs)
@@ -177,9 +170,8 @@ static double room_used(const struct design_report *r, const double *X)
 {
     const struct scenario_values *v = &r->scenario->base;
     double force[2], by_state[2 * N], by_torque[2 * M], most = 0;
-    assert_int_equal(r->scenario->scene->contact_force(r->scenario->scene, r->model,
-                                                       &r->equilibrium, force, by_state, by_torque),
-                     STANCE_OK);
+    OK(r->scenario->scene->contact_force(r->scenario->scene, r->model, &r->equilibrium, force,
+                                         by_state, by_torque));
     const double weight = force[0];
     for (int i = 0; i < M; i++) {
         double torque = r->equilibrium.torque[i], change = 0;
@@ -228,35 +220,31 @@ static void check_set(const struct design_report *r)
 
 TEST(sets_keep_within_bounds)
 {
-    struct scenario s;
+    SCENARIO s = {0};
     char name[64];
     check_set(report(&s, "poles: [-3, -3.3, -3.6, -3.9, -4.2, -4.6], torque_limit: 10"));
-    scenario_free(&s);
     const struct design_report *r =
         report(&s, "design: lqr, design_time: sampled, sample_time: 0.02, torque_limit: 12");
     check_set(r);
     assert_string_equal(design_bound_name(r, 1, name), "torque limit of hip1, negative");
-    scenario_free(&s);
     r = report(&s, "design: lqr, torque_limit: 1000");
     check_set(r);
     assert_string_equal(design_bound_name(r, r->set.of.binding, name),
                         "friction cone, force backward");
-    scenario_free(&s);
     /* Where the limit is below what the equilibrium takes there is no room. */
     assert_true(report(&s, "design: lqr, torque_limit: 5")->set.of.level == 0);
-    scenario_free(&s);
 }
 
 /* One sample after the other, by hand: growth as the report's spectral radius says. */
 TEST(sampled_loop_grows_as_reported)
 {
     for (int delay = 0; delay < 4; delay++) {
-        struct scenario s;
+        SCENARIO s = {0};
         char keys[128];
         double Ad[N * N], Bd[N * M], X[N] = {1, 0, 0, 0, 0, 0}, u[4][M] = {{0}}, size = 0;
         snprintf(keys, sizeof keys, "design: lqr, sample_time: 0.06, delay: %d", delay);
         const struct design_report *r = report(&s, keys);
-        assert_int_equal(stance_discretise(PLANT(N, M, r->A, r->B), 0.06, Ad, Bd), STANCE_OK);
+        OK(stance_discretise(PLANT(N, M, r->A, r->B), 0.06, Ad, Bd));
         double logarithm = 0;
         for (int k = 0; k < 4000; k++) {
             double next[N], late[M];
@@ -289,6 +277,5 @@ TEST(sampled_loop_grows_as_reported)
         assert_true(r->stable == (0.06 < r->critical[delay > 0]));
         assert_true(!r->stable || r->delay_margin >= delay);
         assert_true(r->set.exists == (r->stable && !delay));
-        scenario_free(&s);
     }
 }

@@ -2,7 +2,6 @@
  * (tests/reference/known.py), and what only one scene shows: thresholds, Zeno, Painleve. */
 #include "long.h"
 #include "support.h"
-#include "tests.h"
 
 /* What a method is asked for on motions with impacts and switches: the longest step, a tolerance
  * where it has one, and the largest error of a position (m, rad) and a velocity (m/s, rad/s). */
@@ -18,7 +17,7 @@ static const struct demand demands[] = {
     {"lagrange", 2e-4, 0, 1e-9, 1e-7, false},
     {"event-driven", 1e-2, 1e-12, 1e-10, 1e-10, false},
 };
-enum { DEMANDS = sizeof demands / sizeof *demands };
+enum { DEMANDS = COUNT(demands) };
 
 /* A case of an entry of known.json that ends at time t, exactly. */
 static stance_case known_case(const stance_scene *scene, const json_t *entry,
@@ -125,7 +124,7 @@ static bool known_error(const stance_scene *scene, const json_t *entry, const st
 
 TEST(known_motions)
 {
-    json_t *root = reference_load("tests/reference/known.json");
+    JSON *root = reference_load("tests/reference/known.json");
     int missed = 0;
     double worst[DEMANDS][2] = {{0}};
     for (const stance_scene *const *scene = stance_scenes(); *scene; scene++) {
@@ -152,7 +151,6 @@ TEST(known_motions)
             }
         }
     }
-    json_decref(root);
     for (int d = 0; d < DEMANDS; d++)
         print_message("# %s, steps up to %g s: position off %.1e, velocity off %.1e at the most\n",
                       demands[d].method, demands[d].step, worst[d][0], worst[d][1]);
@@ -200,7 +198,7 @@ TEST(endless_bounces)
         {"lagrange", 1e-1, long_tests() ? 9031 : 903, 0, 1e-7},
         {"event-driven", 1e-1, long_tests() ? 9031 : 90, 0, 1e-9},
     };
-    for (size_t i = 0; i < sizeof bounds / sizeof *bounds; i++) {
+    for (size_t i = 0; i < COUNT(bounds); i++) {
         stance_case c = case_of_scene("ball", bounds[i].step, bounds[i].time);
         c.restitution = 1;
         c.position[1] = 1.1;
@@ -223,7 +221,7 @@ TEST(endless_bounces)
  * and without more energy. */
 TEST(painleve)
 {
-    json_t *root = reference_load("tests/reference/known.json");
+    JSON *root = reference_load("tests/reference/known.json");
     json_t *cases = json_object_get(json_object_get(root, "painleve"), "cases");
     int counts[2] = {0};
     double gain = 0, fastest = 0;
@@ -266,14 +264,13 @@ TEST(painleve)
     }
     print_message("# %d unique, %d paradoxical; energy gained at most %.1e J, fastest %.1f\n",
                   counts[0], counts[1], gain, fastest);
-    json_decref(root);
     assert_true(gain < 1e-3 && counts[1] > 20);
 }
 
 /* Where no forces exist the end stops dead: the one impact that resolves the state. */
 TEST(jams)
 {
-    json_t *root = reference_load("tests/reference/known.json");
+    JSON *root = reference_load("tests/reference/known.json");
     size_t i;
     json_t *jam;
     json_array_foreach(json_object_get(json_object_get(root, "painleve"), "jams"), i, jam)
@@ -294,7 +291,6 @@ TEST(jams)
                 assert_true(fabs(r.velocity[k] - after[k]) < 1e-5);
         }
     }
-    json_decref(root);
 }
 
 /* A rod that lies on both ends, pressed and pulled by nothing else, stays: the tangential forces

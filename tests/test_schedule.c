@@ -3,7 +3,6 @@
 #include "runner/base/units.h"
 #include "simulate.h"
 #include "support.h"
-#include "tests.h"
 
 #include "runner/plan/schedule.h"
 #include "runner/run/work.h"
@@ -162,9 +161,9 @@ TEST(test_shards)
 {
     static const uint64_t sweeps[][2] = {{1, 1},      {7, 7},      {240, 1},       {240, 7},
                                          {65536, 16}, {65537, 16}, {65536, 60000}, {9000001, 3}};
-    for (size_t i = 0; i < sizeof sweeps / sizeof sweeps[0]; i++) {
+    for (size_t i = 0; i < COUNT(sweeps); i++) {
         const uint64_t rows = sweeps[i][0], count = sweeps[i][1];
-        uint8_t *seen = calloc(rows, 1);
+        OWN uint8_t *seen = calloc(rows, 1);
         uint64_t total = 0, least = rows, most = 0, stripe = 0;
         for (uint64_t k = 1; k <= count; k++) {
             const struct shard shard = shard_of(&(struct shard){.number = k, .count = count}, rows);
@@ -188,7 +187,6 @@ TEST(test_shards)
         }
         assert_int_equal(total, rows);
         assert_true(most - least <= stripe);
-        free(seen);
     }
 }
 
@@ -225,7 +223,7 @@ TEST(test_shard_words)
         "1/-2",      " 1/2", "1/2 ", "1/0", "99999999999999999999/99999999999999999999"};
     struct shard shard;
     char text[SHARD_TEXT];
-    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++)
+    for (size_t i = 0; i < COUNT(bad); i++)
         assert_false(shard_parse(&shard, bad[i]));
     assert_true(shard_parse(&shard, "1000000/1000000"));
     shard_text(&shard, text);
@@ -304,7 +302,7 @@ static double list_schedule(const double *seconds, int ranks)
  * once; the ranks' times add up. */
 TEST(test_list_schedule)
 {
-    double *seconds = random_costs();
+    OWN double *seconds = random_costs();
     const double total = sum_of(seconds, 0, CASES);
     struct simulation s;
     for (int ranks = 1; ranks <= 1000; ranks = ranks * 3 + 1) {
@@ -324,13 +322,12 @@ TEST(test_list_schedule)
                     1e-9 * total);
         assert_true(fabs(simulation_efficiency(&s, ranks) - total / (ranks * expected)) < 1e-9);
     }
-    free(seconds);
 }
 
 /* On one rank nothing queues: what draws and writes cost is a sum. */
 TEST(test_one_rank)
 {
-    double *seconds = random_costs();
+    OWN double *seconds = random_costs();
     const double total = sum_of(seconds, 0, CASES);
     struct simulated_machine machine = {
         .latency = 1e-3, .write_latency = 1e-4, .write_rate = 1e3, .bandwidth = 1e6};
@@ -360,14 +357,13 @@ TEST(test_one_rank)
     assert_true(simulate(&machine, &job, &with));
     assert_true(with.writes > s.writes && with.bytes == s.bytes);
     assert_true(with.writing < 1.1 * with.time / 500);
-    free(seconds);
 }
 
 /* A counter that takes longer than the cases decides: one draw after the other. So does a file
  * system. */
 TEST(test_queues)
 {
-    double *seconds = calloc(CASES, sizeof *seconds);
+    OWN double *seconds = calloc(CASES, sizeof *seconds);
     struct simulated_machine machine = ideal;
     const struct simulated_job job = {.cases = CASES,
                                       .ranks = 100,
@@ -388,7 +384,6 @@ TEST(test_queues)
     machine.bandwidth = 1e3;
     assert_true(simulate(&machine, &job, &s));
     assert_true(fabs(s.time - 0.02 * CASES) < 1e-6 * s.time);
-    free(seconds);
 }
 
 /* A map of the same size gives each case its own cost; a larger one the same mean, in order. */

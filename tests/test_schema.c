@@ -1,9 +1,7 @@
 /* test_schema.c - the documentation of the scenario format and its JSON Schema agree with the
- * table, and misspelt words find their nearest.
+ * table.
  */
-#include "runner/base/words.h"
 #include "support.h"
-#include "tests.h"
 
 #include "runner/base/command.h"
 #include "runner/scenario/schema_mechanism.h"
@@ -33,8 +31,7 @@ static bool describe(const char *path, bool json_schema)
 /* The schema of a scene; freed by the caller. */
 static struct schema *built_schema(const stance_scene *scene)
 {
-    struct schema *schema = malloc(sizeof *schema);
-    assert_non_null(schema);
+    struct schema *schema = room(sizeof *schema);
     assert_true(schema_build(schema, scene, NULL, true));
     return schema;
 }
@@ -63,7 +60,7 @@ static const char *section_of(const char *scene)
 TEST(every_path_is_described)
 {
     for (int k = 0; stance_scenes()[k]; k++) {
-        struct schema *schema = built_schema(stance_scenes()[k]);
+        OWN struct schema *schema = built_schema(stance_scenes()[k]);
         char head[64], first[32];
         for (size_t i = 0; i < schema->count; i++) {
             const char *path = schema->field[i].path;
@@ -77,7 +74,6 @@ TEST(every_path_is_described)
             at = schema->field[i].by_scene ? strstr(described, head) : described;
             assert_true(at && strstr(at, path));
         }
-        free(schema);
     }
     assert_true(describe("sweep.grid[3].count", false));
     assert_false(describe("controler.kp", false));
@@ -103,7 +99,7 @@ TEST(own_names_are_described)
         {"controller.poles[]", "scene: biped, mechanism\ncontroller.poles[]\n"},
         {"controller.poles[2]", "scene: biped, mechanism\ncontroller.poles[]\n"},
     };
-    for (size_t i = 0; i < sizeof paths / sizeof paths[0]; i++) {
+    for (size_t i = 0; i < COUNT(paths); i++) {
         assert_true(describe(paths[i].path, false));
         assert_true(strncmp(described, paths[i].begins, strlen(paths[i].begins)) == 0);
         assert_null(strstr(described + 1, "scene: "));
@@ -130,14 +126,13 @@ TEST(scenes_have_their_own_keys)
     assert_ptr_equal(schema_scene_with("controller.poles[2]"), stance_scene_find("biped"));
     assert_ptr_equal(schema_scene_with("robot.slope"), stance_scene_find("block"));
     assert_null(schema_scene_with("robot.hipmass"));
-    struct schema *schema = built_schema(stance_scene_find("rod"));
+    OWN struct schema *schema = built_schema(stance_scene_find("rod"));
     static const char *const missing[] = {"initial.support_foot", "controller.poles",
                                           "controller.sample_time", "stop.fall_height"};
-    for (size_t i = 0; i < sizeof missing / sizeof missing[0]; i++) {
+    for (size_t i = 0; i < COUNT(missing); i++) {
         assert_null(schema_find(schema, missing[i]));
         assert_non_null(schema_scene_with(missing[i]));
     }
-    free(schema);
 }
 
 /* What reads method.tolerance is named, with what it reads by default. */
@@ -187,7 +182,7 @@ static void check_number_schema(const struct scenario_field *field, json_t *obje
 
 static void check_scene_schema(json_t *root, const stance_scene *scene)
 {
-    struct schema *schema = built_schema(scene);
+    OWN struct schema *schema = built_schema(scene);
     const char *names[SCHEMA_MAX_FIELDS];
     assert_non_null(root);
     assert_int_equal(json_object_size(json_object_get(root, "properties")),
@@ -227,30 +222,15 @@ static void check_scene_schema(json_t *root, const stance_scene *scene)
             }
         }
     }
-    free(schema);
 }
 
 TEST(schema_agrees_with_the_table)
 {
     json_error_t problem;
     assert_true(describe(NULL, true));
-    json_t *root = json_loads(described, JSON_REJECT_DUPLICATES, &problem);
+    JSON *root = json_loads(described, JSON_REJECT_DUPLICATES, &problem);
     json_t *scenes = json_object_get(root, "oneOf");
     assert_non_null(root);
     for (size_t k = 0; stance_scenes()[k]; k++)
         check_scene_schema(scenes ? json_array_get(scenes, k) : root, stance_scenes()[k]);
-    json_decref(root);
-}
-
-/* ---- options and words ---------------------------------------------------------------------- */
-
-TEST(nearest_words)
-{
-    static const char *const known[] = {"friction", "restitution", "contacts", "x"};
-    assert_string_equal(nearest_word("fricton", known, 4), "friction");
-    assert_string_equal(nearest_word("rfiction", known, 4), "friction");
-    assert_string_equal(nearest_word("restituti", known, 4), "restitution");
-    assert_null(nearest_word("gravity", known, 4));
-    assert_null(nearest_word("z", known, 4));
-    assert_null(nearest_word("", known, 4));
 }

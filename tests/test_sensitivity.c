@@ -1,10 +1,5 @@
 /* test_sensitivity.c - sensitivity indices against functions whose indices are known in closed
  * form, how often their intervals hold these, and tables of comma-separated values. */
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "long.h"
 #include "tests.h"
 
@@ -22,7 +17,7 @@ struct function {
     const char *name;
     size_t factors;
     double (*value)(const double *u);
-    void (*indices)(double *first, double *total);
+    double first[8], total[8];
 };
 
 /* Ishigami and Homma (1990): sin x1 + 7 sin^2 x2 + 0.1 x3^4 sin x1, x uniform on -pi ... pi. The
@@ -33,14 +28,15 @@ static double ishigami(const double *u)
     const double x = pi * (2 * u[0] - 1), y = pi * (2 * u[1] - 1), z = pi * (2 * u[2] - 1);
     return sin(x) + 7 * sin(y) * sin(y) + 0.1 * z * z * z * z * sin(x);
 }
-static void ishigami_indices(double *first, double *total)
-{
-    const double one = 1 + 0.1 * pow(pi, 4) / 5, v1 = one * one / 2, v2 = 49.0 / 8;
-    const double v13 = 8 * 0.01 * pow(pi, 8) / 225, v = v1 + v2 + v13;
-    const double f[3] = {v1 / v, v2 / v, 0}, t[3] = {(v1 + v13) / v, v2 / v, v13 / v};
-    memcpy(first, f, sizeof f);
-    memcpy(total, t, sizeof t);
-}
+#define PI4 (M_PI * M_PI * M_PI * M_PI)
+#define V1 ((1 + 0.1 * PI4 / 5) * (1 + 0.1 * PI4 / 5) / 2)
+#define V2 (49.0 / 8)
+#define V13 (8 * 0.01 * PI4 * PI4 / 225)
+#define ISHIGAMI                                                                                   \
+    {V1 / (V1 + V2 + V13), V2 / (V1 + V2 + V13)},                                                  \
+    {                                                                                              \
+        (V1 + V13) / (V1 + V2 + V13), V2 / (V1 + V2 + V13), V13 / (V1 + V2 + V13)                  \
+    }
 
 /* Sobol's g-function: product of (|4 u - 2| + a) / (1 + a), each factor of mean 1 and variance
  * 1 / (3 (1 + a)^2). */
@@ -53,38 +49,12 @@ static double g_function(const double *u)
         product *= (fabs(4 * u[j] - 2) + weights[j]) / (1 + weights[j]);
     return product;
 }
-static void g_indices(double *first, double *total)
-{
-    double all = 1;
-    for (size_t j = 0; j < G; j++)
-        all *= 1 + 1 / (3 * (1 + weights[j]) * (1 + weights[j]));
-    for (size_t j = 0; j < G; j++) {
-        const double v = 1 / (3 * (1 + weights[j]) * (1 + weights[j]));
-        first[j] = v / (all - 1);
-        total[j] = v * all / (1 + v) / (all - 1);
-    }
-}
 
-/* Far from zero, with a product: x1 + x2 / 2 + 3 (x1 - 1/2) (x3 - 1/2) + 1000; variances 1/12,
- * 1/48 and 9/144. */
+/* Far from zero, with a product: x1 + x2 / 2 + 3 (x1 - 1/2) (x3 - 1/2) + 1000; variances in
+ * 48ths: 4, 1 and 3. */
 static double shifted(const double *u)
 {
     return 1000 + u[0] + u[1] / 2 + 3 * (u[0] - 0.5) * (u[2] - 0.5);
-}
-static void shifted_indices(double *first, double *total)
-{
-    const double v1 = 1.0 / 12, v2 = 1.0 / 48, v13 = 9.0 / 144, v = v1 + v2 + v13;
-    const double f[3] = {v1 / v, v2 / v, 0}, t[3] = {(v1 + v13) / v, v2 / v, v13 / v};
-    memcpy(first, f, sizeof f);
-    memcpy(total, t, sizeof t);
-}
-
-/* Ishigami's function with a fourth factor that does nothing: what it changes is how the
- * coordinates of a design are paired. */
-static void inert_indices(double *first, double *total)
-{
-    ishigami_indices(first, total);
-    first[3] = total[3] = 0;
 }
 
 /* Steps: one in each of two factors at once, 9 % inside; a slanted one; of one factor alone. A
@@ -93,32 +63,14 @@ static double corner(const double *u)
 {
     return u[0] < 0.3 && u[1] < 0.3;
 }
-static void corner_indices(double *first, double *total)
-{
-    const double p = 0.3, alone = p * p * p * (1 - p) / (p * p * (1 - p * p));
-    first[0] = first[1] = alone;
-    total[0] = total[1] = 1 - alone;
-    first[2] = total[2] = 0;
-}
+#define CORNER (0.3 * 0.3 * 0.3 * 0.7 / (0.09 * 0.91))
 static double slanted(const double *u)
 {
     return u[0] + u[1] < 1;
 }
-static void slanted_indices(double *first, double *total)
-{
-    const double f[3] = {1 / 3.0, 1 / 3.0, 0}, t[3] = {2 / 3.0, 2 / 3.0, 0};
-    memcpy(first, f, sizeof f);
-    memcpy(total, t, sizeof t);
-}
 static double step(const double *u)
 {
     return u[0] < 0.37;
-}
-static void step_indices(double *first, double *total)
-{
-    const double f[3] = {1, 0, 0};
-    memcpy(first, f, sizeof f);
-    memcpy(total, f, sizeof f);
 }
 
 /* Waves, alone and as a product: variances 1/2 and 1/4. */
@@ -126,24 +78,40 @@ static double waves(const double *u)
 {
     return cos(18 * pi * u[0]) + cos(10 * pi * u[1]) * cos(14 * pi * u[2]);
 }
-static void waves_indices(double *first, double *total)
-{
-    const double f[3] = {2 / 3.0, 0, 0}, t[3] = {2 / 3.0, 1 / 3.0, 1 / 3.0};
-    memcpy(first, f, sizeof f);
-    memcpy(total, t, sizeof t);
-}
 
-static const struct function functions[] = {
-    {"Ishigami", 3, ishigami, ishigami_indices},
-    {"Sobol' g", G, g_function, g_indices},
-    {"shifted", 3, shifted, shifted_indices},
-    {"Ishigami and inert", 4, ishigami, inert_indices},
-    {"corner", 3, corner, corner_indices},
-    {"slanted", 3, slanted, slanted_indices},
-    {"step", 3, step, step_indices},
-    {"waves", 3, waves, waves_indices},
+/* Of a fourth factor that does nothing what it changes is how the coordinates of a design are
+ * paired. */
+static struct function functions[] = {
+    {"Ishigami", 3, ishigami, ISHIGAMI},
+    {"Sobol' g", G, g_function, {0}, {0}}, /* filled in */
+    {"shifted", 3, shifted, {4 / 8.0, 1 / 8.0}, {7 / 8.0, 1 / 8.0, 3 / 8.0}},
+    {"Ishigami and inert", 4, ishigami, ISHIGAMI},
+    {"corner", 3, corner, {CORNER, CORNER}, {1 - CORNER, 1 - CORNER}},
+    {"slanted", 3, slanted, {1 / 3.0, 1 / 3.0}, {2 / 3.0, 2 / 3.0}},
+    {"step", 3, step, {1}, {1}},
+    {"waves", 3, waves, {2 / 3.0}, {2 / 3.0, 1 / 3.0, 1 / 3.0}},
 };
 enum { FUNCTIONS = sizeof functions / sizeof functions[0], SMOOTH = 3 };
+
+static double g_variance(void) /* and 1 */
+{
+    double all = 1;
+    for (size_t j = 0; j < G; j++)
+        all *= 1 + 1 / (3 * (1 + weights[j]) * (1 + weights[j]));
+    return all;
+}
+
+static int fill_in(void **state __attribute__((unused)))
+{
+    const double all = g_variance();
+    for (size_t j = 0; j < G; j++) {
+        const double v = 1 / (3 * (1 + weights[j]) * (1 + weights[j]));
+        functions[1].first[j] = v / (all - 1);
+        functions[1].total[j] = v * all / (1 + v) / (all - 1);
+    }
+    return 0;
+}
+static CMFixtureFunction before_tests = fill_in;
 
 /* ---- designs ------------------------------------------------------------------------------ */
 
@@ -207,6 +175,9 @@ static void analyse(struct sensitivity *s, const struct data *d,
     assert_true(good);
 }
 
+#define DATA FREED(release) struct data
+#define SENSITIVITY FREED(sensitivity_free) struct sensitivity
+
 static const struct sensitivity_bootstrap usual = {500, 0.95, 1}, wide = {500, 0.999, 1};
 
 /* ---- coverage ----------------------------------------------------------------------------- */
@@ -252,10 +223,11 @@ static struct tally cover(enum doe_method method, const struct function *f, uint
     struct tally t = {.quantities = method == DOE_SALTELLI ? 2 * f->factors : f->factors};
     double truth[2 * MOST];
     const struct sensitivity_bootstrap bootstrap = {300, 0.95, 1};
-    f->indices(truth, truth + f->factors);
+    memcpy(truth, f->first, f->factors * sizeof *truth);
+    memcpy(truth + f->factors, f->total, f->factors * sizeof *truth);
     for (int seed = 0; seed < seeds; seed++) {
-        struct sensitivity s;
-        struct data d = make(method, f, count, (uint64_t)seed, false, independent);
+        SENSITIVITY s;
+        DATA d = make(method, f, count, (uint64_t)seed, false, independent);
         double rivals[2 * MOST] = {0};
         analyse(&s, &d, &bootstrap);
         if (method == DOE_SALTELLI)
@@ -267,8 +239,6 @@ static struct tally cover(enum doe_method method, const struct function *f, uint
             t.rival += share * pow(rivals[q] - truth[q], 2);
             t.width += share * (s.all[q].high - s.all[q].low);
         }
-        sensitivity_free(&s);
-        release(&d);
     }
     t.least = 1;
     t.error = sqrt(t.error);
@@ -311,12 +281,12 @@ TEST(test_coverage)
 }
 
 /* What two factors share, Ishigami's 1 and 3 and pairs of the g-function's; f: 0 or 1. */
-static double pair(size_t f, const double *first, const double *total, size_t i, size_t j)
+static double pair(size_t f, size_t i, size_t j)
 {
-    double variance = 1;
-    for (size_t g = 0; g < G; g++)
-        variance *= 1 + 1 / (3 * (1 + weights[g]) * (1 + weights[g]));
-    return f == 1 ? first[i] * first[j] * (variance - 1) : i == 0 && j == 2 ? total[2] : 0;
+    const struct function *const own = &functions[f];
+    return f == 1             ? own->first[i] * own->first[j] * (g_variance() - 1)
+           : i == 0 && j == 2 ? own->total[2]
+                              : 0;
 }
 
 /* The sum of the first-order indices, and indices of second order. */
@@ -327,21 +297,17 @@ TEST(test_coverage_of_sums_and_pairs)
     for (size_t f = 0; f < (long_tests() ? FUNCTIONS : 1); f++) {
         const struct function *own = &functions[f];
         const size_t k = own->factors;
-        double first[MOST], total[MOST], sum = 0, held = 0, pairs[MOST * MOST] = {0}, least = 1;
-        own->indices(first, total);
+        double sum = 0, held = 0, pairs[MOST * MOST] = {0}, least = 1;
         for (size_t j = 0; j < k; j++)
-            sum += first[j];
+            sum += own->first[j];
         for (int seed = 0; seed < SEEDS; seed++) {
-            struct sensitivity s;
-            struct data d = make(DOE_SALTELLI, own, BLOCKS, (uint64_t)seed, f < 2, false);
+            SENSITIVITY s;
+            DATA d = make(DOE_SALTELLI, own, BLOCKS, (uint64_t)seed, f < 2, false);
             analyse(&s, &d, &usual);
             held += holds(&s.first_sum, sum) / (double)SEEDS;
             for (size_t i = 0; f < 2 && i < k; i++)
                 for (size_t j = i + 1; j < k; j++)
-                    pairs[i * k + j] +=
-                        holds(&s.second[i * k + j], pair(f, first, total, i, j)) / (double)SEEDS;
-            sensitivity_free(&s);
-            release(&d);
+                    pairs[i * k + j] += holds(&s.second[i * k + j], pair(f, i, j)) / (double)SEEDS;
         }
         for (size_t i = 0; f < 2 && i < k; i++)
             for (size_t j = i + 1; j < k; j++)
@@ -377,52 +343,46 @@ TEST(test_coverage_of_effects)
     const int seeds = long_tests() ? 4000 : 200;
     const double slack = 3.5 * sqrt(0.95 * 0.05 / seeds);
     const struct function *own = &functions[0];
-    struct sensitivity truth;
-    struct data all = make(DOE_MORRIS, own, TRUTHS, 99, false, false);
+    SENSITIVITY truth;
+    DATA all = make(DOE_MORRIS, own, TRUTHS, 99, false, false);
     analyse(&truth, &all, &usual);
     for (uint64_t n = 10; n <= (long_tests() ? 40 : 10); n *= 2) {
         double held[3] = {0};
         for (int seed = 0; seed < seeds; seed++) {
-            struct sensitivity s;
-            struct data d = make(DOE_MORRIS, own, n, (uint64_t)seed, false, false);
+            SENSITIVITY s;
+            DATA d = make(DOE_MORRIS, own, n, (uint64_t)seed, false, false);
             analyse(&s, &d, &usual);
             for (int m = 0; m < 3; m++)
                 for (size_t j = 0; j < own->factors; j++)
                     held[m] += holds(&s.measure[SENSITIVITY_MU + m][j],
                                      truth.measure[SENSITIVITY_MU + m][j].estimate) /
                                (double)own->factors / seeds;
-            sensitivity_free(&s);
-            release(&d);
         }
         printf("# %d trajectories: mu %.1f %%, mu_star %.1f %%, sigma %.1f %%\n", (int)n,
                100 * held[0], 100 * held[1], 100 * held[2]);
         assert_true(held[0] > 0.93 - slack && held[1] > 0.93 - slack);
     }
-    sensitivity_free(&truth);
-    release(&all);
 }
 
 /* ---- single designs ----------------------------------------------------------------------- */
 
 TEST(test_indices)
 {
-    double first[MOST], total[MOST];
     for (size_t f = 0; f < SMOOTH; f++) {
-        struct sensitivity s;
-        struct data d = make(DOE_SALTELLI, &functions[f], 4096, 3, false, false);
+        SENSITIVITY s;
+        DATA d = make(DOE_SALTELLI, &functions[f], 4096, 3, false, false);
         analyse(&s, &d, &wide);
-        functions[f].indices(first, total);
         assert_int_equal(s.blocks, 4096);
         for (size_t j = 0; j < d.factors; j++) {
-            assert_true(holds(&s.measure[SENSITIVITY_FIRST][j], first[j]));
-            assert_true(holds(&s.measure[SENSITIVITY_TOTAL][j], total[j]));
-            assert_float_equal(s.measure[SENSITIVITY_FIRST][j].estimate, first[j], 0.02);
-            assert_float_equal(s.measure[SENSITIVITY_TOTAL][j].estimate, total[j], 0.02);
+            assert_true(holds(&s.measure[SENSITIVITY_FIRST][j], functions[f].first[j]));
+            assert_true(holds(&s.measure[SENSITIVITY_TOTAL][j], functions[f].total[j]));
+            assert_float_equal(s.measure[SENSITIVITY_FIRST][j].estimate, functions[f].first[j],
+                               0.02);
+            assert_float_equal(s.measure[SENSITIVITY_TOTAL][j].estimate, functions[f].total[j],
+                               0.02);
         }
         assert_null(s.second);
         assert_null(s.measure[SENSITIVITY_MU]);
-        sensitivity_free(&s);
-        release(&d);
     }
 }
 
@@ -430,22 +390,18 @@ TEST(test_indices)
  * V1 V2 / V and so on. */
 TEST(test_pairs)
 {
-    double first[MOST], total[MOST];
     for (size_t f = 0; f < SMOOTH; f++) {
-        struct sensitivity s;
-        struct data d = make(DOE_SALTELLI, &functions[f], 2048, 5, true, false);
+        SENSITIVITY s;
+        DATA d = make(DOE_SALTELLI, &functions[f], 2048, 5, true, false);
         const size_t k = d.factors;
         analyse(&s, &d, &wide);
-        functions[f].indices(first, total);
         for (size_t i = 0; i < k; i++) {
             for (size_t j = i + 1; j < k; j++) {
-                const double truth = pair(f, first, total, i, j);
+                const double truth = pair(f, i, j);
                 assert_float_equal(s.second[i * k + j].estimate, truth, 0.02);
                 assert_true(holds(&s.second[i * k + j], truth));
             }
         }
-        sensitivity_free(&s);
-        release(&d);
     }
 }
 
@@ -454,7 +410,7 @@ TEST(test_pairs)
 TEST(test_units)
 {
     struct sensitivity s, other;
-    struct data d = make(DOE_SALTELLI, &functions[0], 128, 2, true, false);
+    DATA d = make(DOE_SALTELLI, &functions[0], 128, 2, true, false);
     analyse(&s, &d, &usual);
     for (size_t i = 0; i < d.points; i++)
         d.y[i] = 1e6 - 1e-3 * d.y[i];
@@ -469,20 +425,19 @@ TEST(test_units)
     assert_memory_equal(s.all, other.all, (2 * d.factors + 1) * sizeof *s.all);
     sensitivity_free(&s);
     sensitivity_free(&other);
-    release(&d);
 }
 
 static double linear(const double *u)
 {
     return 3 + 2 * u[0] - 5 * u[1] + 0 * u[2] + u[3] / 2;
 }
-static const struct function straight = {"linear", 4, linear, NULL};
+static const struct function straight = {"linear", 4, linear, {0}, {0}};
 
 TEST(test_morris)
 {
     static const double slopes[4] = {2, -5, 0, 0.5};
-    struct sensitivity s;
-    struct data d = make(DOE_MORRIS, &straight, 10, 1, false, false);
+    SENSITIVITY s;
+    DATA d = make(DOE_MORRIS, &straight, 10, 1, false, false);
     analyse(&s, &d, &usual);
     for (size_t j = 0; j < 4; j++) {
         assert_float_equal(sensitivity_weight(&s, j), fabs(slopes[j]), 1e-12);
@@ -503,8 +458,6 @@ TEST(test_morris)
         d.y[i] = NAN;
     analyse(&s, &d, &usual);
     assert_int_equal(s.blocks, 1);
-    sensitivity_free(&s);
-    release(&d);
 }
 
 /* A missing response is as if its block had never been: here one in each of the sequences, so that
@@ -513,7 +466,7 @@ TEST(test_missing)
 {
     enum { BLOCK = 5, GONE = DOE_REPLICATES };
     struct sensitivity s, other;
-    struct data d = make(DOE_SALTELLI, &functions[0], 5 * GONE, 4, false, false);
+    DATA d = make(DOE_SALTELLI, &functions[0], 5 * GONE, 4, false, false);
     for (size_t i = 0; i < GONE; i++)
         d.y[(GONE + i) * BLOCK + i % BLOCK] = NAN;
     analyse(&s, &d, &usual);
@@ -524,7 +477,6 @@ TEST(test_missing)
     assert_memory_equal(s.all, other.all, 7 * sizeof *s.all);
     sensitivity_free(&s);
     sensitivity_free(&other);
-    release(&d);
 }
 
 /* Factors of few values: their bins are the values, in whatever numbers of points. */
@@ -532,7 +484,7 @@ TEST(test_listed)
 {
     enum { N = 400 };
     double y[N], u[2 * N], first = 0;
-    struct sensitivity s;
+    SENSITIVITY s;
     for (size_t i = 0; i < N; i++) {
         u[2 * i] = i % 3 == 2;
         u[2 * i + 1] = (double)(i * 7 % N);
@@ -545,14 +497,13 @@ TEST(test_listed)
     const double truth = between / (between + within);
     assert_float_equal(s.measure[SENSITIVITY_FIRST][0].estimate, truth, 2.0 / N);
     assert_true(holds(&s.measure[SENSITIVITY_FIRST][0], truth));
-    sensitivity_free(&s);
 }
 
 /* Nothing to say: no number rather than a wrong one, and no crash. */
 TEST(test_nothing)
 {
     double y[24], u[24 * 2] = {0};
-    struct sensitivity s;
+    SENSITIVITY s;
     for (size_t i = 0; i < 24; i++)
         y[i] = 0.5;
     assert_true(sensitivity_sobol(&s, y, 6, 2, false, 0.95));
@@ -571,5 +522,4 @@ TEST(test_nothing)
     sensitivity_free(&s);
     assert_true(sensitivity_given(&s, y, u, 24, 2, true, &usual));
     assert_true(s.blocks == 0 && isnan(s.all[0].estimate));
-    sensitivity_free(&s);
 }

@@ -1,6 +1,5 @@
 /* The kernels' sine and cosine against libm's long double ones. */
 #include "support.h"
-#include "tests.h"
 
 TEST(accuracy)
 {
@@ -37,7 +36,7 @@ TEST(beyond_the_range)
 {
     const double beyond[] = {1e4 + 1e-8, -1e4 - 1e-8, 1e300, INFINITY, -INFINITY, NAN};
     double s, c;
-    for (size_t i = 0; i < sizeof beyond / sizeof *beyond; i++) {
+    for (size_t i = 0; i < COUNT(beyond); i++) {
         stance_sincos(beyond[i], &s, &c);
         assert_true(isnan(s) && isnan(c));
     }

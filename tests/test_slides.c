@@ -22,16 +22,15 @@ static void bead_rate(double t, const double *x, double *rate)
 }
 TEST(bead)
 {
-    struct robot r = robot_of("body rod hinge - 1 0.3 0 0 0.4 1\n"
-                              "body bead slide rod 0.7 0 0 0 0.1 0 axis 3 -4 stiffness 20 damping "
-                              "0.3 rest 0.4 armature 0.05\n",
-                              0.2);
+    ROBOT r = robot_of("body rod hinge - 1 0.3 0 0 0.4 1\n"
+                       "body bead slide rod 0.7 0 0 0 0.1 0 axis 3 -4 stiffness 20 damping "
+                       "0.3 rest 0.4 armature 0.05\n",
+                       0.2);
     double x[MOST];
     r.c.position[0] = 1, r.c.position[1] = 0.6, r.c.velocity[0] = 2, r.c.velocity[1] = -1;
     start(&r, x);
     integrate(bead_rate, 4, 0, 0.8, NULL, x);
     arrives("bead on a rod", &r, 0.008, 0.8, x, 0);
-    stance_scene_free(r.scene);
 }
 
 /* A hopper of body M and shoe m, on a spring k along the leg: in flight, tilted by a, the length l
@@ -43,7 +42,7 @@ TEST(bead)
 static const double sprung = 4, unsprung = 0.5;
 TEST(hopper_in_flight)
 {
-    struct robot r = robot_of(HOPPER "rest 0.5\n", 0.1);
+    ROBOT r = robot_of(HOPPER "rest 0.5\n", 0.1);
     const double a = 0.3, T = 0.4, share = unsprung / (sprung + unsprung);
     const double swing = sqrt(900 * (1 / sprung + 1 / unsprung));
     r.c.position[1] = 2, r.c.position[2] = a, r.c.position[3] = 0.3;
@@ -57,16 +56,14 @@ TEST(hopper_in_flight)
         vx * T - sin(a) * more,     2 + vz * T - G * T * T / 2 + cos(a) * more, a, l,
         vx - sin(a) * share * rate, vz - G * T + cos(a) * share * rate,         0, rate};
     arrives("hopper in flight", &r, 0.0004, T, end, 0);
-    stance_scene_free(r.scene);
 }
 
 /* The shoe comes to its stop: body and shoe go on together. */
 TEST(slide_stops_in_flight)
 {
-    struct robot r =
-        robot_of("body leg free - 4 0.1 0 0 0 0\nbody shoe slide leg 0.5 0.001 0 0 0 0 "
-                 "axis 0 -1 limits 0 0.25\n",
-                 0);
+    ROBOT r = robot_of("body leg free - 4 0.1 0 0 0 0\nbody shoe slide leg 0.5 0.001 0 0 0 0 "
+                       "axis 0 -1 limits 0 0.25\n",
+                       0);
     const double T = 0.4, v = 2, share = unsprung / (sprung + unsprung);
     r.c.position[1] = 3, r.c.position[3] = 0.05, r.c.velocity[3] = v;
     for (const stance_method *const *m = stance_methods(); *m; m++) {
@@ -79,7 +76,6 @@ TEST(slide_stops_in_flight)
         near((*m)->name, "angle", end.position[2], 0, 1e-9);
         assert_true(end.max_penetration <= 1e-9);
     }
-    stance_scene_free(r.scene);
 }
 
 /* It hops upright: x = (height of the body, length, rates). In flight body and shoe accelerate by
@@ -103,7 +99,7 @@ static double until_hop(const double *x)
 TEST(hopper_hops)
 {
     const double T = 1.6;
-    struct robot r = robot_of(HOPPER "damping 6 rest 0.5\npoint foot shoe 0 0\n", 0);
+    ROBOT r = robot_of(HOPPER "damping 6 rest 0.5\npoint foot shoe 0 0\n", 0);
     double x[MOST] = {0.75, 0.5, 0, 0};
     int events = 0;
     r.c.position[1] = x[0], r.c.position[3] = x[1];
@@ -120,13 +116,12 @@ TEST(hopper_hops)
     assert_true(events >= 5);
     const double end[MOST] = {0, x[0], 0, x[1], 0, x[2], 0, x[3]};
     arrives("hopper hops", &r, 0.0005, T, end, 600);
-    stance_scene_free(r.scene);
 }
 
 /* Slides on slides and beyond hinges, in flight: momentum, moment of momentum, energy. */
 TEST(slides_in_flight)
 {
-    struct robot r = robot_of(
+    ROBOT r = robot_of(
         "body base free - 3 0.1 0.05 0.1 0 0\n"
         "body boom slide base 1 0.02 0.1 0.02 0.1 0.3 axis 3 1 stiffness 40 rest 0.2\n"
         "body mast slide boom 0.7 0.03 0.05 0.2 0.2 0.1 axis -0.5 1 armature 0.2 stiffness 60\n"
@@ -158,5 +153,4 @@ TEST(slides_in_flight)
         near((*m)->name, "energy", r.scene->energy(r.scene, r.c.robot, end.position, end.velocity),
              energy, 1e-6 * fabs(energy));
     }
-    stance_scene_free(r.scene);
 }

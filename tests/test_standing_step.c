@@ -8,7 +8,6 @@
 #define STANCE_SCENE_LANES "engine/scenes/biped_lanes.h"
 #include "engine/methods/capturing.c"
 #include "inside.h"
-#include "tests.h"
 
 enum { PARTS = 32 };
 
@@ -61,7 +60,7 @@ TEST(errors_are_estimated)
     enum { TRIES = 3000 };
     static double ratio[TRIES];
     uint64_t seed = 23;
-    for (size_t k = 0; k < sizeof steps / sizeof *steps; k++)
+    for (size_t k = 0; k < COUNT(steps); k++)
         for (contact_set which = 0; which < 2; which++) {
             int taken = 0, tried = 0, low = 0, counted = 0;
             double worst = 0, works = 0;

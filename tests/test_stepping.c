@@ -3,7 +3,6 @@
  * an independent event-driven program (tests/reference). */
 #include "long.h"
 #include "support.h"
-#include "tests.h"
 
 #define PENETRATION 1e-9
 #define CONE 1e-9
@@ -17,8 +16,8 @@ static struct extremes run_random(const char *method, double h, double restituti
                                   stance_impacts law, int n)
 {
     const stance_kernel *const kernel = kernel_of(method, NULL);
-    stance_case *cases = calloc((size_t)n, sizeof *cases);
-    stance_result *results = calloc((size_t)n, sizeof *results);
+    OWN stance_case *cases = calloc((size_t)n, sizeof *cases);
+    OWN stance_result *results = calloc((size_t)n, sizeof *results);
     assert_non_null(cases);
     assert_non_null(results);
     uint64_t seed = 7;
@@ -40,15 +39,13 @@ static struct extremes run_random(const char *method, double h, double restituti
         e.subdivided += r->subdivided_steps > 0;
         e.gained += r->impact_energy > 1e-9;
     }
-    free(cases);
-    free(results);
     return e;
 }
 
 TEST(contact_laws)
 {
     static const double steps[] = {1e-4, 5e-4, 1e-3, 2e-3, 5e-3, 1e-2, 2e-2};
-    enum { STEPS = sizeof steps / sizeof *steps };
+    enum { STEPS = COUNT(steps) };
     for (int k = 0; k < 2 * STEPS; k++) {
         const char *const method = k < STEPS ? "implicit" : "midpoint";
         const double h = steps[k % STEPS];
@@ -100,7 +97,7 @@ TEST(trajectories_obey_the_laws)
     for (int i = 0; i < 300; i++) {
         stance_case c;
         random_case(&seed, i, 1e-3, &c);
-        stance_trajectory t = trajectory_new(ROWS, 1e-3);
+        TRAJECTORY t = trajectory_new(ROWS, 1e-3);
         stance_result r;
         c.trajectory = &t;
         run_cases(kernel, &c, &r, 1);
@@ -116,7 +113,6 @@ TEST(trajectories_obey_the_laws)
                 assert_true(n == 0 || gap[k] <= PENETRATION); /* what pushes touches */
             }
         }
-        trajectory_free(&t);
     }
 }
 
@@ -174,11 +170,11 @@ struct drop_error {
 
 static struct drop_error drop_error(const char *method, double h)
 {
-    json_t *root = reference_load("tests/reference/drop.json");
+    JSON *root = reference_load("tests/reference/drop.json");
     json_t *drop = json_object_get(root, "second");
     json_t *path = json_object_get(drop, "velocity_1ms");
     stance_case c = second_drop(h);
-    stance_trajectory t = trajectory_new(DROP_ROWS, 1e-3);
+    TRAJECTORY t = trajectory_new(DROP_ROWS, 1e-3);
     c.trajectory = &t;
     run_done(method, &c);
     struct drop_error e = {0, 0, 0, 0, 0};
@@ -207,8 +203,6 @@ static struct drop_error drop_error(const char *method, double h)
         if (t.force[row * 4 + 2] > 0)
             e.touch2 = (double)row * h;
     }
-    trajectory_free(&t);
-    json_decref(root);
     return e;
 }
 
@@ -226,7 +220,7 @@ static double slope(const double *h, const double *error, int n)
 TEST(second_drop_converges)
 {
     static const double h[] = {1e-2, 5e-3, 2e-3, 1e-3, 5e-4, 2e-4, 1e-4, 5e-5, 2e-5, 1e-5};
-    enum { N = sizeof h / sizeof *h };
+    enum { N = COUNT(h) };
     static const char *const methods[] = {"implicit", "midpoint"};
     for (int m = 0; m < 2; m++) {
         double e04[N], e12[N];
@@ -303,7 +297,7 @@ TEST(first_drop_stages)
     c.friction = 0.5;
     hold_legs(&c, 500, 50);
     c.steps = 1500;
-    stance_trajectory t = trajectory_new(ROWS, 1e-3);
+    TRAJECTORY t = trajectory_new(ROWS, 1e-3);
     c.trajectory = &t;
     run_done("implicit", &c);
 
@@ -340,7 +334,6 @@ TEST(first_drop_stages)
     assert_true(fabs(t.force[(stop + 50) * 4 + 1]) < 0.5 * t.force[(stop + 50) * 4]);
     assert_in_range(second, 840, 900);
     assert_true(t.force[(second - 5) * 4] < 0.8 * t.force[(stop + 50) * 4]);
-    trajectory_free(&t);
 }
 
 /* The equation of a long step has further roots, far away and fast. A robot without torques gains
@@ -361,8 +354,8 @@ TEST(far_roots_are_refused)
     static const char *const methods[] = {"implicit", "midpoint"};
     for (int m = 0; m < 2; m++) {
         enum { N = 2000 };
-        stance_case *cases = calloc(N, sizeof *cases);
-        stance_result *results = calloc(N, sizeof *results);
+        OWN stance_case *cases = calloc(N, sizeof *cases);
+        OWN stance_result *results = calloc(N, sizeof *results);
         assert_true(cases && results);
         uint64_t seed = 3;
         double worst = 0;
@@ -379,8 +372,6 @@ TEST(far_roots_are_refused)
         }
         print_message("# %s: energy gained at most %.2f of the initial\n", methods[m], worst);
         assert_true(worst < 1);
-        free(cases);
-        free(results);
     }
 }
 
@@ -403,7 +394,7 @@ TEST(golden)
         {"rod", "implicit", 0xd3113a49adf3e105u},    {"rod", "midpoint", 0x83a9bd1632ca3340u},
         {"rod", "capturing", 0xf4fb66ae1660ce95u},   {"rod", "lagrange", 0xff1bb676f1277fdau},
     };
-    for (size_t m = 0; m < sizeof expected / sizeof *expected; m++) {
+    for (size_t m = 0; m < COUNT(expected); m++) {
         const stance_scene *const scene = stance_scene_find(expected[m].scene);
         for (int rank = 0; stance_isa(rank); rank++) {
             const stance_kernel *const kernel =
@@ -424,7 +415,7 @@ TEST(golden)
 TEST(neighbours_change_nothing)
 {
     static const char *const methods[] = {"implicit", "midpoint"};
-    for (size_t m = 0; m < sizeof methods / sizeof *methods; m++) {
+    for (size_t m = 0; m < COUNT(methods); m++) {
         const stance_kernel *const wide = kernel_of(methods[m], stance_isa(0));
         const stance_kernel *const narrow =
             kernel_of(methods[m], stance_isa(stance_isa(1) ? 1 : 0)); /* the next narrower */

@@ -1,7 +1,5 @@
 /* Jacobi's method against LAPACK, on matrices of every kind. */
 #include <lapacke.h>
-#include <math.h>
-#include <string.h>
 
 #include "cases.h"
 #include "tests.h"

@@ -1,9 +1,6 @@
 /* The writer of tables: what people see and what programs get, of numbers that are none, of text
  * that means harm, and without memory. */
-#include "tests.h"
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
+#include "support.h"
 
 #include "analysis/table/table.h"
 
@@ -40,6 +37,8 @@ static void wrote(FILE *out, const char *wanted)
     text = NULL;
 }
 
+#define TABLE FREED(table_free) struct table
+
 static void assert_seen(const struct table *t, const char *view, size_t most, const char *wanted)
 {
     FILE *out = begin();
@@ -58,9 +57,8 @@ static void assert_csv(const struct table *t, const char *wanted)
 static void assert_json(json_t *root, const char *wanted)
 {
     assert_non_null(root);
-    char *dumped = json_dumps(root, JSON_COMPACT);
+    OWN char *dumped = json_dumps(root, JSON_COMPACT);
     assert_string_equal(dumped, wanted);
-    free(dumped);
     json_decref(root);
 }
 
@@ -81,7 +79,7 @@ static const char view[] = "name count share low high note";
 
 TEST(test_alignment)
 {
-    struct table t = {0};
+    TABLE t = {0};
     add_row(&t, "a", 0.125, 0.1, 0.2, 7, NULL);
     add_row(&t, "much longer", 1, NAN, NAN, 123456, "so");
     assert_int_equal(table_rows(&t), 2);
@@ -92,22 +90,20 @@ TEST(test_alignment)
     /* Another view: other columns in another order, no wider than they need. */
     assert_seen(&t, "count name", 0, "       n name\n       7 a\n  123456 much longer\n");
     assert_seen(&t, "unknown", 0, "\n\n");
-    table_free(&t);
 }
 
 TEST(test_letters)
 {
-    struct table t = {0};
+    TABLE t = {0};
     add_row(&t, "\xc3\xa4\xc3\xb6", 0.5, NAN, NAN, 1, NULL); /* two letters, four bytes */
     assert_seen(&t, "name count", 0, "  name     n\n  \xc3\xa4\xc3\xb6       1\n");
-    table_free(&t);
 }
 
 TEST(test_nothing)
 {
-    struct table t = {0};
+    TABLE t = {0};
     const double numbers[] = {NAN, INFINITY, -INFINITY, 0.1, 1.0 / 3, 123456789012345678.0, 1e-300};
-    for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++) {
+    for (size_t i = 0; i < COUNT(numbers); i++) {
         TABLE_FACTS(&t, {{.name = "x", .heading = "x"}, as_number(numbers[i])},
                     {{"y", "y", .empty = "none"}, i ? as_text("") : as_nothing(NULL)},
                     {{.name = "z", .heading = "z"}, as_nothing(i ? NULL : "unknown")},
@@ -122,18 +118,16 @@ TEST(test_nothing)
                 "  (3 of 7 rows; --csv and --json have them all)\n");
     assert_csv(&t, "x,y,z\r\n,,\r\ninf,,\r\n-inf,,\r\n0.1,,\r\n0.3333333333333333,,\r\n"
                    "1.2345678901234568e+17,,\r\n1e-300,,\r\n");
-    json_t *list = table_json(&t, false);
+    JSON *list = table_json(&t, false);
     assert_true(json_is_null(json_object_get(json_array_get(list, 1), "x")));
     assert_true(json_is_null(json_object_get(json_array_get(list, 0), "y")));
     assert_true(json_is_true(json_object_get(json_array_get(list, 0), "w")));
     assert_true(json_real_value(json_object_get(json_array_get(list, 4), "x")) == 1.0 / 3);
-    json_decref(list);
-    table_free(&t);
 }
 
 TEST(test_quotes)
 {
-    struct table t = {0};
+    TABLE t = {0};
     TABLE_COLUMNS(&t, {.name = "plain"}, {.name = "a,b"}, {.name = "c"});
     TABLE_VALUES(&t, as_text("he said \"so\""), as_text("two\nlines"));
     TABLE_VALUES(&t, as_text("a,b"));
@@ -143,14 +137,13 @@ TEST(test_quotes)
     table_clear(&t); /* goes on without a head */
     TABLE_VALUES(&t, as_text("x"), as_text("y"), as_text("z"));
     assert_csv(&t, "x,y,z\r\n");
-    table_free(&t);
 }
 
 /* Text from a file: what is no letter, what moves the cursor, what ends a string. */
 TEST(test_hostile)
 {
     static const char bad[] = "\xff\x1b[2J\n%s%n\"\\";
-    struct table t = {0};
+    TABLE t = {0};
     TABLE_FACTS(&t, {{.name = "x", .heading = "x"}, as_text(bad)},
                 {{.name = "y", .heading = "y"}, as_number(1)});
     table_end_row(&t);
@@ -159,12 +152,10 @@ TEST(test_hostile)
     /* Where it is no UTF-8 it is cleaned, else JSON escapes it. */
     assert_json(table_json(&t, false), "[{\"x\":\"? [2J %s%n\\\"\\\\\",\"y\":1.0}]");
     assert_json(TABLE_OBJECT({"x", as_text("\x1b\n")}), "{\"x\":\"\\u001B\\n\"}");
-    table_free(&t);
 
     /* Far too long a text is cut, for people alone. */
-    struct table longer = {0};
-    char *letters = malloc(100000);
-    assert_non_null(letters);
+    TABLE longer = {0};
+    OWN char *letters = room(100000);
     memset(letters, 'x', 99999);
     letters[99999] = '\0';
     TABLE_FACTS(&longer, {{.name = "x", .heading = "x"}, as_text(letters)},
@@ -178,8 +169,6 @@ TEST(test_hostile)
     assert_true(table_write_csv(&longer, out));
     fclose(out);
     assert_int_equal(size, 5 + 2 * 99999 + 1 + 2);
-    free(letters);
-    table_free(&longer);
 }
 
 /* ---- JSON --------------------------------------------------------------------------------- */
@@ -230,8 +219,8 @@ static void *no_room(size_t bytes)
 
 TEST(test_no_memory)
 {
-    struct table t = {0};
-    json_t *tree = json_array();
+    TABLE t = {0};
+    JSON *tree = json_array();
     add_row(&t, "a", 1, 2, 3, 4, "note");
     t.letters = SIZE_MAX / 8; /* the next text asks for more than there can be */
     TABLE_VALUES(&t, as_text("b"));
@@ -246,7 +235,6 @@ TEST(test_no_memory)
     fclose(out);
     assert_null(table_json(&t, false));
     assert_null(table_json(&t, true));
-    json_decref(tree);
     table_free(&t);
 
     add_row(&t, "a", 1, 2, 3, 4, "note");
@@ -258,12 +246,11 @@ TEST(test_no_memory)
     assert_false(table_write_json(TABLE_OBJECT({"a", as_whole(1)}), out));
     fclose(out);
     json_set_alloc_funcs(malloc, free);
-    table_free(&t);
 }
 
 TEST(test_no_output)
 {
-    struct table t = {0};
+    TABLE t = {0};
     add_row(&t, "a", 1, 2, 3, 4, NULL);
     FILE *full = fopen("/dev/full", "w");
     assert_non_null(full);
@@ -272,7 +259,6 @@ TEST(test_no_output)
     assert_false(table_write_csv(&t, full));
     assert_false(table_write_json(table_json(&t, false), full));
     fclose(full);
-    table_free(&t);
 }
 
 static void assert_said(const char *facts, const char *of, const char *wanted)
@@ -331,7 +317,7 @@ TEST(test_facts)
                                 list[] = {FACTS(TABLE_KEY){"rows", "null beyond", rows}, {0}},
                                 keys[] = {{NULL, "", list}, {NULL, "of --one:", inner}, {0}};
     static const char members[] = "{\"n\":7,\"part\":0.5,\"word\":\"w\",\"at\":[1.0,null]}";
-    struct table t = {0};
+    TABLE t = {0};
     const uint64_t n = 7;
     const double part = 0.5;
     TABLE_FACTS(&t, FACTS(TABLE_FACT));
@@ -340,7 +326,6 @@ TEST(test_facts)
     assert_csv(&t, "n,part,word\r\n7,0.5,w\r\n");
     assert_json(table_json(&t, false), "[{\"n\":7,\"part\":0.5,\"at\":[1.0,null]}]");
     assert_json(TABLE_OBJECT(FACTS(TABLE_MEMBER)), members);
-    table_free(&t);
     FILE *const out = begin();
     say_keys(keys, out);
     wrote(out, "    n, part (of all, null: none), at: [low, high]\n"

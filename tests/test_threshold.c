@@ -5,11 +5,8 @@
 #include "support.h"
 
 #include "cases.h"
-#include "tests.h"
 
 #include "analysis/basin/basin.h"
-
-#include <string.h>
 
 enum { VALUES = 11, POINTS = 200, GRID = 41, SEEDS = 1000 };
 

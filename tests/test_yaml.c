@@ -1,22 +1,19 @@
 /* test_yaml.c - what YAML means: texts that are the same scenario; letters that cannot be seen. */
 #include "reading.h"
-#include "tests.h"
 
 #define HEAD "stance: 1\nscene: ball\ninitial: {state: {z: 1}}\nstop: {time: 1}\n"
 
 static void are_the_same(const char *text, const char *plain)
 {
-    struct scenario s, of;
+    SCENARIO s = {0}, of = {0};
     read_good(&s, text, NULL, 0);
     read_good(&of, plain, NULL, 0);
     assert_string_equal(s.text, of.text);
-    scenario_free(&s);
-    scenario_free(&of);
 }
 
 static void refused(const char *text, const char *set, const char *said)
 {
-    struct scenario s;
+    SCENARIO s = {0};
     assert_false(read_as(&s, "bad.yaml", text, &set, set ? 1 : 0));
     assert_string_equal(errors, said);
 }
@@ -88,7 +85,7 @@ TEST(hidden_letters_are_named)
         {"\U000e0041", "U+E0041 (tag or variation selector)", false},
     };
     char text[500], said[500], set[64];
-    for (size_t i = 0; i < sizeof hidden / sizeof *hidden; i++) {
+    for (size_t i = 0; i < COUNT(hidden); i++) {
         const char *const letter = hidden[i].letter, *const name = hidden[i].name,
                           *const it = hidden[i].blank ? "is no blank" : "cannot be seen";
         snprintf(text, sizeof text, HEAD "robot: {mass: 1%s}\n", letter);
@@ -124,7 +121,7 @@ TEST(hidden_letters_are_named)
 /* Weights, poles and gains by name are the lists that they stand for. */
 TEST(names_stand_for_lists)
 {
-    struct scenario s, of;
+    SCENARIO s = {0}, of = {0};
     double re[SCENARIO_MAX_POLES], im[SCENARIO_MAX_POLES];
     are_the_same(ROBOT "lqr, weights: {vq1: 5, theta: 100}}\n",
                  ROBOT "lqr, weights: {states: [100, 1, 1, 1, 5, 1]}}\n");
@@ -152,7 +149,6 @@ TEST(names_stand_for_lists)
         assert_near(re[i], wanted[0][i], 0);
         assert_near(im[i], wanted[1][i], 0);
     }
-    scenario_free(&s);
     refused(ROBOT "place, poles: {theta: -1, q1: -2+1i, q2: -3}}\n", NULL,
             "bad.yaml:5:74: controller.poles.q1: -2+1i lacks its conjugate\n");
     static const char *const sets[][2] = {
@@ -165,11 +161,8 @@ TEST(names_stand_for_lists)
         read_good(&s, ROBOT "lqr}\n", &sets[i][1], 1);
         read_good(&of, ROBOT "lqr}\n", &sets[i][0], 1);
         assert_string_equal(s.text, of.text);
-        scenario_free(&s);
         read_good(&s, of.text, &sets[i][1], 1);
         assert_string_equal(s.text, of.text);
-        scenario_free(&s);
-        scenario_free(&of);
     }
     refused(ROBOT "lqr}\nsweep: {grid: [{path: controller.weights.q2, values: [1, 2]}, {path: "
                   "'controller.weights.states[2]', values: [3]}]}\n",

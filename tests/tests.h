@@ -9,13 +9,17 @@
 #ifndef STANCE_TESTS_TESTS_H
 #define STANCE_TESTS_TESTS_H
 
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
 
 #include <cmocka.h>
-#include <stdlib.h>
 
 /* cmocka passes over those behind the last. */
 static struct CMUnitTest registered[64];
@@ -28,6 +32,27 @@ static inline void register_test(const char *name, CMUnitTestFunction test)
             abort();
     registered[k] = (struct CMUnitTest){.name = name, .test_func = test};
 }
+
+/* What a variable owns is given back when its block ends, by a function of its address; OWN: what
+ * malloc gave. */
+#define FREED(by) __attribute__((cleanup(by)))
+#define OWN FREED(freed)
+static inline void freed(const void *pointer)
+{
+    free(*(void *const *)pointer);
+}
+
+/* So many bytes, of zeros. */
+static inline void *room(size_t bytes)
+{
+    void *const memory = calloc(1, bytes + 1);
+    assert_non_null(memory);
+    return memory;
+}
+
+#define COUNT(list) (sizeof(list) / sizeof *(list))
+/* A call of the engine's that must succeed. */
+#define OK(call) assert_int_equal(call, STANCE_OK)
 
 #define TEST(name)                                                                                 \
     static void name(void **state);                                                                \
