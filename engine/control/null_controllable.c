@@ -253,9 +253,8 @@ static stance_error find_modes(stance_null_set *s, int n, const double *A, const
     double largest = 0, norm;
     lapack_int low, high;
     memcpy(copy, A, (size_t)(n * n) * sizeof *A); /* by columns: the transpose; right ones of it */
-    if (n > 0 &&
-        LAPACKE_dgeevx(LAPACK_COL_MAJOR, 'B', 'V', 'V', 'E', n, copy, n, re, im, other, n, V, n,
-                       &low, &high, scaling, &norm, s_of, ignored) != 0)
+    if (n > 0 && LAPACKE_dgeevx(LAPACK_COL_MAJOR, 'B', 'V', 'V', 'E', n, copy, n, re, im, other, n,
+                                V, n, &low, &high, scaling, &norm, s_of, ignored) != 0)
         return stance_refuse(message, STANCE_NUMERICAL, "no eigenvectors");
     for (int i = 0; i < n; i++)
         largest = fmax(largest, hypot(re[i], im[i]));
