@@ -163,12 +163,17 @@ static bool read_row(struct axis_reader *a, const char *key, const struct tree_n
                      double *value)
 {
     const size_t paths = (size_t)(a->axis->paths - a->first);
+    char wanted[80];
+    bool good = true;
 
     if (!a->rows)
         return read_one(a, key, node, a->first, value);
-    bool good = field_items(&a->r->problems, a->name, node, paths, "values, one for each path");
-    if (!good)
-        return false;
+    snprintf(wanted, sizeof wanted, "a list of %zu values, one for each path", paths);
+    if (node->kind != TREE_LIST)
+        return field_mismatch(&a->r->problems, a->name, wanted, node);
+    if (node->count != paths)
+        return problem_add(&a->r->problems, node->mark, "%s: expected %s, found %zu", a->name,
+                           wanted, node->count);
     for (size_t k = 0; k < paths; k++)
         good = read_one(a, key, node->item[k], a->first + (int)k, &value[k]) && good;
     return good;
