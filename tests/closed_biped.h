@@ -39,6 +39,7 @@
 #include "engine/stance.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #define DENSE_ROWS 7
@@ -183,7 +184,8 @@ static void closed_linearise(const double *robot, const double *q, int s, double
             if (i >= THETA)
                 a[i][7] = j < 3 ? W[i - THETA][j] : i == j;
         }
-        dense_solve(7, a, x);
+        if (!dense_solve(7, a, x))
+        abort();
         for (int i = 0; i < 3; i++)
             *(j < 3 ? &A[(3 + i) * 6 + j] : &B[(3 + i) * 2 + j - 3]) = x[THETA + i];
         for (int axis = 0; axis < 2; axis++)

@@ -29,6 +29,7 @@ def table(name="log"):
 def main():
     code = sys.argv.pop(1) if len(sys.argv) > 1 else "-"
     code = sys.stdin.read() if code == "-" else code
+    assert code.strip(), "nothing is asserted"
     linecache.cache["facts"] = len(code), None, code.splitlines(True), "facts" # for a traceback
     names = {"said": said, "table": table}
     for name in MODULES:

@@ -30,6 +30,8 @@ seconds() { printf '%d.%03d' $(($1 / 1000)) $(($1 % 1000)); } # milliseconds
 #     times N PATTERN    N lines do
 #     is COMMAND..., tool TASK..., holds CODE                the functions below; a script may add its own
 clause_words=" says tells times as lines is tool holds "
+# bash -c "$stdout_alone" - COMMAND...: the log has what it writes there; the other stream is in the file stderr, or out.
+stdout_alone='"$@" 2>stderr' stderr_alone='"$@" >out'
 expect() { # name, code, command ... [clause ...]
     local name=$1 code=$2 status words=()
     shift 2
@@ -48,10 +50,11 @@ clauses() { # [command ...] clause ...
         clause=$1
         shift
         before_clause "$@"
+        ((${#words[@]} > 0)) || { result 1 "... $clause nothing" && continue; }
         case $clause in
         says) for pattern in "${words[@]}"; do says "... says $pattern" "$pattern"; done ;;
         tells) for pattern in "${words[@]}"; do tells "... tells $pattern" "$pattern"; done ;;
-        as) is "... as ${words[0]}" same_results "${words[0]}" "$file" ;;
+        as) "$stance" compare "${words[0]}" "$file" >facts 2>&1; found $? "... as ${words[0]}" ;;
         lines) is "... in ${words[0]} lines" [ "$(wc -l <log)" = "${words[0]}" ] ;;
         holds) holds "... holds" "${words[@]}" ;;
         *) "$clause" "... $clause ${words[*]}" "${words[@]}" ;;
@@ -72,7 +75,6 @@ before_clause() { # words ...: those before the next clause
     words=()
     while (($#)) && [[ $clause_words != *" $1 "* ]]; do words+=("$1") && shift; done
 }
-same_results() { "$stance" compare "$1" "$2" >log 2>&1; }
 # Ok when a command succeeds, or with ! does not; one word with blanks is a script. What it says is not heard.
 is() { # name, [!] command ...
     if [ "$2" = ! ]; then

@@ -41,6 +41,7 @@ static inline bool read_as(struct scenario *s, const char *file, const char *tex
     FILE *out = fmemopen(errors, sizeof errors, "w");
     assert_non_null(out);
     scenario_free(s);
+    memset(s, 0xa5, sizeof *s); /* whatever was there */
     bool good = scenario_read(s, file, text, sets, set_count, out);
     fputc('\0', out);
     fclose(out);

@@ -313,6 +313,7 @@ TEST(bounces_within_a_step_rest)
         c.scene->gaps(c.scene, c.robot, c.position, gap);
         c.position[1] += 0.5 - gap[0];
         c.restitution = 0.05 * k;
+        c.friction = 0.8;
         c.settle = true;
         c.settle_rate = 0.02, c.settle_hold = 0.25;
         assert_int_equal(run_one("midpoint", &c).outcome, STANCE_RESTED);

@@ -5,8 +5,8 @@
 # about: analysis/critical runner/run runner/scenario
 . "$(dirname "$0")/scratch.sh"
 critical() { # file, scenario, PATH=FROM..TO, option ...: its JSON
-    expect "$1" 0 "$stance" critical "$2" --of "$3" -o "$1.h5" --json "${@:4}"
-    sed -n '/^{/,/^}/p' log >"$1.json"
+    expect "$1" 0 bash -c "$stdout_alone" - "$stance" critical "$2" --of "$3" -o "$1.h5" --json "${@:4}"
+    cp log "$1.json"
 }
 identical() { # file, file
     "$stance" compare "$1" "$2" >log 2>&1 && grep -qx identical log
@@ -203,7 +203,7 @@ drawn rows.h5 'light: rested again beyond it'
 
 # ---- what is wrong ----------------------------------------------------------------------------------
 wrong() { # name, pattern, argument ...: exit code 2 and one line
-    expect "$1" 2 "$stance" critical "${@:3}" lines 1 is grep -qE -- "$2" log
+    expect "$1" 2 bash -c "$stderr_alone" - "$stance" critical "${@:3}" lines 1 is grep -qE -- "$2" log is [ ! -s out ]
 }
 wrong "a scenario without a number" 'block.yaml does not say along which number \(sweep.refine.along\): --of PATH=FROM..TO' block.yaml
 wrong "a number without a range" "of a scenario --of takes PATH=FROM..TO, .*, not 'ground.friction'" block.yaml --of ground.friction

@@ -55,7 +55,8 @@ study lhs ishigami lhs 1000
 expect "bins" 0 "$stance" sensitivity lhs.h5 --answer end_time
 cp log first
 expect "other resamples" 0 "$stance" sensitivity lhs.h5 --answer end_time --seed 7 is ! cmp -s log first
-"$stance" sensitivity lhs.h5 --answer end_time --json >lhs.json 2>log
+expect "as JSON" 0 bash -c "$stdout_alone" - "$stance" sensitivity lhs.h5 --answer end_time --json
+cp log lhs.json
 holds "... hold the published values, too" - lhs.json <<'END'
 for table in said(sys.argv[1])["tables"]:
     found = {f["path"]: f["first"] for f in table["factors"]}

@@ -65,6 +65,26 @@ static size_t split(char *text, char **word, size_t most)
 
 /* ---- processes ----------------------------------------------------------------------------- */
 
+/* This process's environment, but for temporary files in the working directory and messages in
+ * English; to be freed. */
+static char **environment(void)
+{
+    static char tmpdir[] = "TMPDIR=.", language[] = "LC_ALL=C";
+    size_t n = 0, kept = 0;
+    while (environ[n])
+        n++;
+    char **const all = malloc((n + 3) * sizeof *all);
+    for (size_t i = 0; all && i < n; i++)
+        if (strncmp(environ[i], "TMPDIR=", 7) != 0 && strncmp(environ[i], "LC_ALL=", 7) != 0)
+            all[kept++] = environ[i];
+    if (all) {
+        all[kept++] = tmpdir;
+        all[kept++] = language;
+        all[kept] = NULL;
+    }
+    return all;
+}
+
 /* Starts a program, in a directory (negative: here), that writes into `output`. Negative: it cannot
  * be started. */
 static pid_t start(char *const *argument, int directory, int output)
@@ -78,14 +98,16 @@ static pid_t start(char *const *argument, int directory, int output)
         posix_spawn_file_actions_destroy(&actions);
         return -1;
     }
+    char **const variables = environment();
     const bool good =
-        posix_spawnattr_setflags(&group, POSIX_SPAWN_SETPGROUP) == 0 &&
+        variables && posix_spawnattr_setflags(&group, POSIX_SPAWN_SETPGROUP) == 0 &&
         posix_spawnattr_setpgroup(&group, 0) == 0 &&
         posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0) == 0 &&
         posix_spawn_file_actions_adddup2(&actions, output, STDOUT_FILENO) == 0 &&
         posix_spawn_file_actions_adddup2(&actions, output, STDERR_FILENO) == 0 &&
         (directory < 0 || posix_spawn_file_actions_addfchdir_np(&actions, directory) == 0) &&
-        posix_spawnp(&child, argument[0], &actions, &group, argument, environ) == 0;
+        posix_spawnp(&child, argument[0], &actions, &group, argument, variables) == 0;
+    free(variables);
     posix_spawn_file_actions_destroy(&actions);
     posix_spawnattr_destroy(&group);
     return good ? child : -1;
@@ -134,37 +156,30 @@ static bool ask(const struct compiler *compiler, char *option, char text[OUTPUT]
     return status == 0 && text[0];
 }
 
-enum { BEFORE = 3 }; /* words before the compiler's own */
-
 /* It will run in another directory. */
 static bool make_absolute(struct compiler *compiler)
 {
     char here[PATH_MAX];
-    char **const word = &compiler->word[BEFORE];
-    const char *const name = *word;
+    const char *const name = compiler->word[0];
     if (name[0] == '/' || !strchr(name, '/'))
         return true;
     const int n = getcwd(here, sizeof here)
                       ? snprintf(compiler->path, sizeof compiler->path, "%s/%s", here, name)
                       : -1;
-    *word = compiler->path;
+    compiler->word[0] = compiler->path;
     return n > 0 && (size_t)n < sizeof compiler->path;
 }
 
-/* Is there a compiler of this name? It has temporary files in the directory that it runs in, and
- * says what it says in English. */
+/* Is there a compiler of this name? */
 bool compiler_named(struct compiler *compiler, const char *name)
 {
-    static char *const before[BEFORE] = {"/usr/bin/env", "TMPDIR=.", "LC_ALL=C"};
     static char version[] = "--version", machine[] = "-dumpmachine";
     char said[2 * OUTPUT], hash[CHECKSUM_SHA256_TEXT];
     if (strlen(name) >= sizeof compiler->text)
         return false;
     snprintf(compiler->text, sizeof compiler->text, "%s", name);
-    memcpy(compiler->word, before, sizeof before);
-    compiler->words =
-        BEFORE + split(compiler->text, compiler->word + BEFORE, COMPILER_WORDS - BEFORE);
-    if (compiler->words == BEFORE || !make_absolute(compiler) || !ask(compiler, version, said))
+    compiler->words = split(compiler->text, compiler->word, COMPILER_WORDS);
+    if (compiler->words == 0 || !make_absolute(compiler) || !ask(compiler, version, said))
         return false;
     snprintf(compiler->version, sizeof compiler->version, "%.*s", (int)strcspn(said, "\n"), said);
     if (!ask(compiler, machine, said + strlen(said)))

@@ -11,7 +11,7 @@
 
 #include "engine/stance.h"
 
-enum { COMPILER_WORDS = 19 };
+enum { COMPILER_WORDS = 16 };
 
 /* The environment variable CC if it is set, else the first of cc, gcc and clang in PATH. */
 struct compiler {

@@ -7,6 +7,7 @@
 #include "runner/base/sandbox.h"
 #include "runner/base/words.h"
 
+#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -115,6 +116,10 @@ static int work(void *context)
 
 static int start(struct request *request)
 {
+    if (strlen(request->output) >= 1024) {
+        fprintf(stderr, "stance merge: %.60s...: %s\n", request->output, strerror(ENAMETOOLONG));
+        return EXIT_USAGE;
+    }
     for (size_t p = 1; p < request->count; p++) {
         for (size_t q = 0; q < p; q++) {
             if (strcmp(request->files[p], request->files[q]) == 0) {

@@ -11,7 +11,7 @@
 
 struct lock {
     int descriptor;      /* -1: not held */
-    char file[1024 + 5]; /* FILE.lock */
+    char file[1100]; /* FILE.lock */
 };
 
 /* false: another process writes FILE, or the lock file cannot be made; *message says which.

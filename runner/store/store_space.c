@@ -74,11 +74,11 @@ bool store_take_place(const char *made, const char *file, stance_message *messag
 {
     char directory[PATH_MAX];
     struct stat before;
+    if (!store_bring(made, false, message))
+        return false;
     /* Whoever may write the old file may write this one, as far as the system lets us see to it. */
     if (stat(file, &before) == 0 && chown(made, before.st_uid, before.st_gid) == 0)
         (void)chmod(made, before.st_mode & 0777);
-    if (!store_bring(made, false, message))
-        return false;
     if (rename(made, file) != 0)
         return store_system_failed(message, file, "put the new file there", errno);
     store_directory(file, directory, sizeof directory);
