@@ -4,6 +4,7 @@
 #include "speed.h"
 
 #include "analysis/draw/plot.h"
+#include "runner/base/message.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -115,8 +116,9 @@ static bool is_time(const struct speed_row *row, const char *map, int ranks)
            (!map || strcmp(row->field[BENCH_REGIME], map) == 0);
 }
 
-/* A panel of wall time over cases, a line in full and one refined, on most ranks. */
-static void put_map(struct gnuplot *g, const struct speed_table *table)
+/* A panel of wall time over cases, a line in full and one refined, on most ranks. False: there is
+ * none. */
+static bool put_map(struct gnuplot *g, const struct speed_table *table)
 {
     static const char *const maps[][2] = {{"basin full", "every case"},
                                           {"basin refined", "refined"}};
@@ -133,7 +135,7 @@ static void put_map(struct gnuplot *g, const struct speed_table *table)
             plot_widen(&time, log10(2.5 * table->row[k].highest));
         }
     if (!(cases.low <= cases.high))
-        return;
+        return false;
     gnuplot_panel(g, 300, "The shipped map, basin_one_foot");
     snprintf(text, sizeof text, "wall time of the program on %d rank%s (s)", ranks,
              ranks == 1 ? "" : "s");
@@ -142,9 +144,11 @@ static void put_map(struct gnuplot *g, const struct speed_table *table)
                  "cases of the stability map", "");
     for (size_t k = 0; k < table->rows; k++) {
         const struct speed_row *const row = &table->row[k];
-        if (is_time(row, maps[0][0], ranks) ||
-            (is_time(row, maps[1][0], ranks) &&
-             !speed_find(table, NULL, NULL, maps[0][0], NULL, NULL, "wall time"))) {
+        bool named = !is_time(row, NULL, ranks);
+        for (size_t before = 0; before < k && !named; before++)
+            named =
+                is_time(&table->row[before], NULL, ranks) && table->row[before].cases == row->cases;
+        if (!named) {
             snprintf(text, sizeof text, "%.0f²", sqrt(row->cases));
             gnuplot_word(g, log10(row->cases), text);
         }
@@ -171,6 +175,7 @@ static void put_map(struct gnuplot *g, const struct speed_table *table)
         if (any)
             gnuplot_legend(g, gnuplot_hue(m), 1, 7, maps[m][1], "");
     }
+    return true;
 }
 
 bool speed_plot(const struct speed_table *table, const struct plot *plot)
@@ -191,7 +196,8 @@ bool speed_plot(const struct speed_table *table, const struct plot *plot)
         row->field[BENCH_PROCESSOR], row->field[BENCH_COMPILER], row->field[BENCH_REVISION],
         row->field[BENCH_DATE]);
     /* Two or three digits. */
-    gnuplot_set(&g, "digits(v) = v < 9.95 ? sprintf('%%.1f', v) : v < 9995 ? sprintf('%%.0f', v) : "
+    gnuplot_set(&g, "digits(v) = v < 0.95 ? sprintf('%%.2g', v) : v < 9.95 ? sprintf('%%.1f', v) : "
+                    "v < 9995 ? sprintf('%%.0f', v) : "
                     "sprintf('%%.0fk', v/1000)");
     snprintf(heading, sizeof heading,
              "%s, implicit: one lane and more, beside the step written by hand and MuJoCo",
@@ -202,7 +208,14 @@ bool speed_plot(const struct speed_table *table, const struct plot *plot)
                                          colours[count % (sizeof colours / sizeof *colours)]};
     put_bars(&g, table, methods, count, NULL,
              "Every method in every scene, in the widest instruction set");
-    put_map(&g, table);
-    gnuplot_set(&g, "leads = panels - 1; lead_width = 900; chart_width = 420");
+    if (put_map(&g, table))
+        gnuplot_set(&g, "leads = panels - 1; lead_width = 900; chart_width = 420");
+    else
+        gnuplot_set(&g, "chart_width = 900");
+    if (g.panels == 0) {
+        gnuplot_abandon(&g);
+        return complain(plot->message,
+                        "the table has no times of scenes and methods of this program");
+    }
     return gnuplot_end(&g);
 }

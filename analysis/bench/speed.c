@@ -104,12 +104,13 @@ const struct speed_row *speed_find(const struct speed_table *table, const char *
     const char *const wanted[BENCH_COLUMN_COUNT] = {
         [BENCH_SUBJECT] = subject, [BENCH_SCENE] = scene, [BENCH_REGIME] = regime,
         [BENCH_METHOD] = method,   [BENCH_ISA] = isa,     [BENCH_QUANTITY] = quantity};
-    for (size_t k = table->rows; k-- > 0;) {
-        bool same = true;
+    const struct speed_row *found = NULL;
+    for (size_t k = 0; k < table->rows; k++) {
+        bool same = !found || table->row[k].lanes >= found->lanes;
         for (int c = 0; c < BENCH_COLUMN_COUNT; c++)
             same = same && (!wanted[c] || strcmp(wanted[c], table->row[k].field[c]) == 0);
         if (same)
-            return &table->row[k];
+            found = &table->row[k];
     }
-    return NULL;
+    return found;
 }

@@ -25,7 +25,7 @@ struct speed_table {
 bool speed_read(const char *path, struct speed_table *table, stance_message *message);
 void speed_free(struct speed_table *table);
 
-/* The row with these words (NULL: whatever), or NULL: the last one where there are several. */
+/* The row with these words (NULL: whatever), or NULL: of several that of most lanes, the last. */
 const struct speed_row *speed_find(const struct speed_table *table, const char *subject,
                                    const char *scene, const char *regime, const char *method,
                                    const char *isa, const char *quantity);

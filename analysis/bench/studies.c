@@ -43,16 +43,18 @@ double study_tolerance(const stance_method *method, const struct scenario_values
 static void find_studies(const char *kind, glob_t *found)
 {
     static const char *const bases[] = {"", "../", "../share/stance/"};
-    char program[900] = "", pattern[1024];
+    char program[900] = "", beside[2 * sizeof program] = "", pattern[2 * sizeof program + 100];
     const ssize_t n = readlink("/proc/self/exe", program, sizeof program - 1);
-    char *slash = n > 0 ? strrchr(program, '/') : NULL;
-    if (slash)
-        slash[1] = '\0';
+    const char *const slash = n > 0 ? strrchr(program, '/') : NULL;
+    char *to = beside;
+    for (const char *from = program; slash && from <= slash; *to++ = *from++)
+        if (strchr("[]*?\\", *from)) /* as it stands, no pattern */
+            *to++ = '\\';
     *found = (glob_t){.gl_pathc = 0};
     for (size_t k = 0; found->gl_pathc == 0 && k < sizeof bases / sizeof *bases; k++) {
         globfree(found);
-        snprintf(pattern, sizeof pattern, "%s%sscenarios/%s/*.yaml", k > 0 && slash ? program : "",
-                 bases[k], kind);
+        snprintf(pattern, sizeof pattern, "%s%sscenarios/%s/*.yaml", k > 0 ? beside : "", bases[k],
+                 kind);
         glob(pattern, 0, NULL, found);
     }
 }

@@ -13,7 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_LABELS = 40, ARC_STEPS = 24 };
+enum { MOST_LABELS = 40, ARC_STEPS = 24, GROUND_PIECES = 256 };
 
 /* Whose colour something has in the script. */
 enum ink { INK_COORDINATE, INK_ACTUATOR, INK_CONTACT };
@@ -198,9 +198,12 @@ static void put_ground(struct model *m)
     gnuplot_series(m->g,
                    "using 1:(at_least($2, y1_low)):(y1_low) with filledcurves fc rgb 0xf0f0f0 "
                    "notitle, '' using 1:2 with lines lw 2 lc rgb 0xa0a0a0");
-    plot_ground(m->g, &even, 0,
-                (struct plot_range){m->range[0].low - 4 * m->size, m->range[0].high + 4 * m->size},
-                0, 0);
+    /* In pieces: of one that leaves the picture below not only its end is drawn. */
+    const double left = m->range[0].low - 4 * m->size;
+    const double piece = (m->range[0].high + 4 * m->size - left) / GROUND_PIECES;
+    for (int k = 0; k < GROUND_PIECES; k++)
+        plot_ground(m->g, &even, 0, (struct plot_range){left + k * piece, left + (k + 1) * piece},
+                    0, 0);
 }
 
 static void put_lines(struct model *m)
