@@ -49,7 +49,7 @@ bool lock_take(struct lock *lock, const char *file, bool through, stance_message
         int descriptor = open(lock->file, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
         if (descriptor < 0) {
             /* EACCES means something else here than below. */
-            return failed(message, file, errno == EACCES ? EPERM : errno);
+            return failed(message, name, errno == EACCES ? EPERM : errno);
         }
         const int error = fcntl(descriptor, F_OFD_SETLK, &range) != 0 ? errno : 0;
         /* Its owner may have removed the file between our two calls: then the lock is worthless. */
@@ -59,7 +59,7 @@ bool lock_take(struct lock *lock, const char *file, bool through, stance_message
         }
         close(descriptor);
         if (error != 0)
-            return failed(message, file, error);
+            return failed(message, name, error);
     }
 }
 
