@@ -75,9 +75,7 @@ export OMPI_MCA_oob_tcp_keepalive_time=4 OMPI_MCA_oob_tcp_keepalive_intvl=2 \
 on_hosts() { # 1,2,3 command ...: a rank on each of these hosts; mpirun on the first
     local list=${1//,/ } all='' i
     shift
-    for i in $list; do
-        all="$all,10.1.1.$i:1"
-    done
+    for i in $list; do all="$all,10.1.1.$i:1"; done
     exec bash launch "10.1.1.${list%% *}" exec mpirun --host "${all#,}" \
         --mca plm_rsh_agent "$PWD/launch" --mca plm_rsh_no_tree_spawn 1 \
         --mca oob_tcp_if_include 10.1.1.0/24 --mca btl_tcp_if_include 10.1.1.0/24 "$@"
@@ -87,10 +85,7 @@ on_one_host=(mpirun --oversubscribe -n)
 count=0
 # shellcheck source=tests/outside.sh
 . "$tests/outside.sh"
-same() { # name, file, file
-    expect "$1" 0 "$stance" compare "$2" "$3"
-    says "... bit by bit" '^identical'
-}
+same() { expect "$1" 0 "$stance" compare "$2" "$3" says '^identical'; } # name, file, file: bit by bit
 value() { # key, file
     "$stance" status "$2" --json 2>/dev/null | sed -n "s/.*\"$1\": *\([a-z0-9]*\).*/\1/p"
 }
@@ -113,15 +108,11 @@ before=$(received)
 (on_hosts 1,2,3 "$stance" run sweep.yaml -o three.h5) >log 2>&1 </dev/null
 result $? "a run on three hosts"
 says "... with a rank on each" 'on 3 ranks$'
-echo "$before bytes before, $(received) after" >log
-(($(received) > before + 10000))
-result $? "... which talk over the network"
-"$python" -c 'import h5py
-f = h5py.File("three.h5")
+is "... which talk over the network" '(($(received) > before + 10000))'
+holds "... and every host computes its share" 'f = h5py.File("three.h5")
 hosts, cases = f.attrs["hosts"], f["timing/cases"][...]
 hosts = hosts.decode() if isinstance(hosts, bytes) else hosts
-assert hosts == "host1,host2,host3" and min(cases) > 3000, (hosts, cases)' >log 2>&1
-result $? "... and every host computes its share"
+assert hosts == "host1,host2,host3" and min(cases) > 3000, (hosts, cases)'
 same "... and write the same" whole.h5 three.h5
 # As fast: what ranks on two hosts compute in a second, against two on one host, in turn.
 for _ in 1 2 3; do
@@ -135,7 +126,7 @@ for _ in 1 2 3; do
 print('$kind', 30000 / t.max())" >>rates
     done
 done
-"$python" - >log 2>&1 <<'END_OF_FILE'
+holds "two hosts compute about as much in a second as one with both ranks" <<'END_OF_FILE'
 import statistics
 rows = [line.split() for line in open("rates")]
 rate = {kind: [float(r) for k, r in rows if k == kind] for kind in ("one", "two")}
@@ -144,35 +135,28 @@ print(f"{statistics.median(rate['one']):.0f} cases/s on one host, "
       f"{statistics.median(rate['two']):.0f} on two: {100 * share:.1f} %")
 assert share > 0.7
 END_OF_FILE
-result $? "two hosts compute about as much in a second as one with both ranks"
-sed 's/^/# /' log
+sed 's/^/# /' facts
 
 # ---- one that goes in mid-run --------------------------------------------------------------------
 cable() { ip -n "$name-switch" link set "port$1" "$2"; } # host, up or down
 ranks() { # how many there are on a host
     local pid n=0
     for pid in $(ip netns pids "$name-$1"); do
-        if [ "$(readlink -f "/proc/$pid/exe")" = "$(readlink -f "$stance")" ]; then
-            n=$((n + 1))
-        fi
+        [ "$(readlink -f "/proc/$pid/exe")" != "$(readlink -f "$stance")" ] || n=$((n + 1))
     done
     echo $n
 }
 begin_run() { # file, options: in the background; sets job, begin
-    local file=$1
-    shift
-    rm -f "$file"
-    (on_hosts 1,2,3 "$stance" run sweep.yaml -o "$file" --quiet "$@") >out 2>&1 </dev/null &
+    rm -f "$1"
+    (on_hosts 1,2,3 "$stance" run sweep.yaml -o "$1" --quiet "${@:2}") >out 2>&1 </dev/null &
     job=$!
-    await $job computing "$file"
-    done_then=$(value "done" "$file")
+    await $job computing "$1"
+    done_then=$(value "done" "$1")
     begin=$SECONDS
 }
 none_left() { # hosts
     local i
-    for i in "$@"; do
-        (($(ranks "$i") == 0)) || return 1
-    done
+    for i in "$@"; do (($(ranks "$i") == 0)) || return 1; done
 }
 # What must hold when a run has lost a host: nothing that had been done is lost, the rest follows.
 # shellcheck disable=SC2046 # a list of numbers
@@ -193,8 +177,7 @@ begin_run cut.h5
 cable 3 down
 await - gone $job
 result $? "a host is cut off: mpirun notices and ends the job (after $((SECONDS - begin)) s)"
-await - none_left 1 2 3
-result $? "... on every host, cut off or not"
+is "... on every host, cut off or not" await - none_left 1 2 3
 cable 3 up
 goes_on cut.h5
 

@@ -29,7 +29,8 @@ seconds() { printf '%d.%03d' $(($1 / 1000)) $(($1 % 1000)); } # milliseconds
 #     tells PATTERN...   some line does (an ERE)             lines N     there are so many
 #     times N PATTERN    N lines do
 #     is COMMAND..., tool TASK..., holds CODE                the functions below; a script may add its own
-clause_words=" says tells times as lines is tool holds "
+# What it has said is kept by: into FILE
+clause_words=" says tells times as lines into is tool holds "
 # bash -c "$stdout_alone" - COMMAND...: the log has what it writes there; the other stream is in the file stderr, or out.
 stdout_alone='"$@" 2>stderr' stderr_alone='"$@" >out'
 expect() { # name, code, command ... [clause ...]
@@ -57,6 +58,7 @@ clauses() { # [command ...] clause ...
         as) "$stance" compare "${words[0]}" "$file" >facts 2>&1; found $? "... as ${words[0]}" ;;
         lines) is "... in ${words[0]} lines" [ "$(wc -l <log)" = "${words[0]}" ] ;;
         holds) holds "... holds" "${words[@]}" ;;
+        into) cp log "${words[0]}" ;;
         *) "$clause" "... $clause ${words[*]}" "${words[@]}" ;;
         esac
     done
@@ -105,7 +107,8 @@ await() { # process, command ...
 }
 gone() { ! kill -0 "$1" 2>/dev/null; } # process
 running() { "$stance" status "$1" 2>/dev/null | grep -v 'not running' | grep -q running; } # file: a job is at it
-computing() { "$stance" status "$1" 2>/dev/null | grep -v 'not running' | grep -q ': [1-9][0-9]* of .*running'; } # ... and has stored cases
+# ... and has stored cases (of a shard, too)
+computing() { "$stance" status "$1" 2>/dev/null | grep -v 'not running' | grep -q '[:,] [1-9][0-9]* of .*running'; }
 # A job of N ranks (0: no launcher) that has stored some cases: its process, and those of its ranks.
 begin() { # N, file, scenario, option ...
     local n=$1 launch=()

@@ -121,6 +121,7 @@ cd "$work" || exit 1
 count=0
 # shellcheck source=tests/outside.sh
 . "$tests/outside.sh"
+clause_words+="exits restarts logged same "
 die() {
     echo "Bail out! $1"
     tail -n 20 "$cluster"/*.log | sed 's/^/# /'
@@ -163,25 +164,23 @@ is_over() { # job
     PENDING | RUNNING | COMPLETING | SUSPENDED | CONFIGURING | REQUEUED) sleep 1 && return 1 ;;
     esac
 }
-ended() { # name, job, state
-    await_end "$2"
-    local state
-    state=$(known "$2" JobState)
-    echo "job $2 is $state, exit code $(known "$2" ExitCode), expected $3" >log
-    tail -n 15 "$work"/*"-$2.log" >>log 2>&1
-    [ "$state" = "$3" ]
-    result $? "$1"
+# What has become of the job.
+ended() { # name, state [clause ...]
+    await_end "$job"
+    echo "job $job is $state, exit code $(known "$job" ExitCode), expected $2" >log
+    tail -n 15 "$work"/*"-$job.log" >>log 2>&1
+    is "$1" [ "$state" = "$2" ]
+    clauses "${@:3}"
 }
+exits() { is "$1" [ "$(known "$job" ExitCode)" = "$2:0" ]; }    # name, code
+restarts() { is "$1" [ "$(known "$job" Restarts)" = "$2" ]; } # name, how often
 pending() { "$stance" status "$1" --json 2>/dev/null | sed -n 's/.*"pending": \([0-9]*\).*/\1/p'; }
-logged() { # name, job, least, pattern
-    cat "$work"/*"-$2.log" >log 2>&1
-    (($(grep -c -- "$4" log) >= $3))
+logged() { # name, pattern [how often at least]
+    cat "$work"/*"-$job.log" >log 2>&1
+    (($(grep -c -- "$2" log) >= ${3:-1}))
     result $? "$1"
 }
-same() { # name, file, file
-    expect "$1" 0 "$stance" compare "$2" "$3"
-    says "... bit by bit" '^identical'
-}
+same() { expect "$1" 0 "$stance" compare "$2" "$3" says '^identical'; } # name, file, file: bit by bit
 
 # Jobs compute with one lane, the runs that they are compared with as fast as they can.
 export STANCE SCENARIO RESULTS STANCE_ISA
@@ -199,10 +198,8 @@ sweep:
 END_OF_FILE
 }
 undisturbed() { # file, scenario, options
-    local file=$1 yaml=$2
-    shift 2
-    expect "... and $yaml $* with nothing to disturb it" 0 env -u STANCE_ISA \
-        mpirun -n 2 "$stance" run "$yaml" "$@" -o "$file" --quiet --force
+    expect "... and ${*:2} with nothing to disturb it" 0 env -u STANCE_ISA \
+        mpirun -n 2 "$stance" run "${@:2}" -o "$1" --quiet --force
 }
 
 # How fast one lane on two ranks is here: points per axis for so many seconds.
@@ -228,10 +225,8 @@ SCENARIO=small.yaml
 submit --nodelist=n2 "$scripts/array.sh"
 for k in 0 1 2; do
     await_end "${job}_$k"
-    state=$(known "${job}_$k" JobState)
     cat "$work"/*"-$job-$k.log" >log 2>&1
-    [ "$state" = COMPLETED ]
-    result $? "task $k of an array is COMPLETED ($state)"
+    is "task $k of an array is COMPLETED ($state)" [ "$state" = COMPLETED ]
 done
 frictions=(0.2 0.4 0.8)
 for k in 0 1 2; do
@@ -241,15 +236,9 @@ done
 submit --nodelist=n2 --array=1 "$scripts/array.sh"
 await_end "${job}_1"
 cat "$work"/*"-$job-1.log" >log
-grep -q 'computed now\|0 of them' log
-result $? "a task that is complete computes nothing when it is submitted again"
-if "$stance" merge -h >/dev/null 2>&1; then
-    expect "the array's files become one" 0 "$stance" merge results/sweep.h5 \
-        results/sweep-[012].h5
-    "$python" -c 'import h5py; f = h5py.File("results/sweep.h5"); s = f["status"][...]
-assert s.shape[0] == 3 and (s == 1).all(), s' >log 2>&1
-    result $? "... of all cases"
-fi
+is "a task that is complete and submitted again computes nothing" grep -q 'computed now\|0 of them' log
+expect "the array's files become one, of all cases" 0 "$stance" merge results/sweep.h5 results/sweep-[012].h5 holds '
+s = h5py.File("results/sweep.h5")["status"][...]; assert s.shape[0] == 3 and (s == 1).all(), s'
 
 # Shards that know of no MPI, and the job that waits for all of them.
 export SHARDS=4
@@ -264,29 +253,25 @@ says "shards are merged by a job that waits for them" '^results/shards.h5: [0-9]
 same "... into the file of one run" alone.h5 results/shards.h5
 rm results/shards.shard-3-of-4.h5
 submit --nodelist=n2 --array=2,3 "$scripts/shards.sh"
-for k in 2 3; do
-    await_end "${job}_$k"
-done
+for k in 2 3; do await_end "${job}_$k"; done
 cat "$work"/*"-$job-2.log" >log
 says "a shard that is done ends at once" '; 0 of them computed now;'
 cat "$work"/*"-$job-3.log" >log
 says "... one that was lost is computed again" 'results/shards.shard-3-of-4.h5: [0-9]* cases: [^;]*; [0-9.]* s on 1 rank'
 
-await_end "$requeued"
-if (($(known "$requeued" Restarts) < 2)); then
+job=$requeued
+await_end "$job"
+if (($(known "$job" Restarts) < 2)); then
     echo "# too quick: once more, with more cases"
     scenario "$(points 360)" 5 >sweep.yaml
     rm -f results/requeued.h5
     SCENARIO=sweep.yaml RESULTS=results/requeued.h5
     submit --nodelist=n1 --ntasks=2 --time=1 --signal=B:USR1@20 "$scripts/requeue.sh"
-    requeued=$job
 fi
-ended "a job that was put back until it was done" "$requeued" COMPLETED
-note <stance-"$requeued".log
-logged "... at least twice" "$requeued" 2 'back into the queue'
-(($(known "$requeued" Restarts) >= 2))
-result $? "... as Slurm counts, too"
-scontrol show job "$requeued" | grep -E 'JobState|Restarts|RunTime' | note
+ended "a job that was put back until it was done, twice at least" COMPLETED logged 'back into the queue' 2
+note <stance-"$job".log
+is "... as Slurm counts, too" '(($(known "$job" Restarts) >= 2))'
+scontrol show job "$job" | grep -E 'JobState|Restarts|RunTime' | note
 undisturbed whole.h5 sweep.yaml
 same "... equals the file of the job" whole.h5 results/requeued.h5
 sed 's/^/# /' log
@@ -298,17 +283,11 @@ SCENARIO=middle.yaml RESULTS=results/cancelled.h5
 submit --ntasks=2 --time=10 "$scripts/requeue.sh"
 await - computing results/cancelled.h5
 scancel "$job"
-ended "a job cancelled in mid-run" "$job" CANCELLED
+ended "a job cancelled in mid-run" CANCELLED restarts 0
 left=$(pending results/cancelled.h5)
-echo "${left:-no} cases left" >log
-((${left:-0} > 0))
-result $? "... leaves a file with cases to do"
-(($(known "$job" Restarts) == 0))
-result $? "... and is not put back"
+is "... leaves a file with cases to do" '((${left:-0} > 0))'
 submit --ntasks=2 --time=10 "$scripts/requeue.sh"
-ended "submitted again" "$job" COMPLETED
-logged "... it goes on where it stopped" "$job" 1 "turn 1 on n[12]: $left cases to do"
-same "... and ends with the same file" middle.h5 results/cancelled.h5
+ended "submitted again" COMPLETED logged "turn 1 on n[12]: $left cases to do" same middle.h5 results/cancelled.h5
 
 # ---- power of a node cut off ---------------------------------------------------------------------
 RESULTS=results/node.h5
@@ -317,17 +296,11 @@ await - computing results/node.h5
 node=$(known "$job" NodeList)
 # shellcheck disable=SC2046
 kill -9 "$(cat "$cluster/$node.pid")" $(job_processes)
-ended "a job whose node dies" "$job" COMPLETED
-(($(known "$job" Restarts) == 1))
-result $? "... is put back once, by Slurm"
+ended "a job whose node dies, and which Slurm puts back" COMPLETED restarts 1 same middle.h5 results/node.h5
 other=$(known "$job" NodeList)
-echo "$node, then $other" >log
-[ -n "$other" ] && [ "$other" != "$node" ]
-result $? "... and goes on on another node"
-same "... and ends with the same file" middle.h5 results/node.h5
+is "... goes on on another node, $node, then $other" '[ -n "$other" ] && [ "$other" != "$node" ]'
 start_node "$node"
-await - both_idle
-result $? "the node comes back"
+is "the node comes back" await - both_idle
 
 # ---- a rank killed -------------------------------------------------------------------------------
 kill_rank() { # of the one job there is
@@ -345,53 +318,37 @@ RESULTS=results/rank.h5
 submit --ntasks=2 --time=10 "$scripts/requeue.sh"
 await - computing results/rank.h5
 kill_rank
-ended "a job one of whose ranks is killed soon" "$job" FAILED
-logged "... is not put back, and says so" "$job" 1 'crashed within 600 s: not put back'
+ended "a job one of whose ranks is killed soon" FAILED logged 'crashed within 600 s: not put back'
 rm results/rank.h5
 submit --ntasks=2 --time=10 --export=ALL,SHORTEST_TURN=0 "$scripts/requeue.sh"
 await - computing results/rank.h5
 kill_rank
-ended "a job one of whose ranks is killed later" "$job" COMPLETED
-(($(known "$job" Restarts) == 1))
-result $? "... is put back once"
-same "... and ends with the same file" middle.h5 results/rank.h5
+ended "a job one of whose ranks is killed later" COMPLETED restarts 1 same middle.h5 results/rank.h5
 
 # ---- errors: nothing is put back -----------------------------------------------------------------
 SCENARIO=nowhere.yaml RESULTS=results/never.h5
 submit --ntasks=2 --time=10 "$scripts/requeue.sh"
-ended "a job without its scenario" "$job" FAILED
-echo "$(known "$job" ExitCode), $(known "$job" Restarts) restarts" >log
-[ "$(known "$job" ExitCode)" = 3:0 ] && (($(known "$job" Restarts) == 0))
-result $? "... has exit code 3 and is not put back"
+ended "a job without its scenario" FAILED exits 3 restarts 0
 SCENARIO=small.yaml RESULTS=results/rank.h5
 submit --ntasks=2 --time=10 "$scripts/requeue.sh"
-ended "a job for another scenario's file that is whole" "$job" FAILED
-[ "$(known "$job" ExitCode)" = 2:0 ]
-result $? "... has exit code 2"
+ended "a job for another scenario's file that is whole" FAILED exits 2
 
 # ---- one job with a limit of its own; two nodes; srun --------------------------------------------
 SCENARIO=middle.yaml RESULTS=results/one.h5
 submit --ntasks=2 --time=1 --export=ALL,RESERVE=56 "$scripts/one_job.sh"
-ended "one job that stops before Slurm's limit" "$job" FAILED
-[ "$(known "$job" ExitCode)" = 4:0 ]
-result $? "... has exit code 4"
-logged "... and says how to go on" "$job" 1 'go on with: mpirun -n 2 .*stance run .*--resume'
+ended "one job that stops before Slurm's limit" FAILED exits 4 \
+    logged 'go on with: mpirun -n 2 .*stance run .*--resume'
 left=$(pending results/one.h5)
 submit --ntasks=2 --time=10 "$scripts/one_job.sh"
 fewer_left() { (($(pending results/one.h5) < left)); }
 await - fewer_left
 scancel --batch --signal=USR1 "$job"
-ended "submitted again, and told to stop by Slurm's signal" "$job" FAILED
-[ "$(known "$job" ExitCode)" = 4:0 ]
-result $? "... it has exit code 4"
+ended "submitted again, and told to stop by Slurm's signal" FAILED exits 4
 submit --nodes=2 --ntasks=2 --time=10 "$scripts/one_job.sh"
-ended "submitted again, for two nodes" "$job" COMPLETED
-logged "... with a rank on each" "$job" 1 'on 2 ranks'
-same "... and ends with the same file" middle.h5 results/one.h5
-expect "srun --mpi=pmix" 0 srun --nodes=1 --ntasks=2 --mpi=pmix "$stance" run small.yaml -o pmix.h5
-says "... makes ranks" 'on 2 ranks$'
-expect "srun without MPI" 2 srun --nodes=1 --ntasks=2 --mpi=none "$stance" run small.yaml -o none.h5
-says "... is refused" 'stance run: srun started several of these without an MPI that joins them'
+ended "submitted again, for two nodes" COMPLETED logged 'on 2 ranks' same middle.h5 results/one.h5
+expect "srun --mpi=pmix" 0 srun --nodes=1 --ntasks=2 --mpi=pmix "$stance" run small.yaml -o pmix.h5 says 'on 2 ranks$'
+expect "srun without MPI" 2 srun --nodes=1 --ntasks=2 --mpi=none "$stance" run small.yaml -o none.h5 \
+    says 'stance run: srun started several of these without an MPI that joins them'
 
 echo "1..$count"
 echo "$((count - failed)) passed, $failed failed"
