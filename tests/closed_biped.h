@@ -185,7 +185,7 @@ static void closed_linearise(const double *robot, const double *q, int s, double
                 a[i][7] = j < 3 ? W[i - THETA][j] : i == j;
         }
         if (!dense_solve(7, a, x))
-        abort();
+            abort();
         for (int i = 0; i < 3; i++)
             *(j < 3 ? &A[(3 + i) * 6 + j] : &B[(3 + i) * 2 + j - 3]) = x[THETA + i];
         for (int axis = 0; axis < 2; axis++)

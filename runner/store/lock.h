@@ -10,7 +10,7 @@
 #include "engine/stance.h"
 
 struct lock {
-    int descriptor;      /* -1: not held */
+    int descriptor;  /* -1: not held */
     char file[1100]; /* FILE.lock */
 };
 
