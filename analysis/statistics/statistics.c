@@ -253,8 +253,3 @@ bool statistics_inferred(const struct results *r, uint64_t *count, bool **which,
         *which = flag;
     return !which || *count == 0 || flag || statistics_no_memory(r, message);
 }
-
-bool statistics_no_memory(const struct results *r, stance_message *message)
-{
-    return complain(message, "%.100s: not enough memory", r->file);
-}

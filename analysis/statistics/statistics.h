@@ -5,10 +5,14 @@
 #ifndef STANCE_STATISTICS_STATISTICS_H
 #define STANCE_STATISTICS_STATISTICS_H
 
+#include "runner/base/message.h"
 #include "runner/store/results.h"
 
 /* Says of the file that there is not enough memory. Returns false. */
-bool statistics_no_memory(const struct results *r, stance_message *message);
+static inline bool statistics_no_memory(const struct results *r, stance_message *message)
+{
+    return complain(message, "%.100s: not enough memory", r->file);
+}
 
 /* What a file's cases are looked for where nobody says: stabilised, or rested where nothing was
  * stabilised but something rested. */

@@ -478,7 +478,8 @@ static bool is_over(const struct search *search, struct course *at)
     const bool last = at->stage->stage + 1 == search->run->scenario->search.stages;
     const enum cma_stop stop = cma_stop(at->cma);
     /* Without a better candidate for so long there is no use in more. */
-    const bool stale = last && at->stale >= 10 + (size_t)(30 * search->space.n / at->stage->lambda);
+    const bool stale = last && at->stage->lambda > 0 &&
+                       at->stale >= 10 + (size_t)(30 * search->space.n / at->stage->lambda);
     if (stop != CMA_GOES_ON)
         at->why = cma_stop_words[stop];
     else if (stale)

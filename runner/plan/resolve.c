@@ -76,8 +76,8 @@ bool resolve_equilibrium(const stance_scene *scene, const struct scenario_values
     const bool law = scenario_law(values)->designed;
     const bool own = law && values->design_point.given;
     double unasked[STANCE_MAX_ROBOT];
-    stance_equilibrium any;
-    stance_message ignored;
+    stance_equilibrium any = {0};
+    stance_message ignored = {""};
 
     model = model ? model : unasked;
     equilibrium = equilibrium ? equilibrium : &any;

@@ -187,7 +187,7 @@ static void morris_unit(const struct doe *s, uint64_t point, double *u)
 static void sphere_unit(const struct doe *s, uint64_t point, double *u)
 {
     const size_t k = s->factors;
-    uint64_t x[DOE_MAX_FACTORS];
+    uint64_t x[DOE_MAX_FACTORS] = {0};
     double direction[DOE_MAX_FACTORS], square = 0;
 
     sobol_point(s, dimensions(s), point, x);
