@@ -324,8 +324,8 @@ $(BUILD)/simulators: FORCE
 	@mkdir -p $(@D); echo '$(MUJOCO)' | cmp -s - $@ || echo '$(MUJOCO)' > $@
 
 # ---- benchmarks: what the kernels are held to -----------------------------------------------------
-bench_programs = $(BUILD)/tests/bench_scalar $(if $(MUJOCO),$(BUILD)/tests/bench_mujoco $(BUILD)/tests/bench_mujoco_robots)
-$(BUILD)/tests/bench_mujoco $(BUILD)/tests/bench_mujoco_robots: LIBS += $(MUJOCO)
+bench_programs = $(BUILD)/tests/bench_scalar $(if $(MUJOCO),$(BUILD)/tests/bench_mujoco)
+$(BUILD)/tests/bench_mujoco: LIBS += $(MUJOCO)
 # Of other simulators; they need nothing of ours but headers.
 $(BUILD)/tests/peer_mujoco: tests/peer_mujoco.c $(BUILD)/flags
 	@mkdir -p $(@D)

@@ -19,7 +19,7 @@ echo "Kernels, $rounds rounds" >&2
 # The columns that say which program, compiler, processor, machine and day.
 origin=$(sed -n 2p "$table" | cut -d, -f16-)
 
-for rival in scalar tables mujoco mujoco_robots; do
+for rival in scalar tables mujoco; do
     if [ -x "$build/tests/bench_$rival" ]; then
         echo "Beside ${rival/scalar/the step by hand}" >&2
         "$build/tests/bench_$rival" >>"$table" || exit 1

@@ -1,50 +1,281 @@
-/* bench_mujoco.c - the biped of this program in MuJoCo, timed beside the kernels.
+/* bench_mujoco.c - robots in MuJoCo, timed beside the kernels.
  *
- * The same robot, law, friction and step of 1 ms, the same starts; case by case MuJoCo does its
- * steps, then the kernels theirs, round after round, all in processor time on one core, so that the
- * ratios of each round can be trusted. Two settings of MuJoCo: its defaults (Newton's solver,
- * pyramidal cones, motors), and what is left when everything is taken away that the robot can stand
- * without: one sweep of projected Gauss-Seidel, torques applied as forces, all checks and features
- * off that can be.
+ * The same robot, law, friction and step, the same starts; case by case MuJoCo does its steps, then
+ * the kernels theirs, round after round, all in processor time on one core, so that the ratios of
+ * each round can be trusted.
  *
- * MuJoCo wants inertia in every body: the massless links get none, but the feet, point masses, have
- * 1e-9 kg m^2 about their centre, 2e-9 of what the leg makes of them. Trunk and hip are one rigid
- * body with its exact centre and inertia. Feet touch as spheres of a tenth of a millimetre whose
- * centres are where the feet are; the ground lies that much lower. That the two models are one is
- * checked before anything is timed: accelerations at random states with random torques.
+ * The biped of this program, in steps of 1 ms, has two settings of MuJoCo: its defaults (Newton's
+ * solver, pyramidal cones, motors), and what is left when everything is taken away that the robot
+ * can stand without: one sweep of projected Gauss-Seidel, torques applied as forces, all checks and
+ * features off that can be. MuJoCo wants inertia in every body: the massless links get none, but
+ * the feet, point masses, have 1e-9 kg m^2 about their centre, 2e-9 of what the leg makes of them.
+ * Trunk and hip are one rigid body with its exact centre and inertia. Feet touch as spheres of a
+ * tenth of a millimetre whose centres are where the feet are; the ground lies that much lower. That
+ * the two models are one is checked before anything is timed: accelerations at random states with
+ * random torques. Also reported: how far a foot is in the ground, and how fast a robot that stands
+ * creeps along it.
  *
- * Also reported: how far a foot is in the ground, and how fast a robot that stands creeps along it.
+ * Others get to MuJoCo, with its defaults, by `stance export`'s writer; tests/test_export.c checks
+ * that the two are one. Those of tests/robots are let go, from their starts, for 1.5 s in steps of
+ * 2 ms by each method: they fall, strike stops, come to rest. RABBIT as
+ * scenarios/mechanisms/rabbit.yaml describes it has the regulator of that file, torque limits and
+ * friction, in steps of 1 ms: 1 s in flight, on one foot, on both, and on both with feet that leave
+ * the ground at first. The kernels are those of the two widest instruction sets.
+ *
+ * Usage: bench_mujoco [ROBOT ...]: rows of bench.csv on standard output.
  */
 #include "accelerations.h"
 #include "analysis/bench/bench.h"
 #include "mujoco_model.h"
+#include "runner/plan/kernels.h"
+#include "runner/plan/mjcf.h"
 
 #include <math.h>
 
-enum { CASES = 32, ROUNDS = 11, STATES = 200 };
+enum { MUJOCO_CASES = 32, CASES = 256, MOST_ROUNDS = 11, MOST_ISAS = 8, STATES = 200 };
 
 enum setting { DEFAULT, TRIMMED, SETTINGS };
 static const char *const setting_name[SETTINGS] = {"mujoco default", "mujoco trimmed"};
 
-/* ---- the model ---------------------------------------------------------------------------- */
+/* What differs from a scenario: settings, and how far above its start it begins. Without a file it
+ * is the biped of this program. */
+struct regime {
+    const char *robot, *name, *file, *method;
+    double lift; /* m */
+    const char *const *set;
+    size_t sets;
+};
 
-static mjModel *make_model(const stance_case *c, enum setting setting)
+#define RABBIT_ALWAYS                                                                              \
+    "stop={time: 1, settle: off}", "sweep.grid[0].from=-0.02", "sweep.grid[0].to=0.02",            \
+        "sweep.grid[1].from=-0.05", "sweep.grid[1].to=0.05", "sweep.grid[0].count=16",             \
+        "sweep.grid[1].count=16"
+#define RABBIT_BOTH                                                                                \
+    "ground.contacts=[foot1, foot2]", "initial.support=[foot1, foot2]",                            \
+        "initial.equilibrium={thigh1: 0.4, shank1: -0.4, shank2: -0.3}", "controller.weights={}"
+static const char *const on_one[] = {RABBIT_ALWAYS};
+/* From as far off as on one foot, feet leave the ground and come back. */
+static const char *const stepping[] = {RABBIT_ALWAYS, RABBIT_BOTH};
+static const char *const on_two[] = {RABBIT_ALWAYS,
+                                     RABBIT_BOTH,
+                                     "sweep.grid[0].from=-0.002",
+                                     "sweep.grid[0].to=0.002",
+                                     "sweep.grid[1].from=-0.005",
+                                     "sweep.grid[1].to=0.005"};
+#define SET(list) list, sizeof(list) / sizeof *(list)
+#define RABBIT "scenarios/mechanisms/rabbit.yaml"
+static const struct regime regimes[] = {
+    {"biped", "flight", .method = "implicit"},
+    {"biped", "one foot", .method = "implicit"},
+    {"biped", "two feet", .method = "implicit"},
+    {"rabbit", "flight", RABBIT, "implicit", 1000, SET(on_one)},
+    {"rabbit", "one foot", RABBIT, "implicit", 0, SET(on_one)},
+    {"rabbit", "two feet", RABBIT, "implicit", 0, SET(on_two)},
+    {"rabbit", "stepping", RABBIT, "implicit", 0, SET(stepping)},
+};
+static const char *const robots[] = {"cart_pole", "compass",  "biped",        "rabbit",
+                                     "hopper",    "walker2d", "half_cheetah", "humanoid"};
+static const char *const methods[] = {"midpoint", "capturing"};
+
+struct beside {
+    const struct regime *regime;
+    const stance_scene *scene;
+    struct scenario scenario; /* this, and what is made of it: of those described */
+    struct plan plan;
+    struct kernels compiled;
+    const stance_kernel *kernel[MOST_ISAS]; /* wide to narrow */
+    size_t isas;
+    int settings, rounds;
+    mjModel *model[SETTINGS];
+    mjData *data[SETTINGS];
+    int joint[STANCE_MAX_COORDINATES]; /* MuJoCo's index of each coordinate */
+    double limit[STANCE_MAX_ACTUATORS];
+    stance_case cases[CASES];
+    stance_result results[CASES];
+};
+
+/* ---- the robots --------------------------------------------------------------------------- */
+
+static bool take_biped(struct beside *b)
 {
+    const stance_case *const c = b->cases;
+    b->scene = stance_scene_find("biped");
+    b->settings = SETTINGS, b->rounds = MOST_ROUNDS;
+    if (!bench_cases(b->scene, b->regime->name, b->cases, CASES))
+        return false;
     struct mujoco_biped biped = {.robot = c->robot,
                                  .gravity = STANCE_GRAVITY,
                                  .step = c->step,
                                  .friction = c->friction,
                                  .point = 1e-9,
-                                 .feet = {1, 1}};
-    if (setting == DEFAULT) {
-        biped.actuator = "<actuator><motor joint='q1'/><motor joint='q2'/></actuator>";
-    } else {
-        biped.option = "solver='PGS' iterations='1' tolerance='0' jacobian='dense'";
-        biped.flag = "<flag equality='disable' frictionloss='disable' limit='disable' "
-                     "passive='disable' actuation='disable' sensor='disable' "
-                     "filterparent='disable' refsafe='disable' clampctrl='disable'/>";
+                                 .feet = {(int)(c->contacts & 1), (int)(c->contacts >> 1 & 1)},
+                                 .actuator =
+                                     "<actuator><motor joint='q1'/><motor joint='q2'/></actuator>"};
+    b->model[DEFAULT] = mujoco_biped(&biped);
+    biped.actuator = NULL;
+    biped.option = "solver='PGS' iterations='1' tolerance='0' jacobian='dense'";
+    biped.flag = "<flag equality='disable' frictionloss='disable' limit='disable' "
+                 "passive='disable' actuation='disable' sensor='disable' "
+                 "filterparent='disable' refsafe='disable' clampctrl='disable'/>";
+    b->model[TRIMMED] = mujoco_biped(&biped);
+    for (int i = 0; i < b->scene->coordinates; i++)
+        b->joint[i] = i;
+    while (b->isas < MOST_ISAS && stance_isa((int)b->isas)) {
+        b->kernel[b->isas] = stance_kernel_find(b->scene, stance_method_find(b->regime->method),
+                                                stance_isa((int)b->isas));
+        b->isas++;
     }
-    return mujoco_biped(&biped);
+    return true;
+}
+
+static bool take_described(struct beside *b)
+{
+    enum { MOST_SETS = 32, WIDEST = 2 };
+    const struct regime *const regime = b->regime;
+    char named[64], *xml = NULL;
+    const char *sets[MOST_SETS] = {named}, *isa[WIDEST];
+    size_t size = 0;
+    snprintf(named, sizeof named, "method.name=%s", regime->method);
+    for (size_t i = 0; i < regime->sets; i++)
+        sets[1 + i] = regime->set[i];
+    const struct parallel alone = parallel_alone();
+    struct plan_error error = {.message.text = ""};
+    stance_message message = {""};
+    for (; b->isas < WIDEST && stance_isa((int)b->isas); b->isas++)
+        isa[b->isas] = stance_isa((int)b->isas);
+    if (!scenario_read(&b->scenario, regime->file, NULL, sets, 1 + regime->sets, stderr))
+        return false;
+    if (!plan_make(&b->plan, &b->scenario, false, 0, false, &error) ||
+        !plan_compute_designs(&b->plan, &alone, &error) ||
+        kernels_take(
+            &b->compiled, &b->plan,
+            &(struct kernels_choice){.isa = isa, .isas = b->isas, .always = true, .quiet = true},
+            &alone, &message) != EXIT_DONE) {
+        fprintf(stderr, "bench_mujoco: %s%s\n", error.message.text, message.text);
+        return false;
+    }
+    b->scene = b->scenario.scene;
+    b->settings = 1, b->rounds = 7;
+    for (size_t k = 0; k < b->isas; k++) /* that are not compiled the program carries */
+        b->kernel[k] =
+            k < b->compiled.count
+                ? b->compiled.kernel[k]
+                : stance_kernel_find(b->scene, stance_method_find(regime->method), isa[k]);
+    for (uint64_t row = 0; row < CASES; row++) {
+        int method;
+        /* 7 and 256 have no common divisor: the first ones are spread as evenly as all. */
+        stance_case *const c = &b->cases[row * 7 % CASES];
+        if (!plan_resolve(&b->plan, row, c, &method))
+            return false;
+        if (b->scene->coordinates > 1)
+            c->position[1] += regime->lift;
+    }
+    FILE *const out = open_memstream(&xml, &size);
+    if (!out)
+        return false;
+    mjcf_write(out, b->scene, b->cases, "robot");
+    fclose(out);
+    mjModel *const model = b->model[DEFAULT] = mujoco_model(xml);
+    free(xml);
+    if (!model)
+        return false;
+    model->opt.integrator = mjINT_EULER; /* the defaults */
+    model->opt.cone = mjCONE_PYRAMIDAL;
+    for (int i = 0; i < b->scene->coordinates; i++)
+        b->joint[i] = mj_name2id(model, mjOBJ_JOINT, b->scene->coordinate[i].name);
+    return true;
+}
+
+static bool take(struct beside *b)
+{
+    bool good = b->regime->file ? take_described(b) : take_biped(b);
+    for (int s = 0; s < b->settings && good; s++) {
+        b->data[s] = b->model[s] ? mj_makeData(b->model[s]) : NULL;
+        good = b->data[s] != NULL;
+    }
+    if (good)
+        stance_torque_limits(b->scene, b->cases->robot, b->cases->torque_limit,
+                             b->cases->torque_limits, b->limit);
+    return good;
+}
+
+static void give_back(struct beside *b)
+{
+    for (int s = 0; s < b->settings; s++) {
+        mj_deleteData(b->data[s]);
+        mj_deleteModel(b->model[s]);
+    }
+    if (b->regime->file) {
+        kernels_give_back(&b->compiled);
+        plan_free(&b->plan);
+        scenario_free(&b->scenario);
+    }
+}
+
+/* ---- simulating --------------------------------------------------------------------------- */
+
+/* What was seen of the contacts on the way. */
+struct watch {
+    bool feet;          /* these are looked at: */
+    double from;        /* s: creep counts from here */
+    double penetration; /* m, largest */
+    double creep;       /* m, of the feet that touch, since `from` */
+    double previous[STANCE_MAX_CONTACTS];
+    int contacts; /* summed over steps */
+};
+
+static void look(const struct beside *b, const mjData *data, struct watch *watch)
+{
+    double gap[STANCE_MAX_CONTACTS];
+    b->scene->gaps(b->scene, b->cases->robot, data->qpos, gap);
+    for (int foot = 0; foot < b->scene->contacts; foot++) {
+        double point[2], speed[2];
+        b->scene->contact_point(b->scene, b->cases->robot, data->qpos, data->qvel, foot, point,
+                                speed);
+        watch->penetration = fmax(watch->penetration, -gap[foot]);
+        if (gap[foot] <= 0 && data->time > watch->from)
+            watch->creep += fabs(point[0] - watch->previous[foot]);
+        watch->previous[foot] = point[0];
+    }
+}
+
+static void put_state(const struct beside *b, int setting, const stance_case *c)
+{
+    mj_resetData(b->model[setting], b->data[setting]);
+    for (int i = 0; i < b->scene->coordinates; i++) {
+        b->data[setting]->qpos[b->joint[i]] = c->position[i];
+        b->data[setting]->qvel[b->joint[i]] = c->velocity[i];
+    }
+}
+
+/* A case with the law of state feedback. */
+static void simulate(const struct beside *b, int setting, const stance_case *c, struct watch *watch)
+{
+    const stance_scene *const scene = b->scene;
+    const mjModel *const model = b->model[setting];
+    mjData *const data = b->data[setting];
+    const int p = scene->postures;
+    /* Without motors torques are forces on the biped's legs. */
+    double *const torque = setting == DEFAULT ? data->ctrl : data->qfrc_applied + 3;
+    put_state(b, setting, c);
+    for (int64_t k = 0; k < c->steps; k++) {
+        double x[2 * STANCE_MAX_POSTURE];
+        for (int j = 0; j < p; j++) {
+            const int from = b->joint[scene->posture[j]];
+            x[j] = data->qpos[from] - c->near.target[j];
+            x[p + j] = data->qvel[from];
+        }
+        for (int i = 0; i < scene->actuators; i++) {
+            double sum = c->near.feedforward[i];
+            for (int j = 0; j < 2 * p; j++)
+                sum -= c->near.gain[i][j] * x[j];
+            torque[i] = fmax(fmin(sum, b->limit[i]), -b->limit[i]);
+        }
+        mj_step(model, data);
+        watch->contacts += data->ncon;
+        if (watch->feet)
+            look(b, data, watch);
+    }
 }
 
 /* ---- the same robot? ---------------------------------------------------------------------- */
@@ -55,14 +286,14 @@ static double random_in(uint64_t *state, double low, double high)
     return low + (high - low) * (double)(*state >> 11) * 0x1p-53;
 }
 
-/* Largest difference of accelerations in relation to the largest of each state. */
-static double model_difference(const mjModel *model, mjData *data, const stance_scene *scene,
-                               const stance_case *base)
+/* Largest difference of the biped's accelerations in relation to the largest of each state. */
+static double model_difference(const struct beside *b)
 {
     uint64_t state = 1;
     double largest = 0;
+    mjData *const data = b->data[DEFAULT];
     for (int n = 0; n < STATES; n++) {
-        stance_case c = *base;
+        stance_case c = *b->cases;
         double ours[STANCE_MAX_COORDINATES], size = 0, off = 0;
         memset(c.near.gain, 0, sizeof c.near.gain);
         c.position[1] = 100;
@@ -73,12 +304,10 @@ static double model_difference(const mjModel *model, mjData *data, const stance_
         }
         for (int i = 0; i < 2; i++)
             c.near.feedforward[i] = random_in(&state, -10, 10);
-        accelerations(scene, &c, ours);
-        mj_resetData(model, data);
-        memcpy(data->qpos, c.position, 5 * sizeof(double));
-        memcpy(data->qvel, c.velocity, 5 * sizeof(double));
+        accelerations(b->scene, &c, ours);
+        put_state(b, DEFAULT, &c);
         memcpy(data->ctrl, c.near.feedforward, 2 * sizeof(double));
-        mj_forward(model, data);
+        mj_forward(b->model[DEFAULT], data);
         for (int i = 0; i < 5; i++) {
             size = fmax(size, fabs(ours[i]));
             off = fmax(off, fabs(ours[i] - data->qacc[i]));
@@ -88,121 +317,7 @@ static double model_difference(const mjModel *model, mjData *data, const stance_
     return largest;
 }
 
-/* ---- simulating --------------------------------------------------------------------------- */
-
-/* What was seen of the feet on the way; NULL where nobody looks. */
-struct watch {
-    double from;        /* s: creep counts from here */
-    double penetration; /* m, largest */
-    double creep;       /* m, of the feet that touch, since `from` */
-    int contacts;       /* summed over steps */
-};
-
-static void start(const mjModel *model, mjData *data, const stance_case *c)
-{
-    mj_resetData(model, data);
-    memcpy(data->qpos, c->position, 5 * sizeof(double));
-    memcpy(data->qvel, c->velocity, 5 * sizeof(double));
-}
-
-static void look(const mjData *data, const stance_scene *scene, const stance_case *c,
-                 double previous[2], struct watch *watch)
-{
-    double gap[STANCE_MAX_CONTACTS];
-    scene->gaps(scene, c->robot, data->qpos, gap);
-    watch->contacts += data->ncon;
-    for (int foot = 0; foot < scene->contacts; foot++) {
-        double point[2], speed[2];
-        scene->contact_point(scene, c->robot, data->qpos, data->qvel, foot, point, speed);
-        watch->penetration = fmax(watch->penetration, -gap[foot]);
-        if (gap[foot] <= 0 && data->time > watch->from)
-            watch->creep += fabs(point[0] - previous[foot]);
-        previous[foot] = point[0];
-    }
-}
-
-static void simulate(const mjModel *model, mjData *data, const stance_scene *scene,
-                     const stance_case *c, struct watch *watch)
-{
-    double previous[2] = {0};
-    double *const torque = model->nu > 0 ? data->ctrl : data->qfrc_applied + 3;
-    start(model, data, c);
-    for (int64_t k = 0; k < c->steps; k++) {
-        const double *const q = data->qpos + 2, *const v = data->qvel + 2;
-        for (int i = 0; i < 2; i++) {
-            double sum = c->near.feedforward[i];
-            for (int j = 0; j < 3; j++)
-                sum -=
-                    c->near.gain[i][j] * (q[j] - c->near.target[j]) + c->near.gain[i][3 + j] * v[j];
-            torque[i] = fmax(fmin(sum, c->torque_limit), -c->torque_limit);
-        }
-        mj_step(model, data);
-        if (watch)
-            look(data, scene, c, previous, watch);
-    }
-}
-
-static double time_mujoco(const mjModel *model, mjData *data, const stance_scene *scene,
-                          const stance_case *cases)
-{
-    const double begin = bench_clock();
-    for (int i = 0; i < CASES; i++)
-        simulate(model, data, scene, &cases[i], NULL);
-    return bench_clock() - begin;
-}
-
-static double time_kernel(const stance_kernel *kernel, const stance_case *cases,
-                          stance_result *results, int count)
-{
-    const double begin = bench_clock();
-    kernel->run(cases, results, (size_t)count);
-    return bench_clock() - begin;
-}
-
-/* The feet that may touch. */
-static void allow_contacts(mjModel *model, const stance_case *c)
-{
-    for (int foot = 0; foot < 2; foot++)
-        model->geom_contype[1 + foot] = model->geom_conaffinity[1 + foot] =
-            (int)(c->contacts >> foot & 1);
-}
-
 /* ---- measuring ---------------------------------------------------------------------------- */
-
-enum { MOST_KERNELS = 8, KERNEL_CASES = 256 };
-
-struct engines {
-    const stance_scene *scene;
-    mjModel *model[SETTINGS];
-    mjData *data[SETTINGS];
-    const stance_kernel *kernel[MOST_KERNELS]; /* implicit, wide to narrow */
-    int kernels;
-};
-
-static bool begin_engines(struct engines *e, const stance_case *base)
-{
-    const char *isa;
-    e->scene = stance_scene_find("biped");
-    for (e->kernels = 0; e->kernels < MOST_KERNELS && (isa = stance_isa(e->kernels)) != NULL;)
-        e->kernel[e->kernels++] = stance_kernel_find(e->scene, stance_method_find("implicit"), isa);
-    for (int s = 0; s < SETTINGS; s++) {
-        e->model[s] = make_model(base, (enum setting)s);
-        e->data[s] = e->model[s] ? mj_makeData(e->model[s]) : NULL;
-        if (!e->data[s])
-            return false;
-    }
-    return true;
-}
-
-static void end_engines(struct engines *e)
-{
-    for (int s = 0; s < SETTINGS; s++) {
-        if (e->data[s])
-            mj_deleteData(e->data[s]);
-        if (e->model[s])
-            mj_deleteModel(e->model[s]);
-    }
-}
 
 static void report(struct bench_row row, const char *quantity, const char *unit,
                    struct bench_spread value)
@@ -213,135 +328,161 @@ static void report(struct bench_row row, const char *quantity, const char *unit,
     bench_csv_row(stdout, &row);
 }
 
-static struct bench_spread once(double value)
+static void report_once(struct bench_row row, const char *quantity, const char *unit, double value)
 {
-    return (struct bench_spread){value, value, value};
+    report(row, quantity, unit, (struct bench_spread){value, value, value});
 }
 
 /* Times all engines in turn, and tells MuJoCo's times and their ratios to ours. */
-static void compare(const struct engines *e, const char *regime, const stance_case *cases)
+static void compare(struct beside *b)
 {
-    static stance_result results[KERNEL_CASES];
-    double theirs[SETTINGS][ROUNDS], ours[MOST_KERNELS][ROUNDS];
-    const double steps = CASES * (double)cases[0].steps;
-    for (int s = 0; s < SETTINGS; s++)
-        allow_contacts(e->model[s], &cases[0]);
-    for (int r = -1; r < ROUNDS; r++) { /* the first warms up */
+    const struct regime *const regime = b->regime;
+    double theirs[SETTINGS][MOST_ROUNDS], ours[MOST_ISAS][MOST_ROUNDS], failed = 0;
+    struct watch watch;
+    const double steps = (double)b->cases->steps;
+    for (int r = -1; r < b->rounds; r++) { /* the first warms up */
         const int round = r < 0 ? 0 : r;
-        for (int s = 0; s < SETTINGS; s++)
-            theirs[s][round] = 1e9 / steps * time_mujoco(e->model[s], e->data[s], e->scene, cases);
-        for (int k = 0; k < e->kernels; k++)
-            ours[k][round] = 1e9 * CASES / (steps * KERNEL_CASES) *
-                             time_kernel(e->kernel[k], cases, results, KERNEL_CASES);
-    }
-    for (int s = 0; s < SETTINGS; s++) {
-        struct bench_row row = {.subject = setting_name[s],
-                                .scene = "biped",
-                                .regime = regime,
-                                .method = "implicit",
-                                .ranks = 1,
-                                .step = cases[0].step,
-                                .cases = CASES,
-                                .repeats = ROUNDS};
-        double copy[ROUNDS], ratio[ROUNDS];
-        for (int k = 0; k < e->kernels; k++) {
-            for (int r = 0; r < ROUNDS; r++)
-                ratio[r] = theirs[s][r] / ours[k][r];
-            row.isa = e->kernel[k]->isa, row.lanes = e->kernel[k]->lanes;
-            const struct bench_spread spread = bench_spread(ratio, ROUNDS);
-            report(row, "ratio to stance", "1", spread);
-            memcpy(copy, ours[k], sizeof copy);
-            const double ns = bench_spread(copy, ROUNDS).median;
-            fprintf(stderr, "%-8s  %s / stance implicit %-6s (%5.1f ns): %5.1f (%.1f ... %.1f)\n",
-                    regime, setting_name[s], row.isa, ns, spread.median, spread.lowest,
-                    spread.highest);
+        for (int s = 0; s < b->settings; s++) {
+            const double begin = bench_clock();
+            watch = (struct watch){.feet = false};
+            for (int i = 0; i < MUJOCO_CASES; i++)
+                simulate(b, s, &b->cases[i], &watch);
+            theirs[s][round] = 1e9 / (steps * MUJOCO_CASES) * (bench_clock() - begin);
         }
-        row.isa = row.method = NULL, row.lanes = 0;
-        const struct bench_spread ns = bench_spread(theirs[s], ROUNDS);
+        for (size_t k = 0; k < b->isas; k++) {
+            const double begin = bench_clock();
+            b->kernel[k]->run(b->cases, b->results, CASES);
+            ours[k][round] = 1e9 / (steps * CASES) * (bench_clock() - begin);
+        }
+    }
+    for (int i = 0; i < CASES; i++)
+        failed += b->results[i].status != STANCE_DONE;
+    fprintf(stderr, "%s, %s: %.2f contacts a step, %g of %d cases of stance failed\n",
+            regime->robot, regime->name, watch.contacts / (steps * MUJOCO_CASES), failed, CASES);
+    struct bench_row row = {.scene = regime->robot,
+                            .regime = regime->name,
+                            .ranks = 1,
+                            .step = b->cases->step,
+                            .repeats = b->rounds};
+    for (size_t k = 0; k < b->isas; k++) {
+        double own[MOST_ROUNDS], ratio[MOST_ROUNDS];
+        memcpy(own, ours[k], sizeof own);
+        const struct bench_spread ns = bench_spread(own, b->rounds);
+        row.method = regime->method;
+        row.isa = b->kernel[k]->isa, row.lanes = b->kernel[k]->lanes;
+        row.subject = "stance", row.cases = CASES;
+        if (regime->file) /* the biped's are those of `stance bench` */
+            report(row, "time per step", "ns", ns);
+        row.cases = MUJOCO_CASES;
+        for (int s = 0; s < b->settings; s++) {
+            for (int r = 0; r < b->rounds; r++)
+                ratio[r] = theirs[s][r] / ours[k][r];
+            const struct bench_spread spread = bench_spread(ratio, b->rounds);
+            row.subject = setting_name[s];
+            report(row, "ratio to stance", "1", spread);
+            fprintf(stderr, "%s, %s: %s / stance %s %-6s (%5.1f ns): %5.1f (%.1f ... %.1f)\n",
+                    regime->robot, regime->name, row.subject, row.method, row.isa, ns.median,
+                    spread.median, spread.lowest, spread.highest);
+        }
+    }
+    row.isa = row.method = NULL, row.lanes = 0;
+    for (int s = 0; s < b->settings; s++) {
+        const struct bench_spread ns = bench_spread(theirs[s], b->rounds);
+        row.subject = setting_name[s];
         report(row, "time per step", "ns", ns);
-        const double rate = 1 / cases[0].step;
-        report(row, "time per simulated second", "ns", bench_scaled(ns, rate));
-        fprintf(stderr, "%-8s  %s %.0f ns a step (%.0f ... %.0f)\n", regime, setting_name[s],
-                ns.median, ns.lowest, ns.highest);
+        if (!regime->file)
+            report(row, "time per simulated second", "ns", bench_scaled(ns, 1 / row.step));
+        fprintf(stderr, "%s, %s: %s %.0f ns a step (%.0f ... %.0f)\n", regime->robot, regime->name,
+                row.subject, ns.median, ns.lowest, ns.highest);
     }
 }
 
-/* What the contacts are worth: 10 s, creep over the last 5. */
-static void inspect(const struct engines *e, const char *regime, const stance_case *start_case)
+/* What the standing biped's contacts are worth: 10 s, creep over the last 5. */
+static void inspect(const struct beside *b)
 {
-    stance_case c = *start_case;
+    stance_case c = *b->cases;
     const double half = 5;
-    for (int s = 0; s < SETTINGS; s++) {
-        struct watch watch = {.from = half};
-        const struct bench_row row = {.subject = setting_name[s],
-                                      .scene = "biped",
-                                      .regime = regime,
-                                      .ranks = 1,
-                                      .step = c.step,
-                                      .cases = 1,
-                                      .repeats = 1};
-        c.steps = (int64_t)(2 * half / c.step + 0.5);
-        simulate(e->model[s], e->data[s], e->scene, &c, &watch);
-        report(row, "penetration", "m", once(watch.penetration));
-        report(row, "creep", "m/s", once(watch.creep / half));
-        report(row, "contacts per step", "1", once((double)watch.contacts / (double)c.steps));
-        fprintf(stderr,
-                "%-8s  %s: penetration %.1e m, creep %.1e m/s, contacts per step %.2f, "
-                "hip at %.3f m\n",
-                regime, setting_name[s], watch.penetration, watch.creep / half,
-                (double)watch.contacts / (double)c.steps, e->data[s]->qpos[1]);
+    const char *const form = "%s: %s: penetration %.1e m, creep %.1e m/s, hip at %.3f m\n";
+    struct bench_row row = {.scene = b->regime->robot,
+                            .regime = b->regime->name,
+                            .ranks = 1,
+                            .step = c.step,
+                            .cases = 1,
+                            .repeats = 1};
+    c.steps = (int64_t)(2 * half / c.step + 0.5);
+    for (int s = 0; s < b->settings; s++) {
+        struct watch watch = {.feet = true, .from = half};
+        simulate(b, s, &c, &watch);
+        row.subject = setting_name[s];
+        report_once(row, "penetration", "m", watch.penetration);
+        report_once(row, "creep", "m/s", watch.creep / half);
+        report_once(row, "contacts per step", "1", (double)watch.contacts / (double)c.steps);
+        fprintf(stderr, form, row.regime, row.subject, watch.penetration, watch.creep / half,
+                b->data[s]->qpos[1]);
     }
     stance_result end, middle;
-    const struct bench_row row = {.subject = "stance",
-                                  .scene = "biped",
-                                  .regime = regime,
-                                  .method = "implicit",
-                                  .isa = e->kernel[0]->isa,
-                                  .lanes = e->kernel[0]->lanes,
-                                  .ranks = 1,
-                                  .step = c.step,
-                                  .cases = 1,
-                                  .repeats = 1};
-    e->kernel[0]->run(&c, &end, 1);
+    row.subject = "stance", row.method = b->regime->method;
+    row.isa = b->kernel[0]->isa, row.lanes = b->kernel[0]->lanes;
+    b->kernel[0]->run(&c, &end, 1);
     c.steps /= 2;
-    e->kernel[0]->run(&c, &middle, 1);
+    b->kernel[0]->run(&c, &middle, 1);
     const double creep = (end.slip_distance - middle.slip_distance) / half;
-    report(row, "penetration", "m", once(end.max_penetration));
-    report(row, "creep", "m/s", once(creep));
-    fprintf(stderr, "%-8s  stance: penetration %.1e m, creep %.1e m/s, hip at %.3f m\n", regime,
-            end.max_penetration, creep, end.position[1]);
+    report_once(row, "penetration", "m", end.max_penetration);
+    report_once(row, "creep", "m/s", creep);
+    fprintf(stderr, form, row.regime, row.subject, end.max_penetration, creep, end.position[1]);
 }
 
-int main(void)
+/* False: it could not be made, or is another robot there. */
+static bool run(const struct regime *regime)
 {
-    static stance_case cases[KERNEL_CASES];
-    static const char *const regimes[] = {"flight", "one foot", "two feet"};
-    struct engines e = {0};
-    const stance_scene *const scene = stance_scene_find("biped");
-
-    int code = !bench_cases(scene, "flight", cases, 1) || !begin_engines(&e, cases);
-    if (code == 0) {
-        const double off = model_difference(e.model[DEFAULT], e.data[DEFAULT], scene, cases);
+    static struct beside b;
+    b = (struct beside){.regime = regime};
+    bool good = take(&b);
+    if (good && regime == regimes) {
+        const double off = model_difference(&b);
         fprintf(stderr, "accelerations at %d random states: within %.1e of ours (MuJoCo %s)\n",
                 STATES, off, mj_versionString());
-        code = off < 1e-6 ? 0 : 1;
-        report((struct bench_row){.subject = setting_name[DEFAULT],
-                                  .scene = "biped",
-                                  .regime = "flight",
-                                  .cases = STATES,
-                                  .repeats = 1},
-               "difference of accelerations", "1", once(off));
+        good = off < 1e-6;
+        report_once((struct bench_row){.subject = setting_name[DEFAULT],
+                                       .scene = regime->robot,
+                                       .regime = regime->name,
+                                       .cases = STATES,
+                                       .repeats = 1},
+                    "difference of accelerations", "1", off);
     }
-    for (size_t r = 0; r < sizeof regimes / sizeof regimes[0] && code == 0; r++) {
-        code = !bench_cases(scene, regimes[r], cases, KERNEL_CASES);
-        if (code == 0) {
-            compare(&e, regimes[r], cases);
-            if (r > 0)
-                inspect(&e, regimes[r], &cases[0]);
+    if (good)
+        compare(&b);
+    if (good && !regime->file && regime != regimes)
+        inspect(&b);
+    if (!good)
+        fprintf(stderr, "bench_mujoco: %s, %s: not the same robot, or it could not be made\n",
+                regime->robot, regime->name);
+    else
+        give_back(&b);
+    return good;
+}
+
+static bool asked(const char *robot, int count, char **names)
+{
+    bool found = count == 0;
+    for (int i = 0; i < count; i++)
+        found = found || strcmp(names[i], robot) == 0;
+    return found;
+}
+
+int main(int argc, char **argv)
+{
+    bool good = true;
+    for (size_t r = 0; r < sizeof regimes / sizeof *regimes; r++)
+        if (asked(regimes[r].robot, argc - 1, argv + 1))
+            good = good && run(&regimes[r]);
+    for (size_t r = 0; r < sizeof robots / sizeof *robots; r++)
+        for (size_t m = 0; m < sizeof methods / sizeof *methods; m++) {
+            char file[64];
+            snprintf(file, sizeof file, "tests/robots/%s.yaml", robots[r]);
+            const struct regime let_go = {robots[r], "let go", file, methods[m], 0, NULL, 0};
+            if (asked(robots[r], argc - 1, argv + 1))
+                good = good && run(&let_go);
         }
-    }
-    if (code != 0)
-        fprintf(stderr, "bench_mujoco: the two robots are not the same, or could not be made\n");
-    end_engines(&e);
-    return code;
+    return good ? 0 : 1;
 }

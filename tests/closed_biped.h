@@ -54,7 +54,7 @@ struct closed_point {
 };
 enum { TRUNK, HIP, FOOT, POINTS = FOOT + 2 };
 
-static struct closed_point closed_point(const double *robot, const double *q, int k)
+static inline struct closed_point closed_point(const double *robot, const double *q, int k)
 {
     const double lt = robot[TRUNK_LENGTH], l = robot[LEG_LENGTH];
     struct closed_point p = {k == TRUNK ? robot[TRUNK_MASS]
@@ -76,7 +76,7 @@ static struct closed_point closed_point(const double *robot, const double *q, in
     return p;
 }
 
-static void closed_speed(const struct closed_point *p, const double *v, double speed[2])
+static inline void closed_speed(const struct closed_point *p, const double *v, double speed[2])
 {
     for (int axis = 0; axis < 2; axis++) {
         speed[axis] = 0;
@@ -85,7 +85,7 @@ static void closed_speed(const struct closed_point *p, const double *v, double s
     }
 }
 
-static double closed_energy(const double *robot, const double *q, const double *v)
+static inline double closed_energy(const double *robot, const double *q, const double *v)
 {
     double sum = 0;
     for (int k = 0; k < POINTS; k++) {
@@ -97,7 +97,7 @@ static double closed_energy(const double *robot, const double *q, const double *
     return sum;
 }
 
-static void closed_inertia(const double *robot, const double *q, double *A)
+static inline void closed_inertia(const double *robot, const double *q, double *A)
 {
     memset(A, 0, COORDINATES * COORDINATES * sizeof *A);
     for (int k = 0; k < POINTS; k++) {
@@ -109,14 +109,14 @@ static void closed_inertia(const double *robot, const double *q, double *A)
     }
 }
 
-static double closed_mass(const double *robot)
+static inline double closed_mass(const double *robot)
 {
     return robot[TRUNK_MASS] + robot[HIP_MASS] + 2 * robot[FOOT_MASS];
 }
 
 /* On one foot, with one of the three angles unknown; false: there is none. */
-static bool closed_equilibrium(const double *robot, const stance_equilibrium_choice *choice,
-                               double posture[3], double torque[2])
+static inline bool closed_equilibrium(const double *robot, const stance_equilibrium_choice *choice,
+                                      double posture[3], double torque[2])
 {
     const int s = choice->supports == 2;
     double weight[3] = {robot[TRUNK_MASS] * robot[TRUNK_LENGTH]};
@@ -147,7 +147,7 @@ static bool closed_equilibrium(const double *robot, const stance_equilibrium_cho
 }
 
 /* W of above by the angles. */
-static void closed_stiffness(const double *robot, const double *q, int s, double W[3][3])
+static inline void closed_stiffness(const double *robot, const double *q, int s, double W[3][3])
 {
     memset(W, 0, sizeof(double[3][3]));
     W[0][0] = robot[TRUNK_MASS] * robot[TRUNK_LENGTH] * cos(q[THETA]);
@@ -162,8 +162,8 @@ static void closed_stiffness(const double *robot, const double *q, int s, double
 
 /* A[6][6], B[6][2], and of the force on the foot, (normal, tangential), by_state[2][6],
  * by_torque[2][2]. */
-static void closed_linearise(const double *robot, const double *q, int s, double *A, double *B,
-                             double *by_state, double *by_torque)
+static inline void closed_linearise(const double *robot, const double *q, int s, double *A,
+                                    double *B, double *by_state, double *by_torque)
 {
     double inertia[COORDINATES * COORDINATES], W[3][3];
     const struct closed_point foot = closed_point(robot, q, FOOT + s);

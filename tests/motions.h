@@ -173,4 +173,36 @@ static inline void start(struct robot *r, double *x)
         x[i] = r->c.position[i], x[n + i] = r->c.velocity[i];
 }
 
+/* A robot of such a mass in flight, from a random state within these bounds: momentum as gravity
+ * gives it, energy. */
+static inline void flies(const char *text, double mass, double places, double rates)
+{
+    ROBOT r = robot_of(text, 0.2);
+    const int n = r.scene->coordinates;
+    double A[STANCE_MAX_COORDINATES * STANCE_MAX_COORDINATES];
+    uint64_t seed = 5;
+    for (int i = 0; i < n; i++) {
+        r.c.position[i] = uniform(&seed, -places, places);
+        r.c.velocity[i] = uniform(&seed, -rates, rates);
+    }
+    const double energy = r.scene->energy(r.scene, r.c.robot, r.c.position, r.c.velocity);
+    for (const stance_method *const *m = stance_methods(); *m; m++) {
+        if ((*m)->order_smooth < 4)
+            continue;
+        const stance_result end = run(&r, *m, 1e-3, 0.5);
+        double momentum[2] = {0, -mass * G * 0.5};
+        for (int k = 0; k < 2; k++)
+            for (int late = 0; late < 2; late++) {
+                const double *const v = late ? end.velocity : r.c.velocity;
+                r.scene->inertia(r.scene, r.c.robot, late ? end.position : r.c.position, A);
+                for (int i = 0; i < n; i++)
+                    momentum[k] += (late ? -1 : 1) * A[k * n + i] * v[i];
+            }
+        near((*m)->name, "forward momentum", momentum[0], 0, 1e-6);
+        near((*m)->name, "momentum upwards", momentum[1], 0, 1e-6);
+        near((*m)->name, "energy", r.scene->energy(r.scene, r.c.robot, end.position, end.velocity),
+             energy, 1e-6 * fabs(energy));
+    }
+}
+
 #endif

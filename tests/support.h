@@ -148,31 +148,16 @@ static inline stance_case balance_case(double theta, double vtheta)
     return c;
 }
 
-/* Buffers for a trajectory of `rows` rows; freed by trajectory_free. */
+/* A trajectory of `rows` rows, its buffers in one piece. */
 static inline stance_trajectory trajectory_new(int64_t rows, double interval)
 {
     const size_t n = (size_t)rows;
-    stance_trajectory t = {interval,
-                           rows,
-                           calloc(n * 5, sizeof(double)),
-                           calloc(n * 5, sizeof(double)),
-                           calloc(n * 2, sizeof(double)),
-                           calloc(n * 4, sizeof(double)),
-                           calloc(n * 2, sizeof(double))};
-    assert_non_null(t.position);
-    assert_non_null(t.velocity);
-    assert_non_null(t.torque);
-    assert_non_null(t.force);
-    assert_non_null(t.gap);
-    return t;
+    double *const x = room(18 * n * sizeof *x);
+    return (stance_trajectory){interval, rows, x, x + 5 * n, x + 10 * n, x + 12 * n, x + 16 * n};
 }
 static inline void trajectory_free(stance_trajectory *t)
 {
     free(t->position);
-    free(t->velocity);
-    free(t->torque);
-    free(t->force);
-    free(t->gap);
 }
 
 /* A trajectory, and a JSON tree, that go when their block ends. */

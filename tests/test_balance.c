@@ -4,6 +4,8 @@
 #include "long.h"
 #include "support.h"
 
+#include "analysis/statistics/statistics.h"
+
 static void run(const char *method, const stance_case *cases, stance_result *results, size_t n)
 {
     run_cases(kernel_of(method, NULL), cases, results, n);
@@ -78,12 +80,6 @@ TEST(interval_at_rest)
     assert_true(fabs(from + step * last - 0.0185) < 0.0015);
 }
 
-static int descending(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x < y) - (x > y);
-}
-
 TEST(friction_used_in_the_domain)
 {
     enum { MOST = 96 };
@@ -100,8 +96,9 @@ TEST(friction_used_in_the_domain)
     for (int i = 0; i < N * N; i++)
         if (r[i].outcome == STANCE_STABILISED)
             used[n++] = r[i].friction_used;
-    qsort(used, n, sizeof *used, descending);
-    const double median = used[n / 2], q90 = used[n / 10], q99 = used[n / 100];
+    statistics_sort(used, n);
+    const double median = used[n - 1 - n / 2], q90 = used[n - 1 - n / 10],
+                 q99 = used[n - 1 - n / 100];
     print_message("# friction used: median %.3f, 90 %% %.3f, 99 %% %.3f over %zu cases\n", median,
                   q90, q99, n);
     assert_true(fabs(median - 0.17) < 0.015);

@@ -1,5 +1,6 @@
 /* The event-driven reference: independent figures, conserved quantities, closed forms, agreement
  * with the method that never locates an event, and events that are easy to miss. */
+#include "closed_biped.h"
 #include "support.h"
 
 #include <unistd.h>
@@ -95,24 +96,18 @@ TEST(agrees_with_capturing)
     assert_true(worst < 1e-7);
 }
 
-/* Momentum in x and z, and angular momentum about the origin, of the biped's four masses. */
-static void momenta(const double *robot, const double *q, const double *v, double p[3])
+/* Momentum in x and z, angular momentum about the origin, and mass times place in x. */
+static void momenta(const double *robot, const double *q, const double *v, double p[4])
 {
-    const double l = robot[0], lt = robot[1], m = robot[2], mt = robot[3], mh = robot[4];
-    const double hip[2] = {q[0] + lt * sin(q[2]), q[1] - lt * cos(q[2])};
-    const double hip_v[2] = {v[0] + lt * cos(q[2]) * v[2], v[1] + lt * sin(q[2]) * v[2]};
-    double mass[4] = {mt, mh, m, m}, x[4][2] = {{q[0], q[1]}, {hip[0], hip[1]}};
-    double u[4][2] = {{v[0], v[1]}, {hip_v[0], hip_v[1]}};
-    for (int i = 0; i < 2; i++) {
-        const double phi = q[2] + q[3 + i], rate = v[2] + v[3 + i];
-        x[2 + i][0] = hip[0] + l * sin(phi), x[2 + i][1] = hip[1] - l * cos(phi);
-        u[2 + i][0] = hip_v[0] + l * cos(phi) * rate, u[2 + i][1] = hip_v[1] + l * sin(phi) * rate;
-    }
-    p[0] = p[1] = p[2] = 0;
-    for (int i = 0; i < 4; i++) {
-        p[0] += mass[i] * u[i][0];
-        p[1] += mass[i] * u[i][1];
-        p[2] += mass[i] * (x[i][0] * u[i][1] - x[i][1] * u[i][0]);
+    memset(p, 0, sizeof(double[4]));
+    for (int k = 0; k < POINTS; k++) {
+        const struct closed_point point = closed_point(robot, q, k);
+        double u[2];
+        closed_speed(&point, v, u);
+        p[0] += point.mass * u[0];
+        p[1] += point.mass * u[1];
+        p[2] += point.mass * (point.at[0] * u[1] - point.at[1] * u[0]);
+        p[3] += point.mass * point.at[0];
     }
 }
 
@@ -134,20 +129,14 @@ TEST(flight_conserves)
         c.steps = (int64_t)lround(1 / c.step);
         c.tolerance = 1e-13;
         const stance_result r = run_done("event-driven", &c);
-        double before[3], after[3];
+        double before[4], after[4];
         assert_int_equal(r.events == 0 || !passive, 1);
         momenta(c.robot, c.position, c.velocity, before);
         momenta(c.robot, r.position, r.velocity, after);
-        const double M = 2 * c.robot[2] + c.robot[3] + c.robot[4];
-        const double weight = M * STANCE_GRAVITY;
+        const double weight = closed_mass(c.robot) * STANCE_GRAVITY;
         /* The weight's moment about the origin grows with the way of the centre of mass. */
-        double centre = 0;
-        const double l = c.robot[0], lt = c.robot[1], *q = c.position;
-        centre += c.robot[3] * q[0] + c.robot[4] * (q[0] + lt * sin(q[2]));
-        for (int k = 0; k < 2; k++)
-            centre += c.robot[2] * (q[0] + lt * sin(q[2]) + l * sin(q[2] + q[3 + k]));
         before[1] -= weight * r.end_time;
-        before[2] -= STANCE_GRAVITY * r.end_time * (centre + 0.5 * r.end_time * before[0]);
+        before[2] -= STANCE_GRAVITY * r.end_time * (before[3] + 0.5 * r.end_time * before[0]);
         for (int k = 0; k < 3; k++)
             worst = fmax(worst, fabs(after[k] - before[k]) / (weight + fabs(before[k])));
         if (passive) {

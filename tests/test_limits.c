@@ -1,36 +1,31 @@
 /* Limits: the step at which explicit steps of a stiff servo become unstable, the sample time at
  * which a sampled controller does, and implicit steps under everything that a scenario admits,
  * which must never run away. */
-#define DENSE_ROWS 3
-#include "dense.h"
+#include "closed_biped.h"
 #include "long.h"
 #include "support.h"
+
+#include "analysis/statistics/statistics.h"
 
 #include <complex.h>
 
 /* ---- explicit steps: |R(h lambda)| = 1 ---- */
 
-/* Joint accelerations of the legs in free flight are -S (kp q + kd q'): S from the kinetic energy
- * in the angles (theta, phi1, phi2) of the links, the hip's place eliminated. */
+/* Joint accelerations of the legs in free flight are -S (kp q + kd q'). */
 static void servo_matrix(const stance_case *c, double S[2][2])
 {
-    const double l[3] = {-c->robot[1], c->robot[0], c->robot[0]};
-    const double m[3] = {c->robot[3], c->robot[2], c->robot[2]};
-    const double total = c->robot[4] + m[0] + m[1] + m[2];
-    const double angle[3] = {c->position[2], c->position[2] + c->position[3],
-                             c->position[2] + c->position[4]};
+    double inertia[COORDINATES * COORDINATES];
+    closed_inertia(c->robot, c->position, inertia);
     for (int k = 0; k < 2; k++) {
-        /* A unit torque between trunk and leg k: J a = b. */
-        double a[3][4], x[3];
-        for (int i = 0; i < 3; i++) {
-            for (int j = 0; j < 3; j++)
-                a[i][j] = (i == j ? m[i] * l[i] * l[i] : 0) -
-                          m[i] * l[i] * m[j] * l[j] * cos(angle[i] - angle[j]) / total;
-            a[i][3] = i == 0 ? -1 : i == k + 1;
+        /* A unit torque between trunk and leg k. */
+        double a[DENSE_ROWS][DENSE_ROWS + 1], x[DENSE_ROWS];
+        for (int i = 0; i < COORDINATES; i++) {
+            memcpy(a[i], inertia + i * COORDINATES, COORDINATES * sizeof *inertia);
+            a[i][COORDINATES] = i == Q1 + k;
         }
-        assert_true(dense_solve(3, a, x));
+        assert_true(dense_solve(COORDINATES, a, x));
         for (int i = 0; i < 2; i++)
-            S[i][k] = x[i + 1] - x[0];
+            S[i][k] = x[Q1 + i];
     }
 }
 
@@ -364,12 +359,6 @@ static void check_single_step(const stance_case *c, const stance_result *r)
         fail_msg("a step created %g J, admitted are %g J", r->energy_gain, admitted);
 }
 
-static int ascending(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 struct tally {
     int64_t cases, failed, reason[16], subdivided, broken, n;
     double *created; /* [n] of the cases that are done */
@@ -411,7 +400,7 @@ static void report(struct tally *t, const char *method, const char *name)
     for (size_t k = 0; k < COUNT(reasons); k++)
         if (t->reason[k] > 0)
             print_message(" %s %lld", reasons[k], (long long)t->reason[k]);
-    qsort(t->created, (size_t)t->n, sizeof *t->created, ascending);
+    statistics_sort(t->created, (size_t)t->n);
     print_message("\n#   energy created, of what there was: median %.2g, 90 %% %.2g, 99 %% %.2g, "
                   "99.9 %% %.2g, largest %.2g; penetration %.1e m\n",
                   t->created[t->n / 2], t->created[t->n * 9 / 10], t->created[t->n * 99 / 100],
