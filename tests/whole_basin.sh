@@ -13,8 +13,13 @@ runs() { # name, file, setting ...: map.yaml with these and no case recorded
     local sets=(record.cases=none "${@:3}")
     expect "$1" 0 "$stance" run map.yaml --quiet -o "$2.h5" "${sets[@]/#/--set=}"
 }
-starts='sweep.grid=[{path: initial.offset.theta, from: -0.12, to: 0.06, count: 50},
-                    {path: initial.offset.vtheta, from: -0.6, to: 0.6, count: 48}]'
+starts() { # theta from, to, count; vtheta from, to, count: two axes
+    echo "{path: initial.offset.theta, from: $1, to: $2, count: $3}," \
+        "{path: initial.offset.vtheta, from: $4, to: $5, count: $6}"
+}
+box() { starts -0.12 0.06 "$1" -0.6 0.6 "$2"; }   # so many points on each
+drawn='[{path: initial.offset.theta, from: -0.12, to: 0.06}, {path: initial.offset.vtheta, from: -0.6, to: 0.6}]'
+map="sweep.grid=[$(box 50 48)]"
 expect "a map for each friction" 0 "$stance" run map.yaml -o whole.h5 --quiet
 
 # ---- merging ---------------------------------------------------------------------------------
@@ -29,11 +34,9 @@ expect "an existing file is not replaced" 3 "$stance" merge axis.h5 part2.h5 par
 expect "... unless --force says so" 0 "$stance" merge axis.h5 part2.h5 part1.h5 --force
 
 for f in 0.4 0.1 0.2; do
-    "$stance" run map.yaml --quiet --set "$starts" --set ground.friction=$f \
-        --set 'record.cases=[3]' -o "f$f.h5" >>log 2>&1
+    "$stance" run map.yaml --quiet --set "$map" --set ground.friction=$f --set 'record.cases=[3]' -o "f$f.h5" >>log 2>&1
 done
-expect "parts that differ in a number are merged" 0 "$stance" merge number.h5 f0.4.h5 f0.1.h5 f0.2.h5
-holds "... the number is the first axis, sorted; provenance and times are those of the parts" <<'END'
+expect "parts that differ in a number are merged" 0 "$stance" merge number.h5 f0.4.h5 f0.1.h5 f0.2.h5 holds <<'END'
 whole, merged = h5py.File("whole.h5"), h5py.File("number.h5")
 assert merged.attrs["axes"] == b"ground.friction,initial.offset.theta,initial.offset.vtheta"
 names = [n for n in whole if isinstance(whole[n], h5py.Dataset) and whole[n].dtype.kind in "uif"]
@@ -53,15 +56,13 @@ for k in 0 1 2; do
         "sweep.grid=[{path: initial.offset.theta, from: $((k * 4 - 16))e-3, to: $((k * 4 - 12))e-3, count: 5},
                {path: method.name, values: [implicit, midpoint]}]"
 done
-expect "pieces of a range are merged" 0 "$stance" merge pieces.h5 piece2.h5 piece0.h5 piece1.h5 \
-    says 'from 3 files along initial.offset.theta, 13 values; 4 were in several'
-holds "... and are one axis" <<'END'
+expect "pieces of a range are merged and are one axis" 0 "$stance" merge pieces.h5 piece2.h5 piece0.h5 piece1.h5 \
+    says 'from 3 files along initial.offset.theta, 13 values; 4 were in several' holds <<'END'
 theta = h5py.File("pieces.h5")["initial.offset.theta"][...]
 assert numpy.allclose(theta, numpy.linspace(-0.016, -0.004, 13), rtol=0, atol=1e-12), theta
 END
 
-cat >halves.py <<'END'
-import shutil, h5py
+holds "(parts of the same scenario)" <<'END'
 for name, first, last in [("half1.h5", 0, 4000), ("half2.h5", 3500, 7200)]:
     shutil.copy("whole.h5", name)
     with h5py.File(name, "r+") as f:
@@ -79,7 +80,6 @@ shutil.copy("whole.h5", "damaged.h5")
 with h5py.File("damaged.h5", "r+") as f:
     f["end_time"][1, 2, 3] = 0.123
 END
-is "(parts of the same scenario)" '"$python" halves.py >log 2>&1'
 expect "what two jobs have computed of one scenario" 0 "$stance" merge halves.h5 half1.h5 half2.h5 \
     says '7200 cases from 2 files; 500 were in several files, and equal' as whole.h5
 expect "what nobody has computed" 0 "$stance" merge open.h5 half1.h5 half1b.h5 says '3200 are not computed yet'
@@ -96,11 +96,8 @@ expect "one file" 2 "$stance" merge bad.h5 f0.1.h5 is '[ ! -e bad.h5 ] && [ ! -e
 
 # Another version may have drawn other points for the same scenario.
 sample='sweep={sample: {method: random, count: 8, vary: [{path: ground.friction, from: 0.2, to: 1}]}}'
-for half in drawn1 drawn2; do
-    runs "$half" $half "$sample"
-done
-PYTHONPATH=$tests "$python" - >>log 2>&1 <<'END'
-import h5py, numpy, results_tools
+for half in drawn1 drawn2; do runs "$half" $half "$sample"; done
+holds "(points of another version)" <<'END'
 with h5py.File("drawn2.h5", "r+") as file:
     points = file["ground.friction"]
     points[3] *= 1.01
@@ -110,14 +107,12 @@ END
 expect "other points of the same scenario" 2 "$stance" merge bad.h5 drawn1.h5 drawn2.h5 \
     says '^stance merge: drawn2.h5: its points along sample are not those of drawn1.h5$'
 refine='sweep.refine={start: 8, probes: 0}'
-runs "low" low "$starts" "$refine" 'sweep.grid[0].to=-0.04' 'sweep.grid[0].count=20'
-runs "high" high "$starts" "$refine" 'sweep.grid[0].from=-0.03' 'sweep.grid[0].count=20'
+runs "low" low "$map" "$refine" 'sweep.grid[0].to=-0.04' 'sweep.grid[0].count=20'
+runs "high" high "$map" "$refine" 'sweep.grid[0].from=-0.03' 'sweep.grid[0].count=20'
 expect "refined maps are merged" 0 "$stance" merge refined.h5 low.h5 high.h5 \
     says 'The parts were refined each for itself: .* (attribute merge_note)'
 
-for f in 0.2 0.4; do
-    runs "noise$f" "noise$f" "$starts" ground.friction=$f controller.noise=0.1
-done
+for f in 0.2 0.4; do runs "noise$f" "noise$f" "$map" ground.friction=$f controller.noise=0.1; done
 expect "parts with noise are merged" 0 "$stance" merge noise.h5 noise0.2.h5 noise0.4.h5 \
     says 'Random numbers .* are keyed' holds 'assert b"keyed" in h5py.File("noise.h5").attrs["merge_note"]'
 
@@ -136,17 +131,16 @@ expect "beyond the tolerance" 1 "$stance" compare whole.h5 moved.h5 --tolerance 
         'largest difference .* in case 50 '
 expect "an answer's own tolerance" 0 "$stance" compare whole.h5 moved.h5 --tolerance 1e-6 --tolerance peak_torque=0,2e-3
 expect "... alone leaves the others exact" 1 "$stance" compare whole.h5 moved.h5 --tolerance peak_torque=0,2e-3
-expect "... as JSON" 0 "$stance" compare whole.h5 moved.h5 --tolerance 0.1 --json
-holds "... with its keys" 'c = said(); assert c["equal"] and not c["identical"]
-d = {x["name"]: x for x in c["differences"]}; assert abs(d["peak_torque"]["largest"] - 1e-3) < 1e-9
+expect "... as JSON" 0 "$stance" compare whole.h5 moved.h5 --tolerance 0.1 --json holds 'c = said()
+d = {x["name"]: x for x in c["differences"]}; assert c["equal"] and not c["identical"]
+assert abs(d["peak_torque"]["largest"] - 1e-3) < 1e-9
 assert d["end_time"]["differing"] == 0 and d["end_time"]["largest_at"]["index"] == 50'
 expect "a tolerance that is none" 2 "$stance" compare whole.h5 moved.h5 --tolerance 1e-6x
 expect "a variable that is none" 2 "$stance" compare whole.h5 moved.h5 --tolerance end=1
 expect "words have no tolerance" 2 "$stance" compare whole.h5 moved.h5 --tolerance outcome=1
 
 # ---- tables ----------------------------------------------------------------------------------
-expect "every case as CSV" 0 "$stance" table whole.h5
-holds "... has what the file has" <<'END'
+expect "every case as CSV has what the file has" 0 "$stance" table whole.h5 holds <<'END'
 rows, f = table(), h5py.File("whole.h5")
 assert len(rows) == 7200
 number = lambda name: numpy.array([float(r[name] or "nan") for r in rows])
@@ -155,8 +149,7 @@ for name in ["end_time", "settle_time", "friction_used", "steps"]:
 assert numpy.array_equal(number("final_vq2"), f["final_state"][..., 9].ravel(), True)
 theta = numpy.repeat(f["initial.offset.theta"][...], 48)
 assert numpy.array_equal(number("initial.offset.theta"), numpy.tile(theta, 3))
-words = numpy.array(["none", "stabilised", "fell", "rested", "undecided"])
-assert ([r["outcome"] for r in rows] == words[f["outcome"][...].ravel()]).all()
+assert [r["outcome"] for r in rows] == [OUTCOMES[o] for o in f["outcome"][...].ravel()]
 END
 expect "a part of it" 0 "$stance" table half1.h5 --answer outcome --answer end_time --of pending
 holds "... and nothing of pending cases" 'rows = list(csv.reader(open("log", newline=""))); assert len(rows) == 3201
@@ -166,18 +159,16 @@ assert rows[0]["parameter"] == "" and rows[2]["value"] == "0.2" and rows[2]["don
 assert sum(int(r["stabilised"]) for r in rows[1:]) == int(rows[0]["stabilised"]) > 100'
 
 # ---- basins ----------------------------------------------------------------------------------
-expect "a basin for each friction" 0 "$stance" basin whole.h5 --csv
-holds "... with the volume and the bounds that its cases have" <<'END'
+expect "a basin for each friction" 0 "$stance" basin whole.h5 --csv holds <<'END'
 rows, f = table(), h5py.File("whole.h5")
 assert [r["ground.friction"] for r in rows] == ["0.1", "0.2", "0.4"]
-inside = f["outcome"][...] == 1
-weight = numpy.outer([.5] + [1] * 48 + [.5], [.5] + [1] * 46 + [.5])
+inside, weight = f["outcome"][...] == 1, numpy.outer(cells(50), cells(48))
 for k, r in enumerate(rows):
     share = (inside[k] * weight).sum() / weight.sum()
     assert abs(float(r["share"]) - share) < 1e-12 and abs(float(r["volume"]) - 0.216 * share) < 1e-12
     assert int(r["inside"]) == inside[k].sum() and int(r["cases"]) == 2400
-    cells = [inside[k, i:i + 49, j:j + 47] for i in (0, 1) for j in (0, 1)]
-    low, high = numpy.all(cells, 0).mean(), numpy.any(cells, 0).mean()
+    corners = [inside[k, i:i + 49, j:j + 47] for i in (0, 1) for j in (0, 1)]
+    low, high = numpy.all(corners, 0).mean(), numpy.any(corners, 0).mean()
     assert abs(float(r["low"]) / 0.216 - low) < 1e-12 and abs(float(r["high"]) / 0.216 - high) < 1e-12
     assert r["alpha"] == "" and r["alpha_distances"] == "0" and 0 < float(r["boundary_entropy"]) < numpy.log(2)
 END
@@ -186,13 +177,12 @@ assert [x["pending"] for x in r] == [0, 800, 2400] and r[2]["volume"] is None
 assert r[2]["low"] == 0 and abs(r[2]["high"] - 0.216) < 1e-12 and r[1]["high"] > r[1]["volume"] > r[1]["low"]
 assert b["starts"] == ["initial.offset.theta", "initial.offset.vtheta"] and b["unit"] == "rad * rad/s"'
 # A box that cuts the domain, one that does not, and what does not depend on it.
-small='[{path: initial.offset.theta, from: -0.03, to: 0.03, count: 31}, {path: initial.offset.vtheta, from: -0.12, to: 0.12, count: 31}]'
-large='[{path: initial.offset.theta, from: -0.2, to: 0.12, count: 161}, {path: initial.offset.vtheta, from: -0.9, to: 1, count: 96}]'
-line='[{path: initial.offset.theta, from: -0.2, to: 0.1, count: 151}]'
-for box in small large line; do
-    runs "$box" $box ground.friction=0.4 "sweep={grid: ${!box}}"
-    "$stance" basin $box.h5 --json >$box.json 2>>log
-    "$stance" summary $box.h5 --json >$box.summary 2>>log
+small=$(starts -0.03 0.03 31 -0.12 0.12 31) large=$(starts -0.2 0.12 161 -0.9 1 96)
+line='{path: initial.offset.theta, from: -0.2, to: 0.1, count: 151}'
+for domain in small large line; do
+    runs "$domain" $domain ground.friction=0.4 "sweep={grid: [${!domain}]}"
+    "$stance" basin $domain.h5 --json >$domain.json 2>>log
+    "$stance" summary $domain.h5 --json >$domain.summary 2>>log
 done
 holds "the box: faces that cut, the part about the equilibrium, distances" <<'END'
 from scipy import ndimage
@@ -208,9 +198,7 @@ for name in ["small", "large", "line"]:
     own = label == label[tuple(numpy.abs(x).argmin() for x in axes)]
     weight = numpy.ones(())
     for x in axes:
-        edge = numpy.full(len(x), x[1] - x[0])
-        edge[[0, -1]] /= 2
-        weight = numpy.multiply.outer(weight, edge)
+        weight = numpy.multiply.outer(weight, numpy.multiply(cells(len(x)), x[1] - x[0]))
     assert abs((own * weight).sum() - row["connected"]) < 1e-9, row["connected"]
     assert row["bounded"] == (not any(own.take(e, a).any() for a in range(own.ndim) for e in (0, -1)))
     assert b["weights"] == {p: 1 for p in b["starts"]}
@@ -241,12 +229,10 @@ for wrong in initial.offset.theta initial.offset.theta= initial.offset.theta=0 i
     expect "a weight that is none: $wrong" 2 "$stance" basin line.h5 --weight $wrong
 done
 
-expect "the boundary as points" 0 "$stance" basin whole.h5 --boundary
-holds "... midway between neighbours that differ" <<'END'
+expect "the boundary as points" 0 "$stance" basin whole.h5 --boundary holds <<'END'
 rows, f = table(), h5py.File("whole.h5")
 outcome = f["outcome"][...].astype(int)
 assert len(rows) == (numpy.diff(outcome, axis=1) != 0).sum() + (numpy.diff(outcome, axis=2) != 0).sum()
-words = ["none", "stabilised", "fell", "rested", "undecided"]
 axes = [f[n][...] for n in ("ground.friction", "initial.offset.theta", "initial.offset.vtheta")]
 for r in rows:
     at = [float(r[n]) for n in list(r)[:3]]
@@ -256,7 +242,7 @@ for r in rows:
         end[a] += sign * float(r["half_width"])
         place = [numpy.abs(axes[k] - end[k]).argmin() for k in range(3)]
         assert all(abs(axes[k][place[k]] - end[k]) < 1e-12 for k in range(3))
-        assert words[outcome[tuple(place)]] == word
+        assert OUTCOMES[outcome[tuple(place)]] == word
 END
 expect "... pending cases" 0 "$stance" basin half1.h5 --of rested says 'not known to be cut by the box'
 expect "... as text" 0 "$stance" basin whole.h5 says 'no alpha in some rows: fewer than 96 cases along an axis'
@@ -268,9 +254,8 @@ expect "an axis that is none" 2 "$stance" basin whole.h5 --by friction
 expect "an outcome that is none" 2 "$stance" basin whole.h5 --of stable
 
 # Starts that are sampled: the share of a grid lies in the interval.
-runs "a Sobol' sample of starts" sample 'sweep={grid: [{path: ground.friction, values: [0.1, 0.2, 0.4]}],
-        sample: {method: sobol, count: 1024, vary: [{path: initial.offset.theta, from: -0.12, to: 0.06},
-            {path: initial.offset.vtheta, from: -0.6, to: 0.6}]}}'
+runs "a Sobol' sample of starts" sample "sweep={grid: [{path: ground.friction, values: [0.1, 0.2, 0.4]}],
+    sample: {method: sobol, count: 1024, vary: $drawn}}"
 expect "... has its basins" 0 "$stance" basin sample.h5 --json
 "$stance" basin whole.h5 --json >grid.json 2>>log
 holds "... with Wilson's interval, in which the grid's volume lies" <<'END'
@@ -278,49 +263,51 @@ sample, grid = said(), said("grid.json")
 outcome = h5py.File("sample.h5")["outcome"][...]
 assert sample["design"] == "sobol" and abs(sample["box"] - 0.216) < 1e-12
 for k, (a, b) in enumerate(zip(sample["rows"], grid["rows"])):
-    n, p, z = 1024, (outcome[k] == 1).mean(), 1.959963984540054
-    centre, half = p + z * z / 2 / n, z * math.sqrt(p * (1 - p) / n + z * z / 4 / n / n)
-    assert abs(a["share"] - p) < 1e-12 and a["at"] == b["at"] and a["alpha"] is None
-    assert abs(a["low"] / 0.216 - (centre - half) / (1 + z * z / n)) < 1e-9
-    assert abs(a["high"] / 0.216 - (centre + half) / (1 + z * z / n)) < 1e-9
+    share = (outcome[k] == 1).mean()
+    assert abs(a["share"] - share) < 1e-12 and a["at"] == b["at"] and a["alpha"] is None
+    assert numpy.allclose([a["low"] / 0.216, a["high"] / 0.216], wilson(share, 1024), rtol=0, atol=1e-9)
     assert a["low"] < b["volume"] < a["high"] and a["low"] < a["volume"] < a["high"]
+# The faces that they reach, of the last friction.
+f = h5py.File("sample.h5")
+near = min(numpy.hypot(f["initial.offset.theta"], f["initial.offset.vtheta"])[outcome[2] != 1])
+assert abs(a["nearest"] - near) < 1e-12 and a["nearest_least"] == 0 and a["median"] is None, (a, near)
+assert {c["path"] for c in a["cut"]} >= {"initial.offset.theta"} and a["bounded"] is None
 END
-holds "... and the faces that they reach" 'b = said()["rows"][2]
-near = min((h5py.File("sample.h5")["initial.offset.theta"][...] ** 2 + h5py.File("sample.h5")["initial.offset.vtheta"][...] ** 2)[h5py.File("sample.h5")["outcome"][2] != 1]) ** 0.5
-print(b["cut"], near, b["nearest"]); assert abs(b["nearest"] - near) < 1e-12 and b["nearest_least"] == 0 and b["median"] is None
-assert {c["path"] for c in b["cut"]} >= {"initial.offset.theta"} and b["bounded"] is None'
 expect "points on a boundary need a grid" 2 "$stance" basin sample.h5 --boundary
 
 # A sample of parameters beside starts on a grid: points of a block share coordinates, blocks do not.
-runs "basins over sampled parameters" over 'sweep={grid: [{path: initial.offset.theta, from: -0.12, to: 0.06, count: 9},
-        {path: initial.offset.vtheta, from: -0.6, to: 0.6, count: 8}], sample: {method: saltelli, count: 8,
-        vary: [{path: ground.friction, from: 0.05, to: 1}, {path: controller.torque_limit, from: 5, to: 20}]}}'
-expect "... are averaged" 0 "$stance" basin over.h5 --json
-holds "... and their error is the scatter of whole blocks" <<'END'
-found = said()
-inside = (h5py.File("over.h5")["outcome"][...] == 1).astype(float)
+runs "basins over sampled parameters" over "sweep={grid: [$(box 9 8)], sample: {method: saltelli, count: 8,
+    vary: [{path: ground.friction, from: 0.05, to: 1}, {path: controller.torque_limit, from: 5, to: 20}]}}"
+"$stance" basin over.h5 --rank 5 --json >rank.json
+expect "... are averaged and their error is the scatter of whole blocks" 0 "$stance" basin over.h5 --json holds <<'END'
+found, f = said(), h5py.File("over.h5")
+inside = (f["outcome"][...] == 1).astype(float)
 assert inside.shape == (9, 8, 32) and 0.05 < inside.mean() < 0.95
-edge = lambda n: numpy.where((numpy.arange(n) % (n - 1)) == 0, 0.5, 1)
-volume = numpy.einsum("ijp,i,j->p", inside, edge(9), edge(8)) * 0.18 / 8 * 1.2 / 7
+volume = numpy.einsum("ijp,i,j->p", inside, cells(9), cells(8)) * 0.18 / 8 * 1.2 / 7
 blocks = volume.reshape(8, 4).mean(1)
 row, = found["rows"]
 assert found["averaged"] == ["ground.friction", "controller.torque_limit"], found["averaged"]
 assert abs(row["volume"] - volume.mean()) < 1e-12
 scatter = 2.364624 * blocks.std(ddof=1) / 8 ** 0.5 # Student's deviations for 7
 assert scatter <= row["reach"] < 1.2 * scatter, (row["reach"], scatter)
+# The best of them, with their values, shares and bounds.
+rows = said("rank.json")["rows"]
+assert numpy.allclose([r["volume"] for r in rows], sorted(volume)[:-6:-1])
+for r in rows:
+    p = int(r["at"]["sample"])
+    assert abs(volume[p] - r["volume"]) < 1e-12 and r["low"] <= r["volume"] <= r["high"] and r["reach"] > 0
+    assert r["at"]["ground.friction"] == f["ground.friction"][p]
 END
 expect "... as text" 0 "$stance" basin over.h5 says 'averaged over ground.friction, controller.torque_limit'
 
 # ---- single questions --------------------------------------------------------------------------
-runs "where a share is lost" delay 'sweep.grid=[{path: controller.sample_time, values: [0.001, 0.02, 0.04, 0.06]},
-        {path: initial.offset.theta, from: -0.12, to: 0.06, count: 37}, {path: initial.offset.vtheta, from: -0.6, to: 0.6, count: 31}]'
+runs "where a share is lost" delay \
+    "sweep.grid=[{path: controller.sample_time, values: [0.001, 0.02, 0.04, 0.06]}, $(box 37 31)]"
 for form in --json --csv; do
-    expect "... is told with $form" 0 "$stance" basin delay.h5 --threshold 0.8 --of controller.sample_time $form
-    mv log threshold$form
-    expect "... of starts, with $form" 0 "$stance" basin delay.h5 --lost controller.sample_time $form
-    mv log lost$form
-    expect "... numbers, with $form" 0 "$stance" basin delay.h5 --answer settle_time $form
-    mv log answer$form
+    expect "... is told with $form" 0 "$stance" basin delay.h5 --threshold 0.8 --of controller.sample_time $form \
+        into threshold$form
+    expect "... of starts, with $form" 0 "$stance" basin delay.h5 --lost controller.sample_time $form into lost$form
+    expect "... numbers, with $form" 0 "$stance" basin delay.h5 --answer settle_time $form into answer$form
 done
 "$stance" basin delay.h5 --json >delay.json
 "$stance" basin delay.h5 --within settle_time=1.2 --json >within.json
@@ -335,7 +322,7 @@ at = numpy.interp(0.8 * v[0], [v[i], v[i - 1]], [times[i], times[i - 1]])
 print(row, at)
 assert abs(row["value"] - at) < 1e-6 and [row["before"], row["after"]] == list(times[i - 1:i + 1])
 assert row["low"] < at and (row["high"] is None or at < row["high"])
-one, = csv.DictReader(open("threshold--csv", newline=""))
+one, = table("threshold--csv")
 assert float(one["value"]) == row["value"]
 lost = said("lost--json")
 gone = numpy.array([(inside[0] & ~inside[:k + 1].all(axis=0)).sum() for k in range(4)])
@@ -344,7 +331,7 @@ k = numpy.argmax(gone > 0)
 assert (lost["kept"], lost["lost"]) == (times[k - 1], times[k]) and lost["unknown"] == 0
 where = numpy.unravel_index(lost["first"], inside.shape)
 assert where[0] == k and inside[0][where[1:]] and not inside[where]
-assert [int(r["lost"]) for r in csv.DictReader(open("lost--csv", newline=""))] == list(numpy.diff(gone, prepend=0))
+assert [int(r["lost"]) for r in table("lost--csv")] == list(numpy.diff(gone, prepend=0))
 for k, r in enumerate(said("answer--json")["rows"]):
     number = settle[k][inside[k]]
     assert r["cases"] == len(number) and abs(r["median"] - numpy.median(number)) < 1e-12
@@ -361,20 +348,7 @@ expect "losses from the other end" 0 "$stance" basin delay.h5 --lost controller.
     says ' starts end as stabilised at controller.sample_time = 0.06 s'
 expect "a threshold within a time" 0 "$stance" basin delay.h5 --threshold 0.8 --of controller.sample_time --within \
     settle_time=1.2 says 'stabilised with settle_time <= 1.2 falls below'
-expect "the best of a sample" 0 "$stance" basin over.h5 --rank 5 --json
-holds "... with their values, shares and bounds" <<'END'
-f = h5py.File("over.h5")
-inside = (f["outcome"][...] == 1).astype(float)
-edge = lambda n: numpy.where((numpy.arange(n) % (n - 1)) == 0, 0.5, 1)
-volume = numpy.einsum("ijp,i,j->p", inside, edge(9), edge(8)) * 0.18 / 8 * 1.2 / 7
-rows = said()["rows"]
-assert numpy.allclose([r["volume"] for r in rows], sorted(volume)[:-6:-1])
-for r in rows:
-    p = r["at"]["sample"]
-    assert abs(volume[int(p)] - r["volume"]) < 1e-12 and r["low"] <= r["volume"] <= r["high"] and r["reach"] > 0
-    assert r["at"]["ground.friction"] == f["ground.friction"][int(p)]
-END
-expect "... in words" 0 "$stance" basin over.h5 --rank 3 says 'the 3 largest of 32 sampled points'
+expect "the best of a sample, in words" 0 "$stance" basin over.h5 --rank 3 says 'the 3 largest of 32 sampled points'
 while read -r wrong; do
     # shellcheck disable=SC2086
     expect "refused: $wrong" 2 "$stance" basin delay.h5 $wrong
@@ -399,21 +373,19 @@ done <<'END'
 --allowed --answer settle_time
 --allowed --boundary
 END
-expect "what linear theory allows" 0 "$stance" basin delay.h5 --allowed --json
-holds "... is a share of the starts, and what is recovered one of that" <<'END'
+expect "what linear theory allows" 0 "$stance" basin delay.h5 --allowed --json holds <<'END'
 for r in said()["rows"]:
     assert 0 < r["allowed"] <= 1 and 0 <= r["used"] <= 1 and 0 <= r["outside"] < 0.1, r
 END
 # Recoveries from outside, and what the robot did: gauges once more, by null_set.py.
-wide=(--set controller.sample_time=0.002 --set method.step=0.002 --set ground.friction=0.15 --set record.cases=none --set
-    'sweep.grid=[{path: initial.offset.theta, from: -0.2, to: 0.2, count: 41}, {path: initial.offset.vtheta, from: -1.2, to: 1.2, count: 41}]')
-"$stance" run "$shipped/basin_one_foot.yaml" "${wide[@]}" --quiet -o outside1.h5 >>log2 2>&1
-"$stance" run "$shipped/basin_both_feet.yaml" "${wide[@]}" --quiet -o outside2.h5 >>log2 2>&1
-"$stance" run "$shipped/basin_one_foot.yaml" "${wide[@]}" --set 'record={answers: [outcome, footfalls]}' --quiet -o outside3.h5 >>log2 2>&1
-for n in 1 2 3; do
-    expect "what recovers from outside, $n" 0 "$stance" basin outside$n.h5 --allowed --json
-    mv log allowed$n.json
-done
+outside() { # number, scenario, setting
+    "$stance" run "$shipped/$2.yaml" --set controller.sample_time=0.002 --set method.step=0.002 \
+        --set ground.friction=0.15 --set "$3" --set "sweep.grid=[$(starts -0.2 0.2 41 -1.2 1.2 41)]" --quiet -o "outside$1.h5" >>log2 2>&1
+    expect "what recovers from outside, $1" 0 "$stance" basin "outside$1.h5" --allowed --json into "allowed$1.json"
+}
+outside 1 basin_one_foot record.cases=none
+outside 2 basin_both_feet record.cases=none
+outside 3 basin_one_foot 'record={cases: none, answers: [outcome, footfalls]}'
 "$stance" design "$shipped/basin_one_foot.yaml" --json >design.json
 holds "... is counted by what it did, with the farthest of each" <<'END'
 design, seen = said("design.json"), set()
@@ -465,8 +437,7 @@ sweep:
     - {path: initial.offset.vcart, values: [-0.001, 0, 0.001]}
 END
 expect "a cart that no motor moves" 0 "$stance" run drift.yaml --quiet -o drift.h5
-expect "... has no reach" 0 "$stance" design drift.yaml --json
-holds "... along any state" <<'END'
+expect "... has no reach along any state" 0 "$stance" design drift.yaml --json holds <<'END'
 a = said()["allowed"]
 assert a["unreached_modes"] == [[0, 0], [0, 0]] and not a["glued"] and len(a["unstable_modes"]) == 1, a
 assert set(a["low"].values()) == set(a["high"].values()) == {0} and len(a["low"]) == 4, a
@@ -488,15 +459,12 @@ expect "... and by design" 0 "$stance" design own.yaml \
 
 # What one domain has lost of another: labels side by side.
 for form in --json --csv; do
-    expect "two domains side by side, with $form" 1 "$stance" compare f0.1.h5 f0.4.h5 --labels $form
-    mv log labels$form
+    expect "two domains side by side, with $form" 1 "$stance" compare f0.1.h5 f0.4.h5 --labels $form into labels$form
 done
-expect "... of an outcome of one's own" 1 "$stance" compare f0.1.h5 f0.4.h5 --labels --of fell --json
-holds "... count what is kept, lost and won" <<'END'
+expect "... of an outcome of one's own" 1 "$stance" compare f0.1.h5 f0.4.h5 --labels --of fell --json holds <<'END'
 a, b = (h5py.File(n)["outcome"][...] for n in ("f0.1.h5", "f0.4.h5"))
-words = {1: "stabilised", 2: "fell", 3: "rested", 4: "undecided"}
-found, rows = said("labels--json"), table("labels--csv")
-count = {(words[i], words[j]): int(((a == i) & (b == j)).sum()) for i in words for j in words}
+words, found, rows = OUTCOMES, said("labels--json"), table("labels--csv")
+count = {(words[i], words[j]): int(((a == i) & (b == j)).sum()) for i in range(1, 5) for j in range(1, 5)}
 assert {(r["first"], r["second"]): r["cases"] for r in found["became"]} == {k: n for k, n in count.items() if n}
 assert {(r["first"], r["second"]): int(r["cases"]) for r in rows} == {k: n for k, n in count.items() if n}
 for r in found["became"]:
@@ -513,33 +481,29 @@ expect "... in words" 1 "$stance" compare f0.1.h5 f0.4.h5 --labels \
     says 'stabilised in both: .*; lost, in f0.1.h5 alone: .* % of its domain);$'
 for limit in 9 11; do
     runs "drawn$limit" drawn$limit controller.torque_limit=$limit \
-        'sweep={sample: {method: random, count: 500, vary: [{path: initial.offset.theta, from: -0.12, to: 0.06},
-        {path: initial.offset.vtheta, from: -0.6, to: 0.6}]}}'
+        "sweep={sample: {method: random, count: 500, vary: $drawn}}"
 done
-expect "domains of a sample" 1 "$stance" compare drawn11.h5 drawn9.h5 --labels --json
-holds "... have Wilson's interval for what is lost" <<'END'
+expect "domains of a sample" 1 "$stance" compare drawn11.h5 drawn9.h5 --labels --json holds <<'END'
 a, b = (h5py.File(n)["outcome"][...] == 1 for n in ("drawn11.h5", "drawn9.h5"))
-d, n, p, z = said()["domain"], a.sum(), (a & ~b).sum() / a.sum(), 1.959963984540054
-centre, half = p + z * z / 2 / n, z * math.sqrt(p * (1 - p) / n + z * z / 4 / n / n)
-assert 0 < p < 1 and abs(d["lost_low"] - (centre - half) / (1 + z * z / n)) < 1e-9
-assert abs(d["lost_high"] - (centre + half) / (1 + z * z / n)) < 1e-9
+d, share = said()["domain"], (a & ~b).sum() / a.sum()
+assert 0 < share < 1
+assert numpy.allclose([d["lost_low"], d["lost_high"]], wilson(share, a.sum()), rtol=0, atol=1e-9)
 END
 expect "domains over other starts" 2 "$stance" compare small.h5 line.h5 --labels
-runs "wider" wider "sweep={grid: ${small//0.03/0.04}}"
+runs "wider" wider "sweep={grid: [${small//0.03/0.04}]}"
 expect "... at other places" 2 "$stance" compare small.h5 wider.h5 --labels \
     says 'the starts of small.h5 and wider.h5 are not the same'
 
 # ---- rays ------------------------------------------------------------------------------------
-cat >rays.sets <<'END'
-sweep={grid: [{path: ground.friction, values: [0.2, 0.4]}, {path: initial.offset.scale, from: 0.02, to: 1, count: 50}],
-  sample: {method: sphere, count: 24, vary: [{path: initial.offset.theta, from: -0.1, to: 0.1},
-    {path: initial.offset.vtheta, from: -0.5, to: 0.5}]}}
-END
-runs "rays from the equilibrium" rays "$(cat rays.sets)"
-expect "where they lose the outcome" 0 "$stance" basin rays.h5 --boundary
-cp log rays.csv
-expect "... in short" 0 "$stance" basin rays.h5 --json
-holds "... as the cases say" <<'END'
+rays() { # least, largest scale, how many, how many rays
+    echo "sweep={grid: [{path: ground.friction, values: [0.2, 0.4]},
+        {path: initial.offset.scale, from: $1, to: $2, count: $3}], sample: {method: sphere, count: $4,
+        vary: [{path: initial.offset.theta, from: -0.1, to: 0.1}, {path: initial.offset.vtheta, from: -0.5, to: 0.5}]}}"
+}
+rays=$(rays 0.02 1 50 24)
+runs "rays from the equilibrium" rays "$rays"
+expect "where they lose the outcome" 0 "$stance" basin rays.h5 --boundary into rays.csv
+expect "... in short as the cases say" 0 "$stance" basin rays.h5 --json holds <<'END'
 f, rows, short = h5py.File("rays.h5"), table("rays.csv"), said()
 inside, scale = f["outcome"][...] == 1, f["initial.offset.scale"][...]
 assert inside.shape == (2, 50, 24) and len(rows) == 48 and inside[:, 0].all()
@@ -563,11 +527,9 @@ for k in range(2):
     assert (r["median"] or numpy.inf) == numpy.median(ends)
 END
 # Descents end no farther than the shortest ray, on the boundary, where dense rays about it end.
-expect "descents from the shortest ray" 0 "$stance" basin rays.h5 --json --descend 5
-cp log nearest.json
+expect "descents from the shortest ray" 0 "$stance" basin rays.h5 --json --descend 5 into nearest.json
 holds "... are told with how sure they are" <<'END'
-sets = []
-for r in said("nearest.json")["rows"]:
+for k, r in enumerate(said("nearest.json")["rows"]):
     n = r["nearest"]
     print(n)
     low, high = n["bracket"]
@@ -578,25 +540,20 @@ for r in said("nearest.json")["rows"]:
     theta, vtheta = n["at"].values()
     print(f"sweep={{grid: [{{path: initial.offset.scale, values: [{low / n['scale']}, {high / n['scale']}]}}]}}",
           f"initial.offset.theta={theta}", f"initial.offset.vtheta={vtheta}",
-          f"ground.friction={r['at']['ground.friction']}", sep="\n", file=open(f"end{len(sets)}.sets", "w"))
-    sets.append(r)
+          f"ground.friction={r['at']['ground.friction']}", sep="\n", file=open(f"end{k}.sets", "w"))
 END
 for k in 0 1; do
     mapfile -t sets <end$k.sets
     runs "end$k" end$k "${sets[@]}"
-    "$stance" table end$k.h5 --answer outcome >end$k.csv 2>>log2
-    grep -q '^0,.*,stabilised' end$k.csv && grep -q '^1,.*,fell' end$k.csv
-    result $? "... and cases of their own end so"
+    expect "... and cases of their own end so" 0 "$stance" table end$k.h5 --answer outcome \
+        says '^0,.*,stabilised' '^1,.*,fell'
 done
-runs "dense" dense "sweep={grid:
-    [{path: ground.friction, values: [0.2, 0.4]}, {path: initial.offset.scale, from: 0.1, to: 0.3, count: 401}],
-    sample: {method: sphere, count: 256, vary: [{path: initial.offset.theta, from: -0.1, to: 0.1},
-    {path: initial.offset.vtheta, from: -0.5, to: 0.5}]}, refine: {start: 16}}"
+runs "dense" dense "$(rays 0.1 0.3 401 256)" 'sweep.refine={start: 16}'
 "$stance" basin dense.h5 --json >dense.json 2>>log2
 holds "... near the shortest of many rays" 'for a, b in zip(said("nearest.json")["rows"], said("dense.json")["rows"]):
     print(a["nearest"]["scale"], b["smallest"])
     assert -0.002 * b["smallest"] < b["smallest"] - a["nearest"]["scale"] < 0.02 * b["smallest"]'
-runs "ray" ray "$(cat rays.sets)" 'sweep.grid[0].values=[0.2]'
+runs "ray" ray "$rays" 'sweep.grid[0].values=[0.2]'
 expect "... in words" 0 "$stance" basin ray.h5 --descend 3 says 'initial.offset.theta .* of half its range'
 expect "... and without" 0 "$stance" basin ray.h5 says 'an upper bound; --descend 8'
 expect "a file without rays" 2 "$stance" basin whole.h5 --descend 3
@@ -608,12 +565,11 @@ for wrong in "--weight initial.offset.theta=1" "--rank 3" "--threshold 0.8 --of 
     expect "... nor has $wrong" 2 "$stance" basin rays.h5 $wrong says '^stance basin: rays have no use for --'
 done
 expect "pictures of basins" 0 "$stance" plot whole.h5
-runs "a refined map" inferred 'sweep={grid: [{path: initial.offset.theta, from: -0.12, to: 0.06, count: 33},
-        {path: initial.offset.vtheta, from: -0.6, to: 0.6, count: 33}], refine: {start: 8}}'
+runs "a refined map" inferred "sweep={grid: [$(box 33 33)], refine: {start: 8}}"
 expect "what it has inferred" 0 "$stance" table inferred.h5 --answer evidence --answer steps holds 'rows = table()
 assert {(r["evidence"], bool(r["steps"])) for r in rows} == {("inferred", False), ("simulated", True)}'
 expect "rays as a table" 0 "$stance" table rays.h5 --answer outcome --of fell holds 'rows = table()
 assert list(rows[0])[1:6] == ["ground.friction", "initial.offset.scale", "sample", "initial.offset.theta", "initial.offset.vtheta"]'
-runs "samples of parts are merged" ray2 "$(cat rays.sets)" 'sweep.grid[0].values=[0.2]'
-runs "... the second part" ray4 "$(cat rays.sets)" 'sweep.grid[0].values=[0.4]'
+runs "samples of parts are merged" ray2 "$rays" 'sweep.grid[0].values=[0.2]'
+runs "... the second part" ray4 "$rays" 'sweep.grid[0].values=[0.4]'
 expect "... into the whole" 0 "$stance" merge raysm.h5 ray2.h5 ray4.h5 as rays.h5
