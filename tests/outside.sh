@@ -51,7 +51,7 @@ clauses() { # [command ...] clause ...
         clause=$1
         shift
         before_clause "$@"
-        ((${#words[@]} > 0)) || { result 1 "... $clause nothing" && continue; }
+        ((${#words[@]} > 0)) || [ "$clause" = holds ] || { result 1 "... $clause nothing" && continue; }
         case $clause in
         says) for pattern in "${words[@]}"; do says "... says $pattern" "$pattern"; done ;;
         tells) for pattern in "${words[@]}"; do tells "... tells $pattern" "$pattern"; done ;;
