@@ -20,4 +20,4 @@ text = open(b"pages/no\xff.html", "rb").read()
 sys.exit(json.loads(re.search(rb"id=.head.>(.*?)</script>", text)[1])["file"] != "no?")'
 head -c 9000 map.h5 >cut.h5
 expect "a file that is cut" 3 "$stance" view cut.h5
-expect "... makes no page" 1 test -e cut.html -o -e cut.html.unfinished
+expect "... makes no page" 1 test -e cut.html -o -e cut.html.part
