@@ -77,7 +77,7 @@ bool plot_ends(const struct plot *plot)
     const struct results *r = plot->r;
     double *end = NULL;
     struct gnuplot g;
-    if (!gnuplot_begin(&g, plot, "ends", NULL))
+    if (!gnuplot_begin(&g, plot, "ends"))
         return false;
     gnuplot_say(&g, "How many have ended by each time");
     if (gnuplot_needs(&g, results_answer(r, "end_time", &end, plot->message)) && end &&
